@@ -1,0 +1,4 @@
+//! The debugger as a state machine without a terminal: commands in, frames out.
+
+pub mod command;
+pub mod session;

@@ -1,0 +1,184 @@
+//! The checked scene: what the solver works on.
+//!
+//! Indices instead of names, generated nodes laid out, degrees of freedom numbered. Only what the scene names is
+//! here: nodes of rigid surfaces have no unknowns, beams with GA no shear unknowns.
+//!
+//! Degrees of freedom are laid out node by node (x, y and, on beams, the rotation), then the shear forces of
+//! shear-rigid beams, one per Gauss point. `equation[d]` is the number of the unknown of degree of freedom d, or
+//! none where it is restrained or prescribed.
+
+use super::spec::{Axis, Component, Friction, Mode, Settings};
+
+/// A checked scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    pub title: String,
+    pub about: String,
+    pub nodes: Vec<Node>,
+    pub bodies: Vec<Body>,
+    pub surfaces: Vec<Surface>,
+    pub slaves: Vec<Slave>,
+    pub dofs: Dofs,
+    pub loads: Vec<Load>,
+    /// Prescribed motions other than zero.
+    pub prescribed: Vec<Prescribed>,
+    /// Corners of the path of the load factor, at least two.
+    pub path: Vec<f64>,
+    /// Increment of the load factor, positive.
+    pub increment: f64,
+    pub settings: Settings,
+    pub monitors: Vec<Monitor>,
+    /// Diagonal of the bounding box of all bodies' nodes: the scene's unit of length for tolerances.
+    pub length: f64,
+}
+
+/// A node in the reference configuration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    /// `ID.k` for the k-th node of a chain (from 1), or the id of a single node.
+    pub name: String,
+    pub at: [f64; 2],
+}
+
+/// A deformable body. More kinds will come; what holds for all stands in [`Body`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    pub name: String,
+    /// Distinct nodes of the body, along the chain for a beam.
+    pub nodes: Vec<usize>,
+    pub kind: BodyKind,
+}
+
+/// What a body is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BodyKind {
+    Beam(Beam),
+}
+
+/// A chain of m-node beam elements with one section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beam {
+    /// Node numbers of each element, all of the same count (2 to 9).
+    pub elements: Vec<Vec<usize>>,
+    /// Axial stiffness (force).
+    pub ea: f64,
+    /// Bending stiffness (force · length²).
+    pub ei: f64,
+    /// Shear stiffness (force); none is shear-rigid.
+    pub ga: Option<f64>,
+    /// First shear degree of freedom of the body, where shear-rigid: element e, Gauss point p has
+    /// `first_shear + e * (m - 1) + p`.
+    pub first_shear: Option<usize>,
+}
+
+/// A master surface: a chain of m-node interface elements; the outward side is on the right of the walk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    pub name: String,
+    /// Node numbers of each element in walking order; neighbours share their end node.
+    pub elements: Vec<Vec<usize>>,
+    /// No node of it can move by an unknown.
+    pub rigid: bool,
+}
+
+/// A slave node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slave {
+    pub node: usize,
+    /// Candidate surfaces.
+    pub surfaces: Vec<usize>,
+    pub friction: Friction,
+    pub start: Mode,
+}
+
+/// Numbering of the degrees of freedom and of the unknowns among them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Dofs {
+    /// First degree of freedom of each node.
+    pub first: Vec<usize>,
+    /// 2 or 3 per node.
+    pub count: Vec<u8>,
+    /// Number of the equation of each degree of freedom; none where restrained or prescribed.
+    pub equation: Vec<Option<usize>>,
+    /// Number of equations.
+    pub equations: usize,
+    /// Number of shear unknowns among them (they come last).
+    pub shear: usize,
+}
+
+impl Dofs {
+    /// Number of degrees of freedom, restrained ones included.
+    pub fn len(&self) -> usize {
+        self.equation.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.equation.is_empty()
+    }
+
+    /// The degree of freedom of a node's component, if the node has it.
+    pub fn dof(&self, node: usize, component: Component) -> Option<usize> {
+        let k = component as usize;
+        (k < self.count[node] as usize).then(|| self.first[node] + k)
+    }
+}
+
+/// A dead load on one degree of freedom (a force, or a moment).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    pub dof: usize,
+    pub value: f64,
+    pub scale: Factor,
+}
+
+/// A prescribed value of one degree of freedom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prescribed {
+    pub dof: usize,
+    pub value: f64,
+    pub scale: Factor,
+}
+
+/// A load's own factor as a function of the scene's load factor.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Factor(pub Vec<(f64, f64)>);
+
+impl Factor {
+    /// The factor at a load factor: piecewise linear, constant beyond the ends; without points the load factor
+    /// itself.
+    pub fn at(&self, load_factor: f64) -> f64 {
+        let points = &self.0;
+        let (Some(first), Some(last)) = (points.first(), points.last()) else {
+            return load_factor;
+        };
+        if load_factor <= first.0 {
+            return first.1;
+        }
+        for pair in points.windows(2) {
+            let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
+            if load_factor <= x1 {
+                return y0 + (y1 - y0) * (load_factor - x0) / (x1 - x0);
+            }
+        }
+        last.1
+    }
+}
+
+/// A number to report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Monitor {
+    pub name: String,
+    pub of: Watched,
+}
+
+/// What a monitor reports.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Watched {
+    /// Value of a degree of freedom.
+    Displacement { dof: usize },
+    /// Component of the interaction force on slaves (by slave number).
+    Contact { slaves: Vec<usize>, axis: Axis },
+    /// Support force at a restrained degree of freedom.
+    Reaction { dof: usize },
+}

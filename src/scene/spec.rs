@@ -1,0 +1,376 @@
+//! The scene file as its author writes it: one Rust type per RON construct.
+//!
+//! Nothing here is checked beyond what a type can say; [`crate::scene::model`] turns a [`Spec`] into a
+//! [`Model`](crate::scene::Model), and refuses what makes no sense. Every field is either required or has the
+//! default that its comment names.
+
+use serde::{Deserialize, Serialize};
+
+/// A point or a vector in the plane, `(x, y)`, in the scene's unit of length.
+pub type Point = (f64, f64);
+
+/// A whole scene file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spec {
+    /// One line that says what the scene is.
+    pub title: String,
+    /// A few sentences for the reader: source, units, what to look for. Default: empty.
+    #[serde(default)]
+    pub about: String,
+    /// Divides every generated element into this many. Default: 1.
+    #[serde(default = "one")]
+    pub refine: usize,
+    /// Nodes, one by one or generated along curves.
+    pub nodes: Vec<Nodes>,
+    /// Materials and sections by name.
+    pub materials: Vec<Material>,
+    /// What deforms.
+    pub bodies: Vec<BodySpec>,
+    /// Master surfaces. Default: none.
+    #[serde(default)]
+    pub surfaces: Vec<SurfaceSpec>,
+    /// Slave nodes. Default: none.
+    #[serde(default)]
+    pub slaves: Vec<SlaveSpec>,
+    /// Coulomb friction of every slave node that names none of its own. Default: smooth.
+    #[serde(default)]
+    pub friction: Friction,
+    /// Restrained degrees of freedom. Default: none.
+    #[serde(default)]
+    pub supports: Vec<SupportSpec>,
+    /// Reference loads, multiplied by the load factor. Default: none.
+    #[serde(default)]
+    pub loads: Vec<LoadSpec>,
+    /// The path of the load factor and its increments.
+    pub history: History,
+    /// Choices of the method and its limits. Default: those of [`Settings`].
+    #[serde(default)]
+    pub settings: Settings,
+    /// What `--csv` and the load-displacement view report. Default: none.
+    #[serde(default)]
+    pub monitors: Vec<MonitorSpec>,
+}
+
+fn one() -> usize {
+    1
+}
+
+/// Nodes, one by one or in chains of m-node elements.
+///
+/// A chain's nodes are called `ID.1`, `ID.2`, … in order; `ID.start`, `ID.end`, `ID@0.5` (at that fraction of the
+/// chain's parameter) and `ID.all` name them whatever the refinement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Nodes {
+    /// One node, called `id`.
+    Node { id: String, at: Point },
+    /// A straight chain.
+    Line {
+        id: String,
+        from: Point,
+        to: Point,
+        /// Number of elements, before refinement.
+        elements: usize,
+        /// Nodes per element, 2 to 9.
+        per_element: usize,
+    },
+    /// A circular arc; angles in degrees, anticlockwise from +x, `from` may exceed `to`.
+    Arc {
+        id: String,
+        center: Point,
+        radius: f64,
+        from: f64,
+        to: f64,
+        elements: usize,
+        per_element: usize,
+    },
+    /// A chain through given points; elements are the Lagrange curves through them.
+    Through { id: String, points: Vec<Point>, per_element: usize },
+    /// A chain over nodes that exist already, which it shares (a rigid joint between beams). Not refined.
+    Chain { id: String, of: Vec<String>, per_element: usize },
+}
+
+/// A material or section.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case)]
+pub enum Material {
+    /// A beam's section stiffnesses.
+    Section {
+        id: String,
+        /// Axial stiffness, force.
+        EA: f64,
+        /// Bending stiffness, force times length squared.
+        EI: f64,
+        /// Shear stiffness, force. Default: none, that is shear-rigid.
+        #[serde(default)]
+        GA: Option<f64>,
+    },
+}
+
+/// A deformable body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum BodySpec {
+    /// A geometrically exact planar beam along a chain of nodes.
+    Beam { id: String, along: String, material: String },
+}
+
+/// A master surface: the interface elements along a chain of nodes.
+///
+/// Whoever walks along the chain has the outward side on the right (the body on the left, as along the boundary of
+/// a body whose nodes run anticlockwise). Nodes that belong to no body are restrained: the surface is rigid and
+/// adds no unknowns.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceSpec {
+    pub id: String,
+    pub along: String,
+    /// Walk the chain the other way, so that the outward side changes. Default: false.
+    #[serde(default)]
+    pub reverse: bool,
+}
+
+/// Slave nodes and the surfaces that they may touch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlaveSpec {
+    /// Names of nodes; `ID.all` stands for every node of a chain.
+    pub nodes: Vec<String>,
+    /// Surfaces among which each node finds its own element.
+    pub on: Vec<String>,
+    /// The mode of the first minor iteration. Default: free.
+    #[serde(default)]
+    pub start: Mode,
+    /// Friction of these nodes. Default: the scene's.
+    #[serde(default)]
+    pub friction: Option<Friction>,
+}
+
+/// Mode of interaction of a slave node with its master element (Table 1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Apart: no interaction force.
+    #[default]
+    Free,
+    /// Touching; the tangential force is T_max.
+    Sliding,
+    /// Touching and stuck.
+    Fixed,
+}
+
+/// Coulomb friction, eqn (20).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Friction angle φ in degrees, 0 <= φ < 90. Default: 0.
+    #[serde(default)]
+    pub angle: f64,
+    /// Cohesion, a force per slave node. Default: 0.
+    #[serde(default)]
+    pub cohesion: f64,
+}
+
+impl Friction {
+    /// tan φ.
+    pub fn coefficient(&self) -> f64 {
+        self.angle.to_radians().tan()
+    }
+
+    /// Whether no tangential force can arise at all.
+    pub fn is_smooth(&self) -> bool {
+        self.angle == 0.0 && self.cohesion == 0.0
+    }
+}
+
+/// Restrained degrees of freedom of nodes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SupportSpec {
+    pub node: String,
+    pub fix: Vec<Component>,
+}
+
+/// A degree of freedom of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Component {
+    X,
+    Y,
+    Rotation,
+}
+
+/// A reference load; what acts is its value times the load factor (or times `scale` of it).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum LoadSpec {
+    /// A dead point load.
+    Force {
+        node: String,
+        #[serde(default)]
+        x: f64,
+        #[serde(default)]
+        y: f64,
+        #[serde(default)]
+        scale: Scale,
+    },
+    /// A moment on a beam node, anticlockwise positive.
+    Moment {
+        node: String,
+        value: f64,
+        #[serde(default)]
+        scale: Scale,
+    },
+    /// A prescribed displacement (or rotation) of a node; `ID.all` moves a whole chain.
+    Displacement {
+        node: String,
+        component: Component,
+        value: f64,
+        #[serde(default)]
+        scale: Scale,
+    },
+}
+
+/// Piecewise-linear map from the scene's load factor to a load's own, as points `(load factor, own factor)` with
+/// rising load factors; constant beyond its ends. Default (no points): the load factor itself.
+pub type Scale = Vec<Point>;
+
+/// The path of the load factor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct History {
+    /// Corners of the path, the first of which is where the scene starts unloaded, usually 0.
+    pub path: Vec<f64>,
+    /// Size of an increment of the load factor; the last one of each leg is shorter where it must be.
+    pub increment: f64,
+}
+
+/// Choices of the method, and its limits.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// How the total force of a slave node is found after a major iteration. Default: stress.
+    pub residual: ResidualMethod,
+    /// How the sliding node's T_max enters the equations. Default: lagged.
+    pub t_max: FrictionLimit,
+    /// Over what the slip of Table 2's sliding row is counted. Default: increment.
+    pub slip: SlipCount,
+    /// What a tie in Table 2 does. Default: keep.
+    pub ties: Ties,
+    /// Most minor iterations in a major one. Default: 100.
+    pub minors: u32,
+    /// Most major iterations in an increment. Default: 60.
+    pub majors: u32,
+    /// What happens when `minors` are used up. Default: stop.
+    pub at_minor_limit: AtLimit,
+    /// What happens when `majors` are used up. Default: stop.
+    pub at_major_limit: AtLimit,
+    /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-10.
+    pub tolerance: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            residual: ResidualMethod::default(),
+            t_max: FrictionLimit::default(),
+            slip: SlipCount::default(),
+            ties: Ties::default(),
+            minors: 100,
+            majors: 60,
+            at_minor_limit: AtLimit::default(),
+            at_major_limit: AtLimit::default(),
+            tolerance: 1e-10,
+        }
+    }
+}
+
+/// The paper's two residual methods ("Formulation of the residual force vector").
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ResidualMethod {
+    /// Method 1: interaction forces at the slave nodes are accumulated over the major iterations.
+    Accumulate,
+    /// Method 2: the interaction force at a slave node is the nodal force of the current stresses less the load.
+    #[default]
+    Stress,
+}
+
+/// How T_max enters the equations of a sliding node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FrictionLimit {
+    /// From the previous minor iteration, as in the paper.
+    #[default]
+    Lagged,
+    /// tan φ ΔF_n stands in the matrix (unsymmetric); no lag.
+    Consistent,
+}
+
+/// Over what the slip of a sliding node is counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SlipCount {
+    /// Since the last converged increment, or since touch.
+    #[default]
+    Increment,
+    /// Over the present major iteration only: the literal reading of Table 2.
+    Major,
+}
+
+/// What a tie in Table 2 does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ties {
+    /// A tie, within the tolerance, keeps the mode that the node has.
+    #[default]
+    Keep,
+    /// The inequalities as printed, without a tolerance: F_n <= 0 opens.
+    Printed,
+}
+
+/// What happens when a limit of iterations is reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AtLimit {
+    /// The increment fails.
+    #[default]
+    Stop,
+    /// Go on with what there is, as the paper's studies do; the increment is marked.
+    Accept,
+}
+
+/// A number to report after every converged increment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MonitorSpec {
+    /// Column name in `--csv`.
+    pub name: String,
+    pub of: Quantity,
+}
+
+/// What a monitor reports.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Quantity {
+    /// A displacement (or rotation) of a node.
+    Displacement { node: String, component: Component },
+    /// The interaction force on one slave node, or on all of them together.
+    Contact {
+        #[serde(default)]
+        node: Option<String>,
+        component: Axis,
+    },
+    /// The force of the support at a restrained degree of freedom.
+    Reaction { node: String, component: Component },
+}
+
+/// A Cartesian axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    X,
+    Y,
+}
