@@ -1,1 +1,16 @@
-pub fn a(){}
+//! stickslip: a terminal step-through debugger for FEM contact iterations.
+//!
+//! The map of the house, from the ground up; an arrow of use only ever points down this list.
+//!
+//! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
+//! - [`linalg`]: the only file that knows faer. Sparsity patterns, factors, checked solves.
+//! - [`fem`]: the bodies. Shape functions, beams, assembly of internal forces and tangent.
+//! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.
+//! - [`solve`]: the stepper: increments, major iterations, minor iterations, one per call.
+//! - [`debug`]: the debugger without a terminal: session, commands, snapshots.
+//! - [`cli`] and [`tui`]: the two front ends.
+
+pub mod contact;
+pub mod debug;
+pub mod scene;
+pub mod solve;

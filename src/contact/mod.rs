@@ -1,0 +1,3 @@
+//! The interface between a slave node and its master surface.
+
+pub mod decision;
