@@ -56,7 +56,7 @@ pub fn project(
     previous: Option<Spot>,
 ) -> Option<Spot> {
     let mut best: Option<(f64, Spot)> = None;
-    let mut consider = |surface: usize, element: usize, best: &mut Option<(f64, Spot)>| {
+    let consider = |surface: usize, element: usize, best: &mut Option<(f64, Spot)>| {
         let nodes = &surfaces[surface].elements[element];
         if best.is_some_and(|(distance, _)| box_distance(nodes, positions, slave) > distance) {
             return;

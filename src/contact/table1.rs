@@ -11,6 +11,9 @@
 //! sliding:  Δu_nS* − Δu_nS = g          ΔF_t = T_max − F_t
 //! free:     ΔF_n = −F_n                 ΔF_t = −F_t
 //! ```
+//!
+//! A node that slid in an earlier major iteration of the increment and is then found to stick did not slip at all:
+//! unless slip is counted by the paper's reading, over a single major iteration, sticking takes that slip back.
 
 use crate::scene::{Friction, Mode};
 
@@ -41,6 +44,8 @@ pub struct Known {
     pub gap: f64,
     /// Ratio ρ of tangential to normal travel, where the node touched in this major iteration; else 0.
     pub ratio: f64,
+    /// Slip already made that sticking must take back (0 in the paper's reading): length.
+    pub slip: f64,
     /// Total forces F_n^(k−1), F_t^(k−1).
     pub f_n: f64,
     pub f_t: f64,
@@ -63,7 +68,7 @@ pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
     match mode {
         Mode::Fixed => [
             normal,
-            Equation { motion: Motion::Tangential, d_n: 0.0, d_t: 0.0, value: known.gap * known.ratio },
+            Equation { motion: Motion::Tangential, d_n: 0.0, d_t: 0.0, value: known.gap * known.ratio - known.slip },
         ],
         Mode::Sliding => [normal, sliding(known)],
         Mode::Free => [gone(1.0, 0.0, known.f_n), gone(0.0, 1.0, known.f_t)],
@@ -106,7 +111,7 @@ pub fn direction(f_t: f64, tiny_force: f64, slip: f64, tiny_slip: f64, had: f64)
 mod tests {
     use super::*;
 
-    const KNOWN: Known = Known { gap: -0.2, ratio: 1.5, f_n: 3.0, f_t: -1.0, limit: Limit::Lagged(-1.7) };
+    const KNOWN: Known = Known { gap: -0.2, ratio: 1.5, slip: 0.0, f_n: 3.0, f_t: -1.0, limit: Limit::Lagged(-1.7) };
 
     #[test]
     fn the_equations_are_those_of_table_1() {
