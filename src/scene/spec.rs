@@ -86,9 +86,17 @@ pub enum Nodes {
         per_element: usize,
     },
     /// A chain through given points; elements are the Lagrange curves through them.
-    Through { id: String, points: Vec<Point>, per_element: usize },
+    Through {
+        id: String,
+        points: Vec<Point>,
+        per_element: usize,
+    },
     /// A chain over nodes that exist already, which it shares (a rigid joint between beams). Not refined.
-    Chain { id: String, of: Vec<String>, per_element: usize },
+    Chain {
+        id: String,
+        of: Vec<String>,
+        per_element: usize,
+    },
 }
 
 /// A material or section.
@@ -114,7 +122,11 @@ pub enum Material {
 #[serde(deny_unknown_fields)]
 pub enum BodySpec {
     /// A geometrically exact planar beam along a chain of nodes.
-    Beam { id: String, along: String, material: String },
+    Beam {
+        id: String,
+        along: String,
+        material: String,
+    },
 }
 
 /// A master surface: the interface elements along a chain of nodes.
@@ -265,9 +277,11 @@ pub struct Settings {
     pub majors: u32,
     /// What happens when `minors` are used up. Default: stop.
     pub at_minor_limit: AtLimit,
+    /// What happens when the minor iterations cycle. Default: stop.
+    pub at_cycle: AtCycle,
     /// What happens when `majors` are used up. Default: stop.
     pub at_major_limit: AtLimit,
-    /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-10.
+    /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
     pub tolerance: f64,
 }
 
@@ -281,8 +295,9 @@ impl Default for Settings {
             minors: 100,
             majors: 60,
             at_minor_limit: AtLimit::default(),
+            at_cycle: AtCycle::default(),
             at_major_limit: AtLimit::default(),
-            tolerance: 1e-10,
+            tolerance: 1e-11,
         }
     }
 }
@@ -340,6 +355,19 @@ pub enum AtLimit {
     Stop,
     /// Go on with what there is, as the paper's studies do; the increment is marked.
     Accept,
+}
+
+/// What happens when the minor iterations return to where they had been.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AtCycle {
+    /// The increment fails.
+    #[default]
+    Stop,
+    /// Aim the present major iteration at half the load that is left of the increment, and at half of that again,
+    /// until its minor iterations settle; the next major iteration aims at the whole again. For cycles that the
+    /// error of the linearisation makes, as where a force goes to zero. Fails where no part can be taken.
+    Damp,
 }
 
 /// A number to report after every converged increment.
