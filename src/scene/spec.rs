@@ -86,9 +86,30 @@ pub enum Nodes {
         per_element: usize,
     },
     /// A chain through given points; elements are the Lagrange curves through them.
-    Through { id: String, points: Vec<Point>, per_element: usize },
+    Through {
+        id: String,
+        points: Vec<Point>,
+        per_element: usize,
+    },
     /// A chain over nodes that exist already, which it shares (a rigid joint between beams). Not refined.
-    Chain { id: String, of: Vec<String>, per_element: usize },
+    Chain {
+        id: String,
+        of: Vec<String>,
+        per_element: usize,
+    },
+}
+
+impl Nodes {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        match self {
+            Nodes::Node { id, .. }
+            | Nodes::Line { id, .. }
+            | Nodes::Arc { id, .. }
+            | Nodes::Through { id, .. }
+            | Nodes::Chain { id, .. } => id,
+        }
+    }
 }
 
 /// A material or section.
@@ -109,12 +130,32 @@ pub enum Material {
     },
 }
 
+impl Material {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        let Material::Section { id, .. } = self;
+        id
+    }
+}
+
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum BodySpec {
     /// A geometrically exact planar beam along a chain of nodes.
-    Beam { id: String, along: String, material: String },
+    Beam {
+        id: String,
+        along: String,
+        material: String,
+    },
+}
+
+impl BodySpec {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        let BodySpec::Beam { id, .. } = self;
+        id
+    }
 }
 
 /// A master surface: the interface elements along a chain of nodes.
@@ -193,13 +234,23 @@ pub struct SupportSpec {
     pub fix: Vec<Component>,
 }
 
-/// A degree of freedom of a node.
+/// A degree of freedom of a node. Prints as the scene file has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Component {
     X,
     Y,
     Rotation,
+}
+
+impl std::fmt::Display for Component {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Component::X => "x",
+            Component::Y => "y",
+            Component::Rotation => "rotation",
+        })
+    }
 }
 
 /// A reference load; what acts is its value times the load factor (or times `scale` of it).
