@@ -99,6 +99,19 @@ pub enum Nodes {
     },
 }
 
+impl Nodes {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        match self {
+            Nodes::Node { id, .. }
+            | Nodes::Line { id, .. }
+            | Nodes::Arc { id, .. }
+            | Nodes::Through { id, .. }
+            | Nodes::Chain { id, .. } => id,
+        }
+    }
+}
+
 /// A material or section.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -117,6 +130,14 @@ pub enum Material {
     },
 }
 
+impl Material {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        let Material::Section { id, .. } = self;
+        id
+    }
+}
+
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -127,6 +148,14 @@ pub enum BodySpec {
         along: String,
         material: String,
     },
+}
+
+impl BodySpec {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        let BodySpec::Beam { id, .. } = self;
+        id
+    }
 }
 
 /// A master surface: the interface elements along a chain of nodes.
@@ -205,13 +234,23 @@ pub struct SupportSpec {
     pub fix: Vec<Component>,
 }
 
-/// A degree of freedom of a node.
+/// A degree of freedom of a node. Prints as the scene file has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Component {
     X,
     Y,
     Rotation,
+}
+
+impl std::fmt::Display for Component {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Component::X => "x",
+            Component::Y => "y",
+            Component::Rotation => "rotation",
+        })
+    }
 }
 
 /// A reference load; what acts is its value times the load factor (or times `scale` of it).
