@@ -17,8 +17,9 @@ use crate::scene::{Mode, Model, spec};
 use crate::solve::event::{
     Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular,
 };
+use crate::solve::intervene::Intervention;
 use crate::solve::singular;
-use crate::solve::state::{IncrementStart, NodeState, State, Status, next_load_factor};
+use crate::solve::state::{IncrementStart, NodeState, State, Status};
 use crate::solve::system::{Solved, System};
 use std::sync::Arc;
 
@@ -39,25 +40,6 @@ pub struct Stepper {
     /// Whether `system` is linearised about `state`.
     linearised: bool,
     event: Event,
-}
-
-/// What the user does to a run. Serialised into snapshots and replayed.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Intervention {
-    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
-    Force {
-        slave: usize,
-        mode: Mode,
-        hold: bool,
-    },
-    /// Give a slave node back to Table 2.
-    Release { slave: usize },
-    /// Change the increment size and start the present increment again.
-    Increment(f64),
-    /// Replace the friction of every slave node.
-    Friction(spec::Friction),
-    /// Replace the settings.
-    Settings(spec::Settings),
 }
 
 impl Stepper {
@@ -316,7 +298,7 @@ impl Stepper {
                     aim: self.state.aim,
                 };
             }
-            self.forget_trail();
+            self.state.forget_trail();
             return Outcome::Failed(Failure::Cycle(cycle));
         }
         if at_limit {
@@ -346,7 +328,7 @@ impl Stepper {
                 (node.t_max, node.sign) = (input.t_max, input.t_max.signum());
             }
         }
-        self.forget_trail();
+        self.state.forget_trail();
         true
     }
 
@@ -432,12 +414,6 @@ impl Stepper {
         Outcome::Major { after, settled }
     }
 
-    fn forget_trail(&mut self) {
-        if !self.state.trail.is_empty() {
-            Arc::make_mut(&mut self.state.trail).clear();
-        }
-    }
-
     fn update(&mut self) {
         (self.state.reached, self.state.aim) = (self.state.aim, self.state.load_factor);
         let mut largest = 0.0_f64;
@@ -476,7 +452,7 @@ impl Stepper {
         if self.state.controls.settings.residual == ResidualMethod::Stress {
             self.take_forces_from_stresses();
         }
-        self.forget_trail();
+        self.state.forget_trail();
     }
 
     /// Projects every slave node anew. Forces keep their components in the frame that turns with the surface.
@@ -569,7 +545,8 @@ impl Stepper {
         } else {
             let p = &mut self.state.next;
             (p.increment, p.attempt) = (p.increment + 1, 1);
-            self.begin();
+            self.state.begin(&self.model);
+            self.linearised = false;
         }
         Outcome::Increment {
             after,
@@ -578,105 +555,13 @@ impl Stepper {
         }
     }
 
-    /// Sets out on the increment that follows `start`.
-    fn begin(&mut self) {
-        let state = &mut self.state;
-        (state.next.major, state.next.minor) = (1, 1);
-        (state.minors, state.unsettled, state.correction) = (0, 0, 0.0);
-        state.load_factor =
-            next_load_factor(&self.model.path, &state.start, state.controls.increment);
-        (state.aim, state.reached) = (state.load_factor, state.start.load_factor);
-        self.forget_trail();
-        self.linearised = false;
-    }
-
-    /// Applies what the user wants changed. The position stays, except that a new increment size starts the
-    /// present increment again.
+    /// Applies what the user wants changed.
     ///
     /// # Errors
-    /// A message for values that make no sense.
+    /// Those of [`State::intervene`].
     pub fn intervene(&mut self, intervention: &Intervention) -> Result<(), String> {
-        if self.state.status == Status::Finished {
-            return Err("the history is done: step back first".into());
-        }
-        match intervention {
-            Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,
-            Intervention::Release { slave } => self.node(*slave)?.forced = Forced::No,
-            Intervention::Increment(increment) => self.retry(*increment)?,
-            Intervention::Friction(friction) => {
-                if !(0.0..90.0).contains(&friction.angle)
-                    || friction.cohesion.is_nan()
-                    || friction.cohesion < 0.0
-                {
-                    return Err("a friction angle lies in 0 <= angle < 90 degrees, a cohesion is not negative".into());
-                }
-                Arc::make_mut(&mut self.state.controls)
-                    .friction
-                    .fill(*friction);
-                for node in &mut self.state.nodes {
-                    node.t_max = t_max(friction, node.f_n, node.sign);
-                }
-            }
-            Intervention::Settings(settings) => {
-                if settings.minors == 0 || settings.majors == 0 {
-                    return Err("limits of iterations are at least 1".into());
-                }
-                Arc::make_mut(&mut self.state.controls).settings = *settings;
-                self.linearised = false;
-            }
-        }
-        self.forget_trail();
-        Ok(())
-    }
-
-    fn node(&mut self, slave: usize) -> Result<&mut NodeState, String> {
-        let count = self.state.nodes.len();
-        self.state
-            .nodes
-            .get_mut(slave)
-            .ok_or_else(|| format!("there are {count} slave nodes, and none of number {slave}"))
-    }
-
-    fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), String> {
-        let node = self.node(slave)?;
-        if node.spot.is_none() && mode != Mode::Free {
-            return Err(
-                "the node is past the end of its surface: there is nothing to touch".into(),
-            );
-        }
-        let before = node.mode;
-        node.mode = mode;
-        node.forced = if hold {
-            Forced::Held(mode)
-        } else {
-            Forced::Once(mode)
-        };
-        if before == Mode::Free && mode != Mode::Free {
-            node.ratio = node.travel;
-        }
-        Ok(())
-    }
-
-    fn retry(&mut self, increment: f64) -> Result<(), String> {
-        if !(increment.is_finite() && increment > 0.0) {
-            return Err(format!(
-                "an increment is a positive number, not {increment}"
-            ));
-        }
-        let state = &mut self.state;
-        Arc::make_mut(&mut state.controls).increment = increment;
-        let held: Vec<Forced> = state.nodes.iter().map(|n| n.forced).collect();
-        state.u = state.start.u.clone();
-        state.nodes.clone_from(&state.start.nodes);
-        for (node, forced) in state.nodes.iter_mut().zip(held) {
-            if let Forced::Held(mode) = forced {
-                (node.forced, node.mode) = (forced, mode);
-            }
-        }
-        state.next.attempt += 1;
-        state.status = Status::Running;
-        self.begin();
-        Ok(())
+        self.linearised = false;
+        self.state.intervene(&self.model, intervention)
     }
 
     /// Values of the scene's monitors at the start of the present major iteration (after an accepted increment: at
