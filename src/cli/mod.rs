@@ -49,12 +49,19 @@ enum Error {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
-    #[error(transparent)]
+    #[error("{}{}", .0, how_to_overwrite(.0))]
     File(#[from] FileError),
     #[error("{0}")]
     Usage(String),
     #[error("standard output: {0}")]
     Output(io::Error),
+}
+
+fn how_to_overwrite(error: &FileError) -> &'static str {
+    match error {
+        FileError::Exists(_) => " (--force does it)",
+        FileError::Failed { .. } => "",
+    }
 }
 
 /// Steps through contact iterations of the finite element method, in a terminal.
@@ -129,6 +136,13 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    if !matches!(
+        cli.command,
+        None | Some(Command::Run(_) | Command::Record(_))
+    ) {
+        // These have nothing to put away.
+        interrupt::end_at_once();
+    }
     let ended = match &cli.command {
         None => debugger::main(cli.debugger),
         Some(Command::Run(args)) => run::main(args),

@@ -1,5 +1,6 @@
 //! `stickslip record`: solves up to a place, and writes a snapshot of it.
 
+use super::interrupt::Interrupt;
 use super::{Error, Exit, SceneArgs, say, tell};
 use crate::debug::files::Output;
 use crate::debug::report;
@@ -28,6 +29,7 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
     let scene = args.scene.open()?;
     let path = args
         .output
@@ -38,7 +40,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         _ => Some(Output::create(&path, args.force)?),
     };
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
-    let steps = match seek(&mut stepper, args.at) {
+    let steps = match seek(&mut stepper, args.at, &interrupt) {
         Ok(steps) => steps,
         Err(missed) => return Ok(tell_missed(&scene, &stepper, args.at, missed)),
     };
@@ -135,15 +137,19 @@ fn ends_major(outcome: &Outcome) -> bool {
 /// Why a place was not reached.
 enum Missed {
     Failed(Failure),
+    Interrupted,
     /// There is no such place in this run.
     Absent,
 }
 
 /// Steps to a place; the number of minor iterations that it took.
-fn seek(stepper: &mut Stepper, at: At) -> Result<u64, Missed> {
+fn seek(stepper: &mut Stepper, at: At, interrupt: &Interrupt) -> Result<u64, Missed> {
     let mut steps = 0;
     while stepper.step().is_some() {
         steps += 1;
+        if interrupt.came() {
+            return Err(Missed::Interrupted);
+        }
         let event = stepper.event();
         if at.is(event) {
             return Ok(steps);
@@ -172,6 +178,11 @@ fn tell_missed(scene: &Scene, stepper: &Stepper, at: At, missed: Missed) -> Exit
             );
             tell(&format!("{name}: {at} is not reached: {told}"));
             Exit::Unconverged
+        }
+        Missed::Interrupted => {
+            let reached = report::position(event.position);
+            tell(&format!("{name}: interrupted after {reached}"));
+            Exit::Interrupted
         }
         Missed::Absent => {
             let reached = report::outcome(&scene.model, event);

@@ -40,10 +40,10 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
     let scene = args.scene.open()?;
     // Before the solve, so that nobody waits for a result that then has no place to go.
     let mut outputs = Outputs::open(args)?;
-    let interrupt = Interrupt::listen();
     let mut run = Run::new(&scene, args.quiet);
     let end = run.go(&mut outputs, &interrupt)?;
     run.progress.clear();

@@ -6,6 +6,7 @@
 //! and for residuals, which are relative already; and always the number itself where that is larger. NaN equals NaN.
 //! Names of scenes are not compared.
 
+use super::report;
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
 use crate::scene::{Scene, paths};
 use crate::solve::event::{Motion, Singular};
@@ -128,9 +129,14 @@ impl Differences {
 
     fn slave(&mut self, a: &SlaveRecord, b: &SlaveRecord, scales: &Scales) {
         let name = &a.node;
-        self.exact(&format!("{name} mode"), &a.mode, &b.mode);
-        self.exact(&format!("{name} next"), &a.next, &b.next);
-        self.exact(&format!("{name} rule"), &a.rule, &b.rule);
+        let rule = |s: &SlaveRecord| s.rule.map_or(ABSENT, report::rule).to_owned();
+        for (what, left, right) in [
+            ("mode", report::mode(a.mode), report::mode(b.mode)),
+            ("next", report::mode(a.next), report::mode(b.next)),
+        ] {
+            self.exact_text(&format!("{name} {what}"), left.into(), right.into());
+        }
+        self.exact_text(&format!("{name} rule"), rule(a), rule(b));
         self.exact(&format!("{name} forced"), &a.forced, &b.forced);
         match (a.gap, b.gap) {
             (Some(left), Some(right)) => {
@@ -247,7 +253,7 @@ fn told(snapshot: &Snapshot) -> Vec<String> {
         .collect()
 }
 
-fn by_name<'a, T>(all: &'a [T], name: impl Fn(&T) -> &String) -> BTreeMap<String, &'a T> {
+fn by_name<T>(all: &[T], name: impl Fn(&T) -> &String) -> BTreeMap<String, &T> {
     all.iter().map(|one| (name(one).clone(), one)).collect()
 }
 

@@ -8,7 +8,7 @@ use tempfile::NamedTempFile;
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    #[error("{}: the file exists and is not overwritten unless asked (--force)", .0.display())]
+    #[error("{}: the file exists already, and nothing is overwritten unasked", .0.display())]
     Exists(PathBuf),
     #[error("{}: it cannot be written: {source}", path.display())]
     Failed { path: PathBuf, source: io::Error },
