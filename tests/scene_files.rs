@@ -338,6 +338,11 @@ fn each_fault_has_one_message_with_its_place() {
             "angle: 30,0",
             "decimals have a point, not a comma",
         ),
+        (
+            "title: \"P",
+            "title: \"\\n",
+            ":18:12: title: the title must be one line",
+        ),
         // Names.
         (
             "[\"beam.end\"]",
@@ -800,7 +805,10 @@ fn try_text(text: &str) {
             let _ = Cost::of(&scene).to_string();
             let _ = paths::list(&scene.spec);
         }
-        Err(error) => assert!(error.to_string().starts_with("x:"), "{error}"),
+        Err(error) => {
+            assert!(error.to_string().starts_with("x:"), "{error}");
+            assert!(!error.to_string().contains('\n'), "{error}");
+        }
     }
 }
 
@@ -996,4 +1004,12 @@ proptest! {
             prop_assert!(node < scene.model.nodes.len());
         }
     }
+}
+
+#[test]
+fn a_large_scene_is_accepted_up_to_the_limit() {
+    let scene = with("refine", "20000").unwrap();
+    assert_eq!(scene.model.nodes.len(), 160_002);
+    let error = with("refine", "40000").unwrap_err().to_string();
+    assert!(error.contains("at most 200000"), "{error}");
 }

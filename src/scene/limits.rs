@@ -21,6 +21,8 @@ pub const INCREMENTS: f64 = 1e6;
 pub const ITERATIONS: u32 = 1_000_000;
 /// Most characters of a name.
 pub const NAME: usize = 64;
+/// Most characters of a title.
+pub const TITLE: usize = 120;
 /// Largest coordinate, load or prescribed value.
 pub const MAGNITUDE: f64 = 1e12;
 /// Smallest and largest stiffness: their squares are still far from the ends of floating-point range.

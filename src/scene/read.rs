@@ -35,23 +35,20 @@ pub(crate) fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
 
 /// ron's error in our form.
 fn unreadable(file: &str, text: &str, error: &SpannedError, path: &Path) -> SceneError {
-    let start = error.span.start;
-    let found = locate(text, path);
-    // Where a whole value is wrong it is the place; else ron's cursor, of which the start is nearer to the fault.
-    let (at, message) = match wanted(&error.code) {
-        Some(wanted) if !path.0.is_empty() => {
-            let value = shortened(text.get(found.clone()).unwrap_or_default());
+    let value = locate(text, path);
+    let of_value = line_and_column(text, value.start);
+    // Where a whole value is wrong, its start is the place. Else it is ron's cursor, of which the start of the span is
+    // nearer to the fault than the end.
+    let (at, message) = match (wanted(&error.code), &error.code) {
+        (Some(wanted), _) if !path.0.is_empty() => {
+            let shown = shortened(text.get(value).unwrap_or_default());
             (
-                line_and_column(text, found.start),
-                format!("{value} will not do; it must be {wanted}"),
+                of_value,
+                format!("{shown} will not do; it must be {wanted}"),
             )
         }
-        _ => match &error.code {
-            ron::Error::MissingStructField { .. } => {
-                (line_and_column(text, found.start), message(&error.code))
-            }
-            code => ((start.line, start.col), message(code)),
-        },
+        (_, code @ ron::Error::MissingStructField { .. }) => (of_value, message(code)),
+        (_, code) => ((error.span.start.line, error.span.start.col), message(code)),
     };
     SceneError {
         file: file.to_owned(),
@@ -68,7 +65,7 @@ fn wanted(error: &ron::Error) -> Option<&'static str> {
     match error {
         E::ExpectedFloat => Some("a number"),
         E::ExpectedInteger => Some("a whole number"),
-        E::IntegerOutOfBounds => Some("a whole number, not negative, and not as large"),
+        E::IntegerOutOfBounds => Some("a whole number that is neither negative nor huge"),
         E::ExpectedBoolean => Some("true or false"),
         E::ExpectedString => Some("a text in quotes"),
         E::ExpectedArray => Some("a list in square brackets, [ ]"),

@@ -8,6 +8,7 @@ use super::super::nodes::{Names, unique};
 use super::super::spec::{BodySpec, Material, Spec};
 use std::collections::HashSet;
 
+/// Refuses materials without usable stiffnesses.
 pub(super) fn materials(spec: &Spec) -> Result<(), Fault> {
     unique("materials", spec.materials.iter().map(Material::id))?;
     for (k, material) in spec.materials.iter().enumerate() {
@@ -22,6 +23,7 @@ pub(super) fn materials(spec: &Spec) -> Result<(), Fault> {
     Ok(())
 }
 
+/// The bodies. Their shear unknowns are numbered later, with the others.
 pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
     if spec.bodies.is_empty() {
         return Err(Fault::new(
@@ -112,6 +114,7 @@ pub(super) fn check_bodies(
     Ok(())
 }
 
+/// Refuses elements along a chain that are no sound curves.
 pub(super) fn check_chain(
     names: &Names,
     along: &str,

@@ -4,6 +4,7 @@ use super::super::error::{Fault, at};
 use super::super::limits;
 use super::super::spec::{History, Settings};
 
+/// Refuses a path that goes nowhere, or that has no end.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
     let History { path, increment } = history;
     let here = at!["history", "path"];
@@ -57,6 +58,7 @@ pub(crate) fn increments(path: &[f64], increment: f64) -> f64 {
     path.windows(2).map(leg).sum()
 }
 
+/// Refuses settings with which no solve could end.
 pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
     let here = at!["settings"];
     for (field, value) in [("minors", settings.minors), ("majors", settings.majors)] {

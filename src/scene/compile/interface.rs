@@ -9,6 +9,7 @@ use super::super::spec::{Component, Friction, Nodes, SlaveSpec, Spec};
 use super::bodies::{check_chain, elements};
 use std::collections::HashSet;
 
+/// The surfaces, walked so that the outward side is on the right.
 pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Surface>, Fault> {
     unique("surfaces", spec.surfaces.iter().map(|s| s.id.as_str()))?;
     let mut made = Vec::with_capacity(spec.surfaces.len());
@@ -30,6 +31,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Su
     Ok(made)
 }
 
+/// The slave nodes, in the order in which the file names them.
 pub(super) fn slaves(
     spec: &Spec,
     names: &Names,
@@ -155,6 +157,7 @@ fn check_slave(
     ))
 }
 
+/// Refuses friction that no surface has.
 fn friction(here: &Path, friction: &Friction) -> Result<(), Fault> {
     let Friction { angle, cohesion } = *friction;
     if !(0.0..90.0).contains(&angle) {

@@ -19,6 +19,7 @@ pub(super) struct Layout {
 const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Rotation];
 
 impl Layout {
+    /// Three degrees of freedom for each node on a beam, two for the others; nothing held yet.
     pub(super) fn new(on_body: &[bool]) -> Self {
         let mut dofs = Dofs::default();
         let mut of = Vec::new();
@@ -42,6 +43,7 @@ impl Layout {
             .ok_or_else(|| no_rotation(names, node))
     }
 
+    /// Holds what the supports name.
     pub(super) fn supports(&mut self, spec: &Spec, names: &Names) -> Result<(), Fault> {
         for (k, support) in spec.supports.iter().enumerate() {
             let here = at!["supports", k];
@@ -213,6 +215,7 @@ impl Layout {
     }
 }
 
+/// What to say of a node that is asked for its rotation and has none.
 pub(super) fn no_rotation(names: &Names, node: usize) -> String {
     format!(
         "node {:?} is on no beam and has no rotation, only x and y",
@@ -220,6 +223,7 @@ pub(super) fn no_rotation(names: &Names, node: usize) -> String {
     )
 }
 
+/// A scale of a load, its load factors rising.
 fn factor(here: &Path, scale: &[Point]) -> Result<Factor, Fault> {
     for (k, (x, y)) in scale.iter().enumerate() {
         let point = here.then(k);

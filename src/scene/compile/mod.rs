@@ -9,7 +9,7 @@ mod interface;
 mod layout;
 mod monitors;
 
-use super::error::Fault;
+use super::error::{Fault, at};
 use super::geometry;
 use super::limits;
 use super::model::Model;
@@ -20,6 +20,7 @@ use layout::Layout;
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
+    check_texts(spec)?;
     check_lengths(spec)?;
     let names = Names::of(spec)?;
     bodies::materials(spec)?;
@@ -61,6 +62,27 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         length,
     };
     Ok((model, names))
+}
+
+/// Refuses texts that would spoil a terminal.
+fn check_texts(spec: &Spec) -> Result<(), Fault> {
+    if spec.title.trim().is_empty() || spec.title.chars().count() > limits::TITLE {
+        let message = format!("the title must have 1 to {} characters", limits::TITLE);
+        return Err(Fault::new(at!["title"], message));
+    }
+    if spec.title.chars().any(char::is_control) {
+        let message = "the title must be one line without control characters";
+        return Err(Fault::new(at!["title"], message));
+    }
+    if spec
+        .about
+        .chars()
+        .any(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
+    {
+        let message = "the text must have no control characters but line breaks";
+        return Err(Fault::new(at!["about"], message));
+    }
+    Ok(())
 }
 
 /// Refuses lists that are too long to be meant.

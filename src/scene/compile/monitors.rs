@@ -11,6 +11,7 @@ use std::collections::HashMap;
 /// Columns that every CSV has.
 const RESERVED: [&str; 4] = ["increment", "load", "majors", "minors"];
 
+/// The monitors, with the degrees of freedom and slaves that they watch.
 pub(super) fn monitors(
     spec: &Spec,
     names: &Names,
