@@ -12,5 +12,7 @@
 
 pub mod contact;
 pub mod debug;
+pub mod fem;
+pub mod linalg;
 pub mod scene;
 pub mod solve;

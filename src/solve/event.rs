@@ -1,6 +1,7 @@
 //! What one minor iteration did, typed.
 
 use crate::contact::decision::Decision;
+use crate::contact::projection::Spot;
 use crate::scene::Mode;
 use serde::{Deserialize, Serialize};
 
@@ -47,12 +48,14 @@ pub struct NodeRecord {
     pub t_max_used: f64,
     /// Slip u_tS* − u_tS, as the settings count it.
     pub slip: f64,
-    /// Surface, element of it and coordinate in the element (−1 to 1) of the projection S*; none past an end.
-    pub projection: Option<(usize, usize, f64)>,
+    /// Where S* lies; none past the ends of all surfaces.
+    pub spot: Option<Spot>,
     /// Outward normal n at S*.
     pub normal: [f64; 2],
     /// Position of S* at the start of this major iteration.
     pub foot: [f64; 2],
+    /// A force component was left to the support, since nothing else in its equation could move (normal, tangential).
+    pub carried: [bool; 2],
 }
 
 /// How the user stands behind a node's mode.
@@ -113,6 +116,8 @@ pub enum Failure {
     Singular(Singular),
     /// The residual or the displacements grew out of all bounds.
     Diverged { relative: f64 },
+    /// A touching node and its master can neither of them move to close the gap (slave number).
+    Jammed { slave: usize, gap: f64 },
 }
 
 /// A true cycle of minor iterations: same modes, same numbers.

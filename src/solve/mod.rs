@@ -1,7 +1,15 @@
 //! The two-level solver as a stepper: one call, one minor iteration, one event.
+//!
+//! - [`state`]: plain data from which everything goes on; [`stepper`]: the state machine over it.
+//! - [`system`]: the linearised equations of a major iteration; [`singular`]: why they have no solution.
+//! - [`event`]: what a minor iteration did, typed.
 
 pub mod event;
+pub mod singular;
 pub mod state;
+pub mod stepper;
+pub mod system;
 
 pub use event::{Event, Failure, Forced, NodeRecord, Norms, Outcome, Position};
-pub use state::State;
+pub use state::{State, Status};
+pub use stepper::{Intervention, Stepper};

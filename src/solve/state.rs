@@ -1,14 +1,227 @@
 //! Everything that the next minor iteration depends on, as plain data.
+//!
+//! A state is cheap to clone, since what changes seldom is shared; restoring one and going on gives the same bits as
+//! never having left. What can be computed again from it (geometry, stiffness, factors) is not in it.
 
-use crate::solve::event::Position;
+use crate::contact::projection::Spot;
+use crate::scene::{Friction, Mode, Model, Settings};
+use crate::solve::event::{Failure, Forced, Position};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The solver's state between two minor iterations. Cheap to clone: what changes seldom is shared.
+/// The solver between two minor iterations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// The minor iteration that comes next.
     pub next: Position,
+    /// Load factor at the end of the present increment.
+    pub load_factor: f64,
     /// Values of all degrees of freedom ([`crate::scene::model::Dofs`]) at the start of the present major iteration.
     pub u: Arc<Vec<f64>>,
+    /// The interface, one entry a slave node.
+    pub nodes: Vec<NodeState>,
+    /// Where the present increment started.
+    pub start: Arc<IncrementStart>,
+    /// What the user can turn during a run.
+    pub controls: Arc<Controls>,
+    /// What went into the minor iterations of the present major one so far, to recognise a cycle.
+    pub trail: Arc<Trail>,
+    /// Minor iterations done in the present increment attempt.
+    pub minors: u32,
+    /// Loops of the present attempt that were ended by a limit and accepted.
+    pub unsettled: u32,
+    /// Largest displacement change in the last major iteration over the length scale.
+    pub correction: f64,
+    /// Whether and how it can go on.
+    pub status: Status,
+}
+
+/// Whether the solver can go on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Status {
+    /// In the middle of an increment, or before one.
+    Running,
+    /// The last minor iteration made the increment fail; stepping on is allowed.
+    Failed(Failure),
+    /// The history is done.
+    Finished,
+}
+
+/// One slave node between two minor iterations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct NodeState {
+    /// Mode of the next minor iteration.
+    pub mode: Mode,
+    /// Mode forced by the user, if any.
+    pub forced: Forced,
+    /// Total forces F_n^(k−1), F_t^(k−1) at the start of the present major iteration.
+    pub f_n: f64,
+    pub f_t: f64,
+    /// T_max for the next minor iteration, signed.
+    pub t_max: f64,
+    /// Direction of T_max: −1, 0 (unknown) or 1.
+    pub sign: f64,
+    /// Slip counted up to the start of the present major iteration.
+    pub slip: f64,
+    /// Ratio ρ of tangential to normal travel where the node touched in the present major iteration; else 0.
+    pub ratio: f64,
+    /// Tangential over normal travel in the last minor iteration: the ρ that the node would take, should it touch.
+    pub travel: f64,
+    /// Where S* lies; none past the ends of all surfaces.
+    pub spot: Option<Spot>,
+    /// Outward normal at the start of the present major iteration.
+    pub normal: [f64; 2],
+}
+
+/// The last accepted state, from which an increment can be tried again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct IncrementStart {
+    /// Load factor there.
+    pub load_factor: f64,
+    /// Leg of the path on which the present increment lies: from corner `leg` to corner `leg + 1`.
+    pub leg: usize,
+    pub u: Arc<Vec<f64>>,
+    pub nodes: Vec<NodeState>,
+}
+
+/// What the user can turn during a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Controls {
+    /// Increment of the load factor.
+    pub increment: f64,
+    /// Friction of each slave node.
+    pub friction: Vec<Friction>,
+    pub settings: Settings,
+}
+
+/// What went into each minor iteration of the present major one: while the geometry is frozen, a minor iteration is
+/// a function of this alone.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Trail {
+    /// One entry a slave node, iteration after iteration.
+    entries: Vec<Input>,
+}
+
+/// What one slave node brings into a minor iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Input {
+    pub mode: Mode,
+    /// T_max, where the node slides; else 0.
+    pub t_max: f64,
+    /// Ratio ρ, where the node touches; else 0.
+    pub ratio: f64,
+}
+
+impl Input {
+    fn of(node: &NodeState) -> Self {
+        Input {
+            mode: node.mode,
+            t_max: if node.mode == Mode::Sliding { node.t_max } else { 0.0 },
+            ratio: if node.mode == Mode::Free { 0.0 } else { node.ratio },
+        }
+    }
+
+    /// Same mode, and numbers that differ by less than these: T_max absolutely, the ratio relatively.
+    fn repeats(&self, other: &Input, force: f64, ratio: f64) -> bool {
+        self.mode == other.mode
+            && (self.t_max - other.t_max).abs() <= force
+            && (self.ratio - other.ratio).abs() <= ratio * (1.0 + self.ratio.abs().max(other.ratio.abs()))
+    }
+}
+
+impl Trail {
+    /// Forgets everything, keeping its memory.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Whether nothing is remembered.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Remembers what goes into the next minor iteration.
+    pub fn push(&mut self, nodes: &[NodeState]) {
+        self.entries.extend(nodes.iter().map(Input::of));
+    }
+
+    /// The iterations since an earlier one that started from the same as the next will; none if there is none.
+    pub fn round(&self, nodes: &[NodeState], force: f64, ratio: f64) -> Option<std::slice::ChunksExact<'_, Input>> {
+        let width = nodes.len().max(1);
+        let same = |then: &[Input]| {
+            then.iter().zip(nodes).all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
+        };
+        let found = self.entries.chunks_exact(width).rposition(same)?;
+        Some(self.entries[found * width..].chunks_exact(width))
+    }
+}
+
+impl State {
+    /// The scene before its first increment.
+    pub fn new(model: &Model) -> Self {
+        let u = Arc::new(vec![0.0; model.dofs.len()]);
+        let nodes: Vec<NodeState> = model.slaves.iter().map(|s| NodeState::new(s.start)).collect();
+        let load_factor = model.path[0];
+        let controls = Controls {
+            increment: model.increment,
+            friction: model.slaves.iter().map(|s| s.friction).collect(),
+            settings: model.settings,
+        };
+        let start = IncrementStart { load_factor, leg: 0, u: u.clone(), nodes: nodes.clone() };
+        State {
+            next: Position { increment: 1, attempt: 1, major: 1, minor: 1 },
+            load_factor: next_load_factor(&model.path, &start, controls.increment),
+            u,
+            nodes,
+            start: Arc::new(start),
+            controls: Arc::new(controls),
+            trail: Arc::default(),
+            minors: 0,
+            unsettled: 0,
+            correction: 0.0,
+            status: Status::Running,
+        }
+    }
+}
+
+impl NodeState {
+    fn new(mode: Mode) -> Self {
+        NodeState {
+            mode,
+            forced: Forced::No,
+            f_n: 0.0,
+            f_t: 0.0,
+            t_max: 0.0,
+            sign: 0.0,
+            slip: 0.0,
+            ratio: 0.0,
+            travel: 0.0,
+            spot: None,
+            normal: [0.0, 1.0],
+        }
+    }
+
+    /// Total force on the slave node in Cartesian components (eqn 2).
+    pub fn force(&self) -> [f64; 2] {
+        let [c, s] = self.normal;
+        [c * self.f_n - s * self.f_t, s * self.f_n + c * self.f_t]
+    }
+}
+
+/// The load factor one increment after `start` along the path; the end of the leg where it is that close.
+pub fn next_load_factor(path: &[f64], start: &IncrementStart, increment: f64) -> f64 {
+    let target = path[start.leg + 1];
+    let left = target - start.load_factor;
+    if left.abs() <= increment * (1.0 + 1e-9) {
+        return target;
+    }
+    tidy(start.load_factor + increment * left.signum(), path)
+}
+
+/// Rounds off what summing decimal increments leaves behind, so that 0.07 is not 0.07000000000000002.
+fn tidy(load_factor: f64, path: &[f64]) -> f64 {
+    let size = path.iter().fold(load_factor.abs(), |m, p| m.max(p.abs()));
+    let unit = 10f64.powi(13 - size.log10().ceil() as i32);
+    let rounded = (load_factor * unit).round() / unit;
+    if rounded.is_finite() { rounded } else { load_factor }
 }

@@ -1,0 +1,267 @@
+//! Projection of a slave node on the chains of interface elements that it may touch (Fig. 2).
+//!
+//! S* is the closest point of all candidate elements. Between two elements that meet at an angle the normal at the
+//! common node is the mean of the two; past an end of a chain there is nothing to touch. Frame: the outward normal n
+//! lies to the right of the walk along the chain, t is n turned 90 degrees anticlockwise, that is, t points along
+//! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
+
+use crate::fem::lagrange::{MAX_NODES, node, shape};
+use crate::scene::model::Surface;
+
+/// How far past an end of a chain a node still counts as over it, in lengths of the last element.
+const END_TOLERANCE: f64 = 1e-9;
+/// By how much another element must be closer before a node leaves its own, relative to the element's length.
+const STAY_TOLERANCE: f64 = 1e-12;
+/// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
+const BULGE: f64 = 0.5;
+
+/// A point of a chain of interface elements.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Spot {
+    /// Number of the surface in the scene.
+    pub surface: usize,
+    /// Number of the element in the surface.
+    pub element: usize,
+    /// Coordinate in the element, −1 to 1.
+    pub xi: f64,
+}
+
+/// Geometry at a projection, frozen during a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Footing {
+    /// Position of S*.
+    pub foot: [f64; 2],
+    /// Outward normal.
+    pub normal: [f64; 2],
+    /// (x_S − x_S*) · n.
+    pub gap: f64,
+    /// Shape functions N_i of the master element at S*; entries beyond its nodes are zero.
+    pub shape: [f64; MAX_NODES],
+}
+
+/// n turned 90 degrees anticlockwise.
+pub fn tangent(normal: [f64; 2]) -> [f64; 2] {
+    [-normal[1], normal[0]]
+}
+
+/// Finds S* for a slave node at `slave` among the surfaces `candidates`.
+///
+/// `positions` are the current positions of the scene's nodes; `previous` is the spot that the node had, which it
+/// keeps where another is not truly closer. None past the ends of all chains.
+pub fn project(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    candidates: &[usize],
+    positions: &[[f64; 2]],
+    previous: Option<Spot>,
+) -> Option<Spot> {
+    let mut best: Option<(f64, Spot)> = None;
+    let consider = |surface: usize, element: usize, best: &mut Option<(f64, Spot)>| {
+        let nodes = &surfaces[surface].elements[element];
+        if best.is_some_and(|(distance, _)| box_distance(nodes, positions, slave) > distance) {
+            return;
+        }
+        let (distance, xi) = closest(nodes, positions, slave);
+        let slack = STAY_TOLERANCE * chord(nodes, positions);
+        if best.is_none_or(|(least, _)| distance < least - slack) {
+            *best = Some((distance, Spot { surface, element, xi }));
+        }
+    };
+    if let Some(spot) = previous {
+        consider(spot.surface, spot.element, &mut best);
+    }
+    for &surface in candidates {
+        for element in 0..surfaces[surface].elements.len() {
+            consider(surface, element, &mut best);
+        }
+    }
+    let (_, spot) = best?;
+    (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
+}
+
+/// Geometry at a spot, for a slave node at `slave`.
+pub fn footing(surfaces: &[Surface], spot: Spot, positions: &[[f64; 2]], slave: [f64; 2]) -> Footing {
+    let surface = &surfaces[spot.surface];
+    let nodes = &surface.elements[spot.element];
+    let s = shape(nodes.len(), spot.xi);
+    let foot = blend(nodes, positions, &s.n);
+    let normal = normal_at(surface, spot, positions);
+    let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
+    Footing { foot, normal, gap, shape: s.n }
+}
+
+/// Outward normal at a spot: the mean of both sides' where two elements meet.
+fn normal_at(surface: &Surface, spot: Spot, positions: &[[f64; 2]]) -> [f64; 2] {
+    let own = element_normal(&surface.elements[spot.element], positions, spot.xi);
+    let Some((other, xi)) = neighbour(surface, spot) else { return own };
+    let across = element_normal(&surface.elements[other], positions, xi);
+    unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
+}
+
+/// The element that meets this spot's own there, and where on it; none inside an element or at an end.
+fn neighbour(surface: &Surface, spot: Spot) -> Option<(usize, f64)> {
+    let count = surface.elements.len();
+    let own = &surface.elements[spot.element];
+    let (other, xi, node, met) = if spot.xi == 1.0 {
+        let other = (spot.element + 1) % count;
+        (other, -1.0, own.last(), surface.elements[other].first())
+    } else if spot.xi == -1.0 {
+        let other = (spot.element + count - 1) % count;
+        (other, 1.0, own.first(), surface.elements[other].last())
+    } else {
+        return None;
+    };
+    (other != spot.element && node == met).then_some((other, xi))
+}
+
+fn past_end(surface: &Surface, spot: Spot, positions: &[[f64; 2]], slave: [f64; 2]) -> bool {
+    if spot.xi.abs() < 1.0 || neighbour(surface, spot).is_some() {
+        return false;
+    }
+    let nodes = &surface.elements[spot.element];
+    let s = shape(nodes.len(), spot.xi);
+    let (foot, slope) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
+    let beyond = spot.xi * ((slave[0] - foot[0]) * slope[0] + (slave[1] - foot[1]) * slope[1]);
+    beyond > END_TOLERANCE * chord(nodes, positions) * slope[0].hypot(slope[1])
+}
+
+/// Distance to the closest point of an element, and its coordinate.
+fn closest(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
+    let samples = 2 * nodes.len() - 1;
+    let distance = |xi: f64| {
+        let x = blend(nodes, positions, &shape(nodes.len(), xi).n);
+        (slave[0] - x[0]).hypot(slave[1] - x[1])
+    };
+    let start = (0..samples)
+        .map(|k| node(samples, k))
+        .map(|xi| (distance(xi), xi))
+        .fold((f64::INFINITY, 0.0), |best, now| if now.0 < best.0 { now } else { best });
+    let refined = descend(nodes, positions, slave, start.1);
+    let ended = (distance(refined), refined);
+    if ended.0 <= start.0 { ended } else { start }
+}
+
+/// Newton's method for (x_S − x) · x' = 0 within the element, falling back on Gauss-Newton where the curve bends
+/// too much towards the node.
+fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
+    let mut xi = start;
+    for _ in 0..50 {
+        let s = shape(nodes.len(), xi);
+        let (x, d, dd) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d), blend(nodes, positions, &s.dd));
+        let to = [slave[0] - x[0], slave[1] - x[1]];
+        let slope = d[0] * d[0] + d[1] * d[1];
+        let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
+        let denominator = if curvature > 0.1 * slope { curvature } else { slope };
+        if denominator == 0.0 {
+            break;
+        }
+        let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-1.0, 1.0);
+        let step = (next - xi).abs();
+        xi = next;
+        if step <= 2.0 * f64::EPSILON {
+            break;
+        }
+    }
+    xi
+}
+
+fn element_normal(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
+    let d = blend(nodes, positions, &shape(nodes.len(), xi).d);
+    unit([d[1], -d[0]]).unwrap_or([0.0, 1.0])
+}
+
+fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
+    nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
+        [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
+    })
+}
+
+fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
+    let length = v[0].hypot(v[1]);
+    (length > 0.0).then(|| [v[0] / length, v[1] / length])
+}
+
+/// Distance between an element's two ends (or, where they coincide, the size of its box).
+fn chord(nodes: &[usize], positions: &[[f64; 2]]) -> f64 {
+    let (low, high) = bounds(nodes, positions);
+    (high[0] - low[0]).hypot(high[1] - low[1])
+}
+
+fn bounds(nodes: &[usize], positions: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
+    nodes.iter().map(|&n| positions[n]).fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), x| {
+        ([low[0].min(x[0]), low[1].min(x[1])], [high[0].max(x[0]), high[1].max(x[1])])
+    })
+}
+
+/// A lower bound of the distance to an element.
+fn box_distance(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> f64 {
+    let (low, high) = bounds(nodes, positions);
+    let bulge = BULGE * (high[0] - low[0]).hypot(high[1] - low[1]);
+    let outside = |k: usize| (low[k] - bulge - slave[k]).max(slave[k] - high[k] - bulge).max(0.0);
+    outside(0).hypot(outside(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(elements: Vec<Vec<usize>>) -> Vec<Surface> {
+        vec![Surface { name: "s".into(), elements, rigid: true }]
+    }
+
+    /// A flat floor of two 3-node elements, walked towards −x, so that +y is outward.
+    fn floor() -> (Vec<Surface>, Vec<[f64; 2]>) {
+        let positions = (0..5).map(|k| [2.0 - k as f64, 0.0]).collect();
+        (surface(vec![vec![0, 1, 2], vec![2, 3, 4]]), positions)
+    }
+
+    #[test]
+    fn a_node_over_a_floor_sees_its_height_as_gap_and_up_as_normal() {
+        let (s, x) = floor();
+        for (slave, element) in [([1.3, 0.2], 0), ([-0.7, -0.1], 1)] {
+            let spot = project(slave, &s, &[0], &x, None).unwrap();
+            let f = footing(&s, spot, &x, slave);
+            assert_eq!(spot.element, element);
+            assert!((f.gap - slave[1]).abs() < 1e-15 && (f.normal[1] - 1.0).abs() < 1e-15);
+            assert!((f.foot[0] - slave[0]).abs() < 1e-14);
+            assert_eq!(tangent(f.normal), [-f.normal[1], f.normal[0]]);
+        }
+    }
+
+    #[test]
+    fn past_an_end_there_is_nothing_to_touch() {
+        let (s, x) = floor();
+        assert!(project([2.01, 0.0], &s, &[0], &x, None).is_none());
+        assert!(project([2.0, -0.3], &s, &[0], &x, None).is_some());
+    }
+
+    #[test]
+    fn a_convex_corner_has_the_mean_normal_and_a_concave_one_the_nearer_side() {
+        let roof = surface(vec![vec![0, 1], vec![1, 2]]);
+        let x = [[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0]];
+        let spot = project([0.0, 0.5], &roof, &[0], &x, None).unwrap();
+        let f = footing(&roof, spot, &x, [0.0, 0.5]);
+        assert!(f.normal[0].abs() < 1e-15 && (f.gap - 0.5).abs() < 1e-15);
+        let valley = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];
+        let spot = project([0.2, 0.5], &roof, &[0], &valley, None).unwrap();
+        assert_eq!(spot.element, 0);
+    }
+
+    #[test]
+    fn the_closest_point_of_a_curve_is_perpendicular_below_the_node() {
+        let m = 5;
+        let positions: Vec<[f64; 2]> =
+            (0..m).map(|k| k as f64 * 0.4).map(|a| [-a.cos(), a.sin()]).collect();
+        let s = surface(vec![(0..m).collect()]);
+        for angle in [0.1_f64, 0.77, 1.5] {
+            for radius in [0.9, 1.0, 1.4] {
+                let slave = [-radius * angle.cos(), radius * angle.sin()];
+                let spot = project(slave, &s, &[0], &positions, None).unwrap();
+                let f = footing(&s, spot, &positions, slave);
+                let d = blend(&s[0].elements[0], &positions, &shape(m, spot.xi).d);
+                let off = (slave[0] - f.foot[0]) * d[0] + (slave[1] - f.foot[1]) * d[1];
+                assert!(off.abs() < 1e-14, "{angle} {radius} {off}");
+            }
+        }
+    }
+}

@@ -1,0 +1,574 @@
+//! The two-level iteration (increments > major > minor) as a state machine: one call, one minor iteration.
+//!
+//! ```text
+//! increment   the load factor moves on
+//!   major     geometry, stiffness and residual are renewed and frozen          System::linearise
+//!     minor   solve for the assumed modes, check them by Table 2, assume anew   Stepper::step
+//!   until modes and T_max have settled; then displacements and forces are updated
+//! until residual and interface conditions are within the tolerance; then the increment is accepted
+//! ```
+
+use crate::contact::decision::{Numbers, Rule, Ties, decide};
+use crate::contact::projection::project;
+use crate::contact::table1::{direction, t_max};
+use crate::scene::spec::{AtLimit, Axis, FrictionLimit, ResidualMethod, SlipCount};
+use crate::scene::{Mode, Model, spec};
+use crate::scene::model::Watched;
+use crate::solve::event::{Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular};
+use crate::solve::singular;
+use crate::solve::state::{IncrementStart, NodeState, State, Status, next_load_factor};
+use crate::solve::system::{Solved, System};
+use std::sync::Arc;
+
+/// A displacement this many times the scene's length is divergence.
+const DIVERGED: f64 = 1e4;
+/// Two states of a minor loop whose numbers differ by less than this, relatively, are the same.
+const SAME: f64 = 1e-12;
+/// Inequalities closer than this times the tolerance, relatively, tie.
+const TIE: f64 = 1.0;
+
+/// The solver: a state, and the workspace that is made from it.
+pub struct Stepper {
+    model: Arc<Model>,
+    state: State,
+    system: System,
+    /// Whether `system` is linearised about `state`.
+    linearised: bool,
+    event: Event,
+}
+
+/// What the user does to a run. Serialised into snapshots and replayed.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Intervention {
+    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
+    Force { slave: usize, mode: Mode, hold: bool },
+    /// Give a slave node back to Table 2.
+    Release { slave: usize },
+    /// Change the increment size and start the present increment again.
+    Increment(f64),
+    /// Replace the friction of every slave node.
+    Friction(spec::Friction),
+    /// Replace the settings.
+    Settings(spec::Settings),
+}
+
+impl Stepper {
+    /// A solver at the start of a scene's history.
+    pub fn new(model: Arc<Model>) -> Self {
+        let state = State::new(&model);
+        let mut stepper = Stepper {
+            system: System::new(&model),
+            event: Event {
+                position: Position::default(),
+                load_factor: 0.0,
+                nodes: Vec::with_capacity(model.slaves.len()),
+                before: Norms::default(),
+                outcome: Outcome::Minor,
+            },
+            state,
+            linearised: false,
+            model,
+        };
+        stepper.find_spots();
+        let start = IncrementStart { nodes: stepper.state.nodes.clone(), ..(*stepper.state.start).clone() };
+        stepper.state.start = Arc::new(start);
+        stepper
+    }
+
+    /// The scene.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// Where the solver is.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Goes to a state of the same scene; what follows has the same bits as the first time.
+    pub fn restore(&mut self, state: &State) {
+        self.state.clone_from(state);
+        self.linearised = false;
+    }
+
+    /// Current norms and whether they could be computed: those about which the next minor iteration is linearised.
+    pub fn norms(&mut self) -> Option<Norms> {
+        self.linearise().then(|| self.system.norms())
+    }
+
+    /// Current position of every node.
+    pub fn positions(&mut self) -> &[[f64; 2]] {
+        self.system.place(&self.model, &self.state.u);
+        &self.system.positions
+    }
+
+    /// One minor iteration. None when the history is done.
+    ///
+    /// After a failure the next call goes on from the failed state, as a user does who has changed something.
+    pub fn step(&mut self) -> Option<&Event> {
+        if self.state.status == Status::Finished {
+            return None;
+        }
+        self.state.status = Status::Running;
+        self.event.position = self.state.next;
+        self.event.load_factor = self.state.load_factor;
+        self.event.nodes.clear();
+        self.event.outcome = self.minor();
+        if let Outcome::Failed(failure) = &self.event.outcome {
+            self.state.status = Status::Failed(failure.clone());
+        }
+        Some(&self.event)
+    }
+
+    /// The event of the last minor iteration.
+    pub fn event(&self) -> &Event {
+        &self.event
+    }
+
+    fn linearise(&mut self) -> bool {
+        if !self.linearised {
+            self.linearised = self.system.linearise(&self.model, &self.state).is_ok();
+        }
+        self.linearised
+    }
+
+    fn minor(&mut self) -> Outcome {
+        if !self.linearise() {
+            return Outcome::Failed(Failure::Singular(Singular::Unexplained));
+        }
+        self.event.before = self.system.norms();
+        match self.system.solve(&self.model, &self.state) {
+            Solved::Well => {}
+            Solved::Suspicious => {
+                let singular = self.diagnose();
+                if matches!(singular, Singular::Rigid { .. }) {
+                    return Outcome::Failed(Failure::Singular(singular));
+                }
+            }
+            Solved::Not => return Outcome::Failed(Failure::Singular(self.diagnose())),
+        }
+        if let Some(failure) = self.jammed() {
+            return Outcome::Failed(failure);
+        }
+        self.state.minors += 1;
+        if self.state.trail.is_empty() {
+            Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
+        }
+        let settled = self.judge();
+        if settled {
+            return self.end_major(true);
+        }
+        self.go_on()
+    }
+
+    fn diagnose(&self) -> Singular {
+        singular::diagnose(&self.model, &self.system.positions, &self.state.nodes, |s| self.system.footing(s))
+    }
+
+    /// A touching node with a gap that no unknown can close.
+    fn jammed(&self) -> Option<Failure> {
+        let tolerance = self.state.controls.settings.tolerance * self.model.length;
+        (0..self.state.nodes.len()).find_map(|slave| {
+            let gap = self.system.footing(slave)?.gap;
+            let stuck = self.system.carried(slave)[0] && gap < -tolerance;
+            stuck.then_some(Failure::Jammed { slave, gap })
+        })
+    }
+
+    fn ties(&self) -> Ties {
+        let settings = &self.state.controls.settings;
+        Ties {
+            force: TIE * settings.tolerance * self.system.norms().scale,
+            length: TIE * settings.tolerance * self.model.length,
+            keep: settings.ties == spec::Ties::Keep,
+        }
+    }
+
+    /// Checks every node's mode against Table 2 and records it; true where modes and T_max have settled.
+    ///
+    /// Leaves the modes of the next minor iteration in the state.
+    fn judge(&mut self) -> bool {
+        let ties = self.ties();
+        let mut settled = true;
+        for slave in 0..self.state.nodes.len() {
+            let before = self.state.nodes[slave];
+            let record = self.record(slave, &ties);
+            let node = &mut self.state.nodes[slave];
+            let motion = self.system.relative_motion(&self.model, slave, &before);
+            node.travel = if motion[0].abs() > f64::MIN_POSITIVE { motion[1] / motion[0] } else { 0.0 };
+            node.sign = direction(record.f_t, ties.force, sense(&before, &record, motion), ties.length, before.sign);
+            node.t_max = t_max(&self.state.controls.friction[slave], record.f_n, node.sign);
+            node.mode = record.decision.next;
+            if let Forced::Once(_) = node.forced {
+                node.forced = Forced::No;
+            }
+            leave_or_enter(node, before.mode);
+            let lag = before.mode == Mode::Sliding
+                && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
+            settled &= !record.decision.changes() && !lag;
+            self.event.nodes.push(NodeRecord { t_max: node.t_max, ..record });
+        }
+        settled
+    }
+
+    fn record(&self, slave: usize, ties: &Ties) -> NodeRecord {
+        let node = &self.state.nodes[slave];
+        let friction = &self.state.controls.friction[slave];
+        let settings = &self.state.controls.settings;
+        let [d_n, d_t] = self.system.force_increment(&self.model, slave);
+        let (f_n, f_t) = (node.f_n + d_n, node.f_t + d_t);
+        let motion = self.system.relative_motion(&self.model, slave, node);
+        let footing = self.system.footing(slave);
+        let start_gap = footing.map_or(f64::INFINITY, |f| f.gap);
+        let here = motion[1] - if node.ratio == 0.0 { 0.0 } else { start_gap * node.ratio };
+        let slip = match (node.mode, settings.slip) {
+            (Mode::Free, _) => 0.0,
+            (_, SlipCount::Increment) => node.slip + here,
+            (_, SlipCount::Major) => motion[1],
+        };
+        let sign = direction(f_t, ties.force, slip, ties.length, node.sign);
+        let limit = t_max(friction, f_n, sign);
+        let numbers = Numbers {
+            mode: node.mode,
+            gap: start_gap - motion[0],
+            f_n,
+            f_t,
+            t_max: limit,
+            slip,
+            smooth: friction.is_smooth(),
+        };
+        let mut decision = decide(&numbers, ties);
+        if footing.is_none() {
+            decision.rule = Rule::OffSurface;
+            (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
+        } else if let Forced::Held(mode) = node.forced {
+            decision.next = mode;
+            if decision.wanted != mode {
+                decision.rule = Rule::Held;
+            }
+        }
+        NodeRecord {
+            decision,
+            forced: node.forced,
+            gap: numbers.gap,
+            f_n,
+            f_t,
+            t_max: limit,
+            t_max_used: match (node.mode, settings.t_max) {
+                (Mode::Sliding, FrictionLimit::Lagged) => node.t_max,
+                (Mode::Sliding, FrictionLimit::Consistent) => f_t,
+                _ => limit,
+            },
+            slip,
+            spot: node.spot,
+            normal: footing.map_or(node.normal, |f| f.normal),
+            foot: footing.map_or([f64::NAN; 2], |f| f.foot),
+            carried: self.system.carried(slave),
+        }
+    }
+
+    /// The minor loop has not settled: look for a cycle and at the limit, and count on.
+    fn go_on(&mut self) -> Outcome {
+        let settings = self.state.controls.settings;
+        let accept = settings.at_minor_limit == AtLimit::Accept;
+        let minor = self.state.next.minor;
+        let at_limit = minor % settings.minors == 0;
+        if at_limit && accept {
+            return self.end_major(false);
+        }
+        self.state.next.minor += 1;
+        if !accept && let Some(cycle) = self.find_cycle(minor) {
+            self.forget_trail();
+            return Outcome::Failed(Failure::Cycle(cycle));
+        }
+        if at_limit {
+            let changing = self.changing();
+            return Outcome::Failed(Failure::MinorLimit { limit: settings.minors, changing });
+        }
+        Outcome::Minor
+    }
+
+    /// Slave nodes whose mode or T_max still changed in the last minor iteration.
+    fn changing(&self) -> Vec<usize> {
+        let force = self.ties().force;
+        let moves = |r: &NodeRecord| r.decision.changes() || (r.t_max - r.t_max_used).abs() > force;
+        self.event.nodes.iter().enumerate().filter(|(_, r)| moves(r)).map(|(s, _)| s).collect()
+    }
+
+    /// Whether the next minor iteration starts from where an earlier one of this major did; remembers it if not.
+    fn find_cycle(&mut self, minor: u32) -> Option<Cycle> {
+        let force = SAME * self.system.norms().scale;
+        if let Some(round) = self.state.trail.round(&self.state.nodes, force, SAME) {
+            let period = round.len() as u32;
+            let pattern = |s: usize| round.clone().map(|inputs| inputs[s].mode).collect::<Vec<_>>();
+            let takes_part = |s: &usize| {
+                let mut inputs = round.clone().map(|inputs| inputs[*s]);
+                inputs.next().is_some_and(|first| inputs.any(|other| other != first))
+            };
+            let members = (0..self.state.nodes.len()).filter(takes_part).map(|s| (s, pattern(s))).collect();
+            // The last round starts with what iteration `minor + 1 - period` started from.
+            return Some(Cycle { start: minor + 1 - period, period, members });
+        }
+        Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
+        None
+    }
+
+    /// Updates displacements and forces, renews the geometry, and asks whether the increment is done.
+    fn end_major(&mut self, settled: bool) -> Outcome {
+        self.update();
+        let norms = self.norms();
+        self.state.unsettled += u32::from(!settled);
+        let settings = self.state.controls.settings;
+        let Some(after) = norms else {
+            return Outcome::Failed(Failure::Singular(Singular::Unexplained));
+        };
+        let size = self.state.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
+        let balanced = after.relative <= after.limit && after.interface <= after.limit.max(settings.tolerance);
+        let at_limit = self.state.next.major % settings.majors == 0;
+        if settled && balanced {
+            return self.accept(after);
+        }
+        if at_limit && bounded && settings.at_major_limit == AtLimit::Accept {
+            self.state.unsettled += 1;
+            return self.accept(after);
+        }
+        self.state.next.major += 1;
+        self.state.next.minor = 1;
+        if !bounded {
+            return Outcome::Failed(Failure::Diverged { relative: after.relative });
+        }
+        if at_limit {
+            return Outcome::Failed(Failure::MajorLimit { limit: settings.majors, relative: after.relative });
+        }
+        Outcome::Major { after, settled }
+    }
+
+    fn forget_trail(&mut self) {
+        if !self.state.trail.is_empty() {
+            Arc::make_mut(&mut self.state.trail).clear();
+        }
+    }
+
+    fn update(&mut self) {
+        let mut largest = 0.0_f64;
+        let u = Arc::make_mut(&mut self.state.u);
+        for n in 0..self.model.nodes.len() {
+            for d in self.model.dofs.first[n]..self.model.dofs.first[n] + 2 {
+                largest = largest.max(self.system.increment(&self.model, d).abs());
+            }
+        }
+        for (d, u) in u.iter_mut().enumerate() {
+            *u += self.system.increment(&self.model, d);
+        }
+        self.state.correction = largest / self.model.length;
+        for (s, node) in self.state.nodes.iter_mut().enumerate() {
+            let record = &self.event.nodes[s];
+            (node.f_n, node.f_t) = (record.f_n, record.f_t);
+            node.slip = if record.decision.before == Mode::Free {
+                0.0
+            } else {
+                let motion = self.system.relative_motion(&self.model, s, node);
+                let touched = self.system.footing(s).map_or(0.0, |f| if node.ratio == 0.0 { 0.0 } else { f.gap * node.ratio });
+                node.slip + motion[1] - touched
+            };
+            node.ratio = 0.0;
+            node.travel = 0.0;
+        }
+        self.find_spots();
+        self.linearised = false;
+        self.linearise();
+        if self.state.controls.settings.residual == ResidualMethod::Stress {
+            self.take_forces_from_stresses();
+        }
+        self.forget_trail();
+    }
+
+    /// Projects every slave node anew. Forces keep their components in the frame that turns with the surface.
+    fn find_spots(&mut self) {
+        self.system.place(&self.model, &self.state.u);
+        let positions = &self.system.positions;
+        for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
+            let at = positions[slave.node];
+            node.spot = project(at, &self.model.surfaces, &slave.surfaces, positions, node.spot);
+            match node.spot {
+                Some(spot) => {
+                    node.normal =
+                        crate::contact::projection::footing(&self.model.surfaces, spot, positions, at).normal;
+                }
+                None => {
+                    node.mode = Mode::Free;
+                    (node.f_n, node.f_t, node.t_max, node.slip) = (0.0, 0.0, 0.0, 0.0);
+                }
+            }
+            if node.mode == Mode::Free {
+                (node.f_n, node.f_t) = (0.0, 0.0);
+            }
+        }
+        self.linearised = false;
+    }
+
+    /// Residual method 2: the total interaction force at a slave node is the nodal force of the current stresses
+    /// less the applied load. Where a support shares the node's force, or the node is itself part of a master
+    /// surface, the stresses cannot tell it apart and it stays accumulated.
+    fn take_forces_from_stresses(&mut self) {
+        let mut changed = false;
+        for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
+            let first = self.model.dofs.first[slave.node];
+            let held = (0..2).any(|k| self.model.dofs.equation[first + k].is_none());
+            let master = self.model.surfaces.iter().any(|s| !s.rigid && s.elements.iter().flatten().any(|&n| n == slave.node));
+            if node.mode == Mode::Free || held || master {
+                continue;
+            }
+            let force = [self.system.nodal_force(first), self.system.nodal_force(first + 1)];
+            let [c, s] = node.normal;
+            node.f_n = c * force[0] + s * force[1];
+            node.f_t = -s * force[0] + c * force[1];
+            changed = true;
+        }
+        if changed {
+            for (s, node) in self.state.nodes.iter_mut().enumerate() {
+                node.t_max = t_max(&self.state.controls.friction[s], node.f_n, node.sign);
+            }
+            self.system.rebalance(&self.model, &self.state);
+        }
+    }
+
+    /// Makes the present state the start of the next increment.
+    fn accept(&mut self, after: Norms) -> Outcome {
+        let unsettled = self.state.unsettled;
+        for node in &mut self.state.nodes {
+            node.slip = 0.0;
+        }
+        let mut leg = self.state.start.leg;
+        while leg + 1 < self.model.path.len() && self.state.load_factor == self.model.path[leg + 1] {
+            leg += 1;
+        }
+        let start = Arc::make_mut(&mut self.state.start);
+        start.load_factor = self.state.load_factor;
+        start.leg = leg;
+        start.u = self.state.u.clone();
+        start.nodes.clone_from(&self.state.nodes);
+        let last = leg + 1 == self.model.path.len();
+        if last {
+            self.state.status = Status::Finished;
+        } else {
+            let p = &mut self.state.next;
+            (p.increment, p.attempt) = (p.increment + 1, 1);
+            self.begin();
+        }
+        Outcome::Increment { after, unsettled, last }
+    }
+
+    /// Sets out on the increment that follows `start`.
+    fn begin(&mut self) {
+        let state = &mut self.state;
+        (state.next.major, state.next.minor) = (1, 1);
+        (state.minors, state.unsettled, state.correction) = (0, 0, 0.0);
+        state.load_factor = next_load_factor(&self.model.path, &state.start, state.controls.increment);
+        self.linearised = false;
+    }
+
+    /// Applies what the user wants changed. The position stays, except that a new increment size starts the
+    /// present increment again.
+    ///
+    /// # Errors
+    /// A message for values that make no sense.
+    pub fn intervene(&mut self, intervention: &Intervention) -> Result<(), String> {
+        if self.state.status == Status::Finished {
+            return Err("the history is done: step back first".into());
+        }
+        match intervention {
+            Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,
+            Intervention::Release { slave } => self.node(*slave)?.forced = Forced::No,
+            Intervention::Increment(increment) => self.retry(*increment)?,
+            Intervention::Friction(friction) => {
+                if !(0.0..90.0).contains(&friction.angle) || friction.cohesion.is_nan() || friction.cohesion < 0.0 {
+                    return Err("a friction angle lies in 0 <= angle < 90 degrees, a cohesion is not negative".into());
+                }
+                Arc::make_mut(&mut self.state.controls).friction.fill(*friction);
+                for node in &mut self.state.nodes {
+                    node.t_max = t_max(friction, node.f_n, node.sign);
+                }
+            }
+            Intervention::Settings(settings) => {
+                if settings.minors == 0 || settings.majors == 0 {
+                    return Err("limits of iterations are at least 1".into());
+                }
+                Arc::make_mut(&mut self.state.controls).settings = *settings;
+                self.linearised = false;
+            }
+        }
+        self.forget_trail();
+        Ok(())
+    }
+
+    fn node(&mut self, slave: usize) -> Result<&mut NodeState, String> {
+        let count = self.state.nodes.len();
+        self.state.nodes.get_mut(slave).ok_or_else(|| format!("there are {count} slave nodes, and none of number {slave}"))
+    }
+
+    fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), String> {
+        let node = self.node(slave)?;
+        if node.spot.is_none() && mode != Mode::Free {
+            return Err("the node is past the end of its surface: there is nothing to touch".into());
+        }
+        let before = node.mode;
+        node.mode = mode;
+        node.forced = if hold { Forced::Held(mode) } else { Forced::Once(mode) };
+        if before == Mode::Free && mode != Mode::Free {
+            node.ratio = node.travel;
+        }
+        Ok(())
+    }
+
+    fn retry(&mut self, increment: f64) -> Result<(), String> {
+        if !(increment.is_finite() && increment > 0.0) {
+            return Err(format!("an increment is a positive number, not {increment}"));
+        }
+        let state = &mut self.state;
+        Arc::make_mut(&mut state.controls).increment = increment;
+        let held: Vec<Forced> = state.nodes.iter().map(|n| n.forced).collect();
+        state.u = state.start.u.clone();
+        state.nodes.clone_from(&state.start.nodes);
+        for (node, forced) in state.nodes.iter_mut().zip(held) {
+            if let Forced::Held(mode) = forced {
+                (node.forced, node.mode) = (forced, mode);
+            }
+        }
+        state.next.attempt += 1;
+        state.status = Status::Running;
+        self.begin();
+        Ok(())
+    }
+
+    /// Values of the scene's monitors at the start of the present major iteration (after an accepted increment: at
+    /// its end), appended to `out`.
+    pub fn monitors(&mut self, out: &mut Vec<f64>) {
+        self.linearise();
+        for monitor in &self.model.monitors {
+            out.push(match &monitor.of {
+                Watched::Displacement { dof } => self.state.u[*dof],
+                Watched::Contact { slaves, axis } => {
+                    let k = if *axis == Axis::X { 0 } else { 1 };
+                    slaves.iter().map(|&s| self.state.nodes[s].force()[k]).sum()
+                }
+                Watched::Reaction { dof } => self.system.nodal_force(*dof) - self.system.interaction(*dof),
+            });
+        }
+    }
+}
+
+/// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free.
+fn sense(before: &NodeState, record: &NodeRecord, motion: [f64; 2]) -> f64 {
+    if before.mode == Mode::Free { motion[1] } else { record.slip }
+}
+
+/// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens.
+fn leave_or_enter(node: &mut NodeState, before: Mode) {
+    match (before, node.mode) {
+        (_, Mode::Free) => node.ratio = 0.0,
+        (Mode::Free, _) => node.ratio = node.travel,
+        _ => {}
+    }
+}

@@ -1,0 +1,512 @@
+//! The augmented system of a major iteration (eqn 9), uncondensed: bodies, interface, right-hand side.
+//!
+//! Everything here is rebuilt from a [`State`]; nothing of it is saved. [`System::linearise`] freezes geometry,
+//! stiffness and residual at the start of a major iteration; [`System::solve`] solves it for the modes of one minor
+//! iteration. After a first pass neither allocates, unless a slave node finds another deformable master element.
+
+use crate::contact::projection::{Footing, footing, tangent};
+use crate::contact::table1::{Equation, Known, Limit, Motion, equations, gone};
+use crate::fem::assembly::{Assembled, Assembly};
+use crate::linalg::{Factors, Pattern, SolveError};
+use crate::scene::Mode;
+use crate::scene::model::Model;
+use crate::scene::spec::{Component, FrictionLimit, SlipCount};
+use crate::solve::event::Norms;
+use crate::solve::state::{NodeState, State};
+use std::sync::Arc;
+
+/// Estimated norm of the scaled inverse from which on a system is suspected to be singular.
+const SUSPICIOUS_INVERSE: f64 = 1e12;
+/// Round-off of an internal force, in units of the machine precision times |K| |u|.
+const ROUND_OFF: f64 = 8.0;
+/// An equation whose coefficients are all smaller than this (the largest is one) is empty.
+const EMPTY: f64 = 1e-12;
+
+/// How one solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Solved {
+    /// The solution satisfies the equations.
+    Well,
+    /// It does, but the matrix is singular to working precision.
+    Suspicious,
+    /// There is no solution, or none that can be computed.
+    Not,
+}
+
+/// What moves, in a slave node's equations: one Cartesian displacement with its share in u_S* − u_S.
+#[derive(Debug, Clone, Copy)]
+struct Link {
+    dof: usize,
+    axis: usize,
+    weight: f64,
+    /// Places of (normal row, dof), (dof, normal column), (tangential row, dof), (dof, tangential column); none
+    /// where the degree of freedom has no equation.
+    slots: Option<[usize; 4]>,
+}
+
+/// What the equation of a degree of freedom balances.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    /// Forces, or moments, which count as forces over this lever.
+    Force { lever: f64 },
+    /// The shear strain of a shear-rigid beam, a length.
+    Shear,
+}
+
+/// A slave node's part of the system.
+struct Interface {
+    footing: Option<Footing>,
+    links: Vec<Link>,
+    /// Places of the 2 by 2 block of ΔF_n, ΔF_t.
+    block: [usize; 4],
+    /// Whether the normal and the tangential motion have any coefficient on an unknown.
+    moves: [bool; 2],
+    /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.
+    prescribed: [f64; 2],
+    carried: [bool; 2],
+}
+
+/// The linearised system about a state.
+pub struct System {
+    assembly: Assembly,
+    factors: Option<Factors>,
+    pairing: Vec<Option<(usize, usize)>>,
+    kind: Vec<Kind>,
+    /// Largest force that the loads reach over the history.
+    reference: f64,
+    /// Current position of every node.
+    pub positions: Vec<[f64; 2]>,
+    interfaces: Vec<Interface>,
+    stiffness: Vec<f64>,
+    values: Vec<f64>,
+    /// Internal force at each degree of freedom.
+    force: Vec<f64>,
+    size: Vec<f64>,
+    external: Vec<f64>,
+    /// Interaction force at each degree of freedom.
+    interaction: Vec<f64>,
+    step: Vec<f64>,
+    residual: Vec<f64>,
+    coupling: Vec<f64>,
+    rhs: Vec<f64>,
+    x: Vec<f64>,
+    work: Vec<f64>,
+    norms: Norms,
+}
+
+impl System {
+    /// Lays out the system of a scene.
+    pub fn new(model: &Model) -> Self {
+        let (dofs, equations) = (model.dofs.len(), model.dofs.equations);
+        let interfaces = model
+            .slaves
+            .iter()
+            .map(|_| Interface {
+                footing: None,
+                links: Vec::new(),
+                block: [0; 4],
+                moves: [true; 2],
+                prescribed: [0.0; 2],
+                carried: [false; 2],
+            })
+            .collect();
+        let kind = kinds(model);
+        System {
+            assembly: Assembly::new(model),
+            factors: None,
+            pairing: Vec::new(),
+            reference: reference_force(model, &kind),
+            kind,
+            positions: vec![[0.0; 2]; model.nodes.len()],
+            interfaces,
+            stiffness: Vec::new(),
+            values: Vec::new(),
+            force: vec![0.0; dofs],
+            size: vec![0.0; dofs],
+            external: vec![0.0; dofs],
+            interaction: vec![0.0; dofs],
+            step: vec![0.0; dofs],
+            residual: vec![0.0; equations],
+            coupling: vec![0.0; equations],
+            rhs: Vec::new(),
+            x: Vec::new(),
+            work: Vec::new(),
+            norms: Norms::default(),
+        }
+    }
+
+    /// Current positions of all nodes at displacements u.
+    pub fn place(&mut self, model: &Model, u: &[f64]) {
+        for (n, position) in self.positions.iter_mut().enumerate() {
+            let first = model.dofs.first[n];
+            *position = [model.nodes[n].at[0] + u[first], model.nodes[n].at[1] + u[first + 1]];
+        }
+    }
+
+    /// Freezes geometry, stiffness and residual at a state's u, forces and load factor.
+    ///
+    /// # Errors
+    /// [`SolveError`] if the pattern cannot be analysed.
+    pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
+        self.place(model, &state.u);
+        for (interface, (node, slave)) in self.interfaces.iter_mut().zip(state.nodes.iter().zip(&model.slaves)) {
+            interface.footing = node
+                .spot
+                .map(|spot| footing(&model.surfaces, spot, &self.positions, self.positions[slave.node]));
+        }
+        self.bind(model, state)?;
+        self.external.fill(0.0);
+        for load in &model.loads {
+            self.external[load.dof] += load.value * load.scale.at(state.load_factor);
+        }
+        self.step.fill(0.0);
+        for p in &model.prescribed {
+            self.step[p.dof] = p.value * p.scale.at(state.load_factor) - state.u[p.dof];
+        }
+        let out = Assembled {
+            force: &mut self.force,
+            size: &mut self.size,
+            values: &mut self.stiffness,
+            coupling: &mut self.coupling,
+        };
+        self.assembly.assemble(&model.dofs, &state.u, &self.step, out);
+        self.measure_interfaces(model);
+        self.balance(model, state);
+        Ok(())
+    }
+
+    /// Renews the pattern where a slave node has found another element with unknowns; rigid ones have no entries.
+    fn bind(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
+        let changed = self.factors.is_none()
+            || state.nodes.iter().zip(&self.pairing).any(|(node, pair)| pairing(model, node) != *pair);
+        if changed {
+            self.pairing.clear();
+            self.pairing.extend(state.nodes.iter().map(|node| pairing(model, node)));
+        }
+        for ((interface, node), slave) in self.interfaces.iter_mut().zip(&state.nodes).zip(&model.slaves) {
+            interface.link(model, node, slave.node);
+        }
+        if changed {
+            self.analyse(model)?;
+        }
+        let Some(factors) = &self.factors else { return Ok(()) };
+        let pattern = factors.pattern();
+        for (s, interface) in self.interfaces.iter_mut().enumerate() {
+            interface.find_slots(model, pattern, model.dofs.equations + 2 * s);
+        }
+        Ok(())
+    }
+
+    fn analyse(&mut self, model: &Model) -> Result<(), SolveError> {
+        let equations = model.dofs.equations;
+        let mut entries = self.assembly.entries(&model.dofs);
+        for (s, interface) in self.interfaces.iter().enumerate() {
+            let row = equations + 2 * s;
+            for k in 0..2 {
+                entries.extend([(row + k, row), (row + k, row + 1)]);
+                for equation in interface.links.iter().filter_map(|l| model.dofs.equation[l.dof]) {
+                    entries.extend([(row + k, equation), (equation, row + k)]);
+                }
+            }
+        }
+        let size = equations + 2 * self.interfaces.len();
+        let pattern = Arc::new(Pattern::new(size, entries));
+        self.assembly.bind(&model.dofs, &pattern);
+        for buffer in [&mut self.stiffness, &mut self.values] {
+            buffer.resize(pattern.entries(), 0.0);
+        }
+        for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
+            buffer.resize(size, 0.0);
+        }
+        self.factors = Some(Factors::new(pattern)?);
+        Ok(())
+    }
+
+    fn measure_interfaces(&mut self, model: &Model) {
+        for interface in &mut self.interfaces {
+            interface.prescribed = [0.0; 2];
+            interface.moves = [false; 2];
+            let Some(frame) = interface.footing.map(|f| [f.normal, tangent(f.normal)]) else { continue };
+            for link in &interface.links {
+                if model.dofs.equation[link.dof].is_none() {
+                    interface.prescribed[link.axis] += link.weight * self.step[link.dof];
+                    continue;
+                }
+                for k in 0..2 {
+                    interface.moves[k] |= (link.weight * frame[k][link.axis]).abs() > EMPTY;
+                }
+            }
+        }
+    }
+
+    /// Out-of-balance force R − F of eqn (22) and its norms.
+    fn balance(&mut self, model: &Model, state: &State) {
+        self.interaction.fill(0.0);
+        for (interface, node) in self.interfaces.iter().zip(&state.nodes) {
+            let force = node.force();
+            for link in &interface.links {
+                self.interaction[link.dof] -= link.weight * force[link.axis];
+            }
+        }
+        let (mut force, mut scale, mut shear) = (0.0_f64, self.reference, 0.0_f64);
+        for (d, equation) in model.dofs.equation.iter().enumerate() {
+            let balance = self.external[d] + self.interaction[d] - self.force[d];
+            match self.kind[d] {
+                Kind::Shear => shear = shear.max(self.force[d].abs() / model.length),
+                Kind::Force { lever } => {
+                    scale = scale.max(self.size[d] / lever).max(self.external[d].abs() / lever);
+                    if equation.is_some() {
+                        force = force.max(balance.abs() / lever);
+                    }
+                }
+            }
+            if let Some(equation) = equation {
+                self.residual[*equation] = balance;
+            }
+        }
+        let tolerance = state.controls.settings.tolerance;
+        let floor = self.round_off(model, &state.u);
+        let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
+        self.norms = Norms {
+            force,
+            relative: relative(force).max(shear),
+            interface: 0.0,
+            correction: state.correction,
+            scale,
+            limit: tolerance.max(relative(floor)),
+        };
+        self.norms.interface = self.violation(model, state);
+    }
+
+    /// Renews the residual after the forces of the interface were changed, geometry and stiffness staying.
+    pub fn rebalance(&mut self, model: &Model, state: &State) {
+        self.balance(model, state);
+    }
+
+    /// Round-off of the internal forces: the machine precision times |K| |u|.
+    fn round_off(&mut self, model: &Model, u: &[f64]) -> f64 {
+        let Some(factors) = &self.factors else { return 0.0 };
+        self.x.fill(0.0);
+        for (d, equation) in model.dofs.equation.iter().enumerate() {
+            if let Some(e) = equation {
+                self.x[*e] = u[d];
+            }
+        }
+        factors.pattern().multiply_abs(&self.stiffness, &self.x, &mut self.work);
+        let mut worst = 0.0_f64;
+        for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
+            if let (Kind::Force { lever }, Some(e)) = (kind, equation) {
+                worst = worst.max(self.work[*e] / lever);
+            }
+        }
+        ROUND_OFF * f64::EPSILON * worst
+    }
+
+    /// Largest relative violation of the interface conditions by a state's forces and gaps.
+    fn violation(&self, model: &Model, state: &State) -> f64 {
+        let mut worst = 0.0_f64;
+        for (s, node) in state.nodes.iter().enumerate() {
+            let Some(gap) = self.interfaces[s].footing.map(|f| f.gap) else { continue };
+            let length = match node.mode {
+                Mode::Free => (-gap).max(0.0),
+                _ => gap.abs(),
+            };
+            let force = match node.mode {
+                Mode::Sliding => (node.f_t - node.t_max).abs(),
+                _ => 0.0,
+            };
+            worst = worst.max(length / model.length);
+            if force > 0.0 {
+                worst = worst.max(force / self.norms.scale);
+            }
+        }
+        worst
+    }
+
+    /// Norms of the last linearisation.
+    pub fn norms(&self) -> Norms {
+        self.norms
+    }
+
+    /// Geometry of a slave node in the last linearisation.
+    pub fn footing(&self, slave: usize) -> Option<&Footing> {
+        self.interfaces[slave].footing.as_ref()
+    }
+
+    /// Which of a slave node's force components were left to its support in the last solve.
+    pub fn carried(&self, slave: usize) -> [bool; 2] {
+        self.interfaces[slave].carried
+    }
+
+    /// Whether any unknown takes part in a slave node's normal motion.
+    pub fn moves_normally(&self, slave: usize) -> bool {
+        self.interfaces[slave].moves[0]
+    }
+
+    /// Internal force less applied load at a degree of freedom: what support or surface must give there.
+    pub fn nodal_force(&self, dof: usize) -> f64 {
+        self.force[dof] - self.external[dof]
+    }
+
+    /// Interaction force at a degree of freedom in the last linearisation.
+    pub fn interaction(&self, dof: usize) -> f64 {
+        self.interaction[dof]
+    }
+
+    /// Solves the linearised system for a state's modes.
+    pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
+        self.values.copy_from_slice(&self.stiffness);
+        let unknowns = model.dofs.equations;
+        for (rhs, (residual, coupling)) in self.rhs.iter_mut().zip(self.residual.iter().zip(&self.coupling)) {
+            *rhs = residual - coupling;
+        }
+        for s in 0..self.interfaces.len() {
+            let rows = self.rows(s, state);
+            let interface = &self.interfaces[s];
+            let frame = interface.frame(&state.nodes[s]);
+            for (k, row) in rows.iter().enumerate() {
+                self.values[interface.block[2 * k]] = row.d_n;
+                self.values[interface.block[2 * k + 1]] = row.d_t;
+                let direction = match row.motion {
+                    Motion::None => [0.0; 2],
+                    Motion::Normal => frame[0],
+                    Motion::Tangential => frame[1],
+                };
+                let known = dot(direction, interface.prescribed);
+                self.rhs[unknowns + 2 * s + k] = row.value - known;
+                for link in &interface.links {
+                    let Some(slots) = link.slots else { continue };
+                    self.values[slots[2 * k]] += link.weight * direction[link.axis];
+                    self.values[slots[2 * k + 1]] += link.weight * frame[k][link.axis];
+                }
+            }
+        }
+        let Some(factors) = &mut self.factors else { return Solved::Not };
+        if factors.factor(&self.values).is_err() {
+            return Solved::Not;
+        }
+        if factors.solve(&self.rhs, &mut self.x).is_err() {
+            return Solved::Not;
+        }
+        if factors.inverse_norm() > SUSPICIOUS_INVERSE { Solved::Suspicious } else { Solved::Well }
+    }
+
+    /// Table 1's rows of a node; a row in which nothing can move is given to the support.
+    fn rows(&mut self, s: usize, state: &State) -> [Equation; 2] {
+        let (node, interface) = (&state.nodes[s], &mut self.interfaces[s]);
+        let friction = &state.controls.friction[s];
+        let limit = match state.controls.settings.t_max {
+            FrictionLimit::Lagged => Limit::Lagged(node.t_max),
+            FrictionLimit::Consistent => {
+                Limit::Consistent { sign: node.sign, coefficient: friction.coefficient(), cohesion: friction.cohesion }
+            }
+        };
+        let gap = interface.footing.map_or(0.0, |f| f.gap);
+        let slip = match state.controls.settings.slip {
+            SlipCount::Increment => node.slip,
+            SlipCount::Major => 0.0,
+        };
+        let known = Known { gap, ratio: node.ratio, slip, f_n: node.f_n, f_t: node.f_t, limit };
+        let mut rows = equations(node.mode, &known);
+        let forces = [node.f_n, node.f_t];
+        interface.carried = [false; 2];
+        for k in 0..2 {
+            if rows[k].motion != Motion::None && !interface.moves[k] {
+                interface.carried[k] = true;
+                rows[k] = gone((1 - k) as f64, k as f64, forces[k]);
+            }
+        }
+        rows
+    }
+
+    /// Increments ΔF_n, ΔF_t of a slave node in the last solve.
+    pub fn force_increment(&self, model: &Model, slave: usize) -> [f64; 2] {
+        let row = model.dofs.equations + 2 * slave;
+        [self.x[row], self.x[row + 1]]
+    }
+
+    /// Normal and tangential part of Δu_S* − Δu_S of a slave node in the last solve.
+    pub fn relative_motion(&self, model: &Model, slave: usize, node: &NodeState) -> [f64; 2] {
+        let interface = &self.interfaces[slave];
+        let mut motion = [0.0; 2];
+        for link in &interface.links {
+            motion[link.axis] += link.weight * self.increment(model, link.dof);
+        }
+        let frame = interface.frame(node);
+        [dot(frame[0], motion), dot(frame[1], motion)]
+    }
+
+    /// Increment of a degree of freedom in the last solve.
+    pub fn increment(&self, model: &Model, dof: usize) -> f64 {
+        model.dofs.equation[dof].map_or(self.step[dof], |e| self.x[e])
+    }
+}
+
+impl Interface {
+    /// n and t, frozen; where there is no surface, those that the node had.
+    fn frame(&self, node: &NodeState) -> [[f64; 2]; 2] {
+        let normal = self.footing.map_or(node.normal, |f| f.normal);
+        [normal, tangent(normal)]
+    }
+
+    /// Lists the displacements of S and S*.
+    fn link(&mut self, model: &Model, node: &NodeState, slave: usize) {
+        self.links.clear();
+        let mut add = |n: usize, weight: f64| {
+            let first = model.dofs.first[n];
+            self.links.extend((0..2).map(|axis| Link { dof: first + axis, axis, weight, slots: None }));
+        };
+        add(slave, -1.0);
+        if let (Some(spot), Some(footing)) = (node.spot, &self.footing) {
+            let nodes = &model.surfaces[spot.surface].elements[spot.element];
+            for (&n, &weight) in nodes.iter().zip(&footing.shape) {
+                add(n, weight);
+            }
+        }
+    }
+
+    fn find_slots(&mut self, model: &Model, pattern: &Pattern, row: usize) {
+        let slot = |i, j| pattern.slot(i, j);
+        for link in &mut self.links {
+            link.slots = model.dofs.equation[link.dof].and_then(|e| {
+                Some([slot(row, e)?, slot(e, row)?, slot(row + 1, e)?, slot(e, row + 1)?])
+            });
+        }
+        let block = [(row, row), (row, row + 1), (row + 1, row), (row + 1, row + 1)];
+        for (place, (i, j)) in self.block.iter_mut().zip(block) {
+            *place = slot(i, j).unwrap_or(*place);
+        }
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The element that a node's equations reach into, if that has unknowns.
+fn pairing(model: &Model, node: &NodeState) -> Option<(usize, usize)> {
+    node.spot.filter(|s| !model.surfaces[s.surface].rigid).map(|s| (s.surface, s.element))
+}
+
+/// What the equation of each degree of freedom balances.
+fn kinds(model: &Model) -> Vec<Kind> {
+    let mut kinds = vec![Kind::Shear; model.dofs.len()];
+    for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
+        for k in 0..count as usize {
+            let lever = if k == Component::Rotation as usize { model.length } else { 1.0 };
+            kinds[first + k] = Kind::Force { lever };
+        }
+    }
+    kinds
+}
+
+/// Largest force that the scene's loads reach over its history.
+fn reference_force(model: &Model, kinds: &[Kind]) -> f64 {
+    model.loads.iter().fold(0.0, |most, load| {
+        let peak = model.path.iter().fold(0.0_f64, |m, &p| m.max(load.scale.at(p).abs()));
+        match kinds[load.dof] {
+            Kind::Force { lever } => most.max(peak * load.value.abs() / lever),
+            Kind::Shear => most,
+        }
+    })
+}
