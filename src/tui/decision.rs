@@ -1,0 +1,222 @@
+//! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
+
+use crate::contact::decision::{Decision, Rule, Test, Tested};
+use crate::scene::Mode;
+use crate::scene::spec::Ties;
+use crate::solve::{Forced, NodeRecord};
+use crate::tui::app::App;
+use crate::tui::layout::Pane;
+use crate::tui::number::long;
+use crate::tui::theme::{self, Theme};
+use crate::tui::view::View;
+use crate::tui::draw;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use ratatui::text::{Line, Span};
+
+/// Modes in the order of Table 2's rows and columns.
+const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
+
+/// Table 2: what sends a node from the mode of the row to that of the column, in two lines.
+const TABLE_2: [[[&str; 2]; 3]; 3] = [
+    [["F_n > 0", "|F_t| < |T_max|"], ["F_n > 0", "|F_t| > |T_max|"], ["F_n ≤ 0", ""]],
+    [["F_n > 0", "T_max·slip < 0"], ["F_n > 0", "T_max·slip > 0"], ["F_n ≤ 0", ""]],
+    [["g < 0", "(rough)"], ["g < 0", "(smooth)"], ["g > 0", ""]],
+];
+
+/// Width of the rows' headings.
+const LABEL: usize = 9;
+
+/// Draws the decision.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let count = view.model.slaves.len();
+    let slave = app.selected.min(count.saturating_sub(1));
+    let title = if count == 0 { "Decision".into() } else { format!("Decision  {}", view.name(slave)) };
+    let inner = draw::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
+    let record = view.record(slave);
+    let decision = record.map(|record| record.decision);
+    let tests = record.map_or(Vec::new(), |record| tests(&record.decision, inner.width as usize, theme));
+    let words = words(record, slave, view);
+
+    // What must be there comes first; air is added where there is room.
+    let style = if decision.is_some_and(|d| d.changes()) { theme.strong } else { theme.text };
+    let words: Vec<Line> = draw::wrap(&words, (inner.width as usize).saturating_sub(2))
+        .into_iter()
+        .map(|line| Line::styled(format!(" {line}"), style))
+        .collect();
+    let needed = 7 + tests.len() + words.len();
+    let spare = (inner.height as usize).saturating_sub(needed);
+    let air = |enough: bool| enough.then(Line::default);
+    let mut all = grid(decision.as_ref(), inner.width as usize, spare >= 4, theme);
+    all.extend(air(spare >= 1));
+    all.extend(tests);
+    all.extend(air(spare >= 5 || (2..4).contains(&spare)));
+    all.extend(words);
+    draw::lines(buffer, inner, &all);
+}
+
+/// Table 2 as lines, with the row of the mode before and the cell that fired lit.
+fn grid(decision: Option<&Decision>, width: usize, ruled: bool, theme: &Theme) -> Vec<Line<'static>> {
+    let cell = width.saturating_sub(LABEL + 6) / 3;
+    let bar = Span::styled("│ ", theme.faint);
+    let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
+    for mode in MODES {
+        let text = format!("→ {}", theme::word(mode));
+        head.extend([bar.clone(), Span::styled(format!("{text:<cell$}"), theme.heading)]);
+    }
+    let mut lines = vec![Line::from(head)];
+    for (row, mode) in MODES.iter().enumerate() {
+        if ruled {
+            let stroke = format!("┼{}", "─".repeat(cell + 1)).repeat(3);
+            let rule: String = ("─".repeat(LABEL) + &stroke).chars().chain(std::iter::repeat('─')).take(width).collect();
+            lines.push(Line::styled(rule, theme.faint));
+        }
+        let here = decision.is_some_and(|decision| decision.before == *mode);
+        for part in 0..2 {
+            let label = match (part, here) {
+                (0, true) => format!("▸{}", theme::word(*mode)),
+                (0, false) => format!(" {}", theme::word(*mode)),
+                _ => String::new(),
+            };
+            let style = if here { theme.mode(*mode).add_modifier(Modifier::BOLD) } else { theme.faint };
+            let mut spans = vec![Span::styled(format!("{label:<LABEL$}"), style)];
+            for (column, next) in MODES.iter().enumerate() {
+                let (mark, style) = cell_look(decision, *mode, *next, theme);
+                let mark = if part == 0 { mark } else { " " };
+                let text = TABLE_2[row][column][part];
+                let room = cell.saturating_sub(1);
+                spans.extend([bar.clone(), Span::styled(format!("{text:<room$.room$}{mark}"), style)]);
+            }
+            lines.push(Line::from(spans));
+        }
+    }
+    lines
+}
+
+/// Mark and style of a cell: fired, wanted by Table 2 but overruled, in the row of the mode before, or none of these.
+fn cell_look(decision: Option<&Decision>, before: Mode, next: Mode, theme: &Theme) -> (&'static str, Style) {
+    let Some(decision) = decision.filter(|decision| decision.before == before) else {
+        return (" ", theme.faint);
+    };
+    match decision.rule {
+        Rule::OffSurface => (" ", theme.text),
+        Rule::Held if decision.wanted == next => ("◁", theme.text.add_modifier(Modifier::UNDERLINED)),
+        Rule::Held => (" ", theme.text),
+        _ if decision.next == next => ("◀", theme.lit(next)),
+        _ => (" ", theme.text),
+    }
+}
+
+/// The inequalities with their numbers: one line each where there is room, else two.
+fn tests(decision: &Decision, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    let mut lines = Vec::new();
+    for test in decision.tests.iter().flatten() {
+        let inequality = inequality(test);
+        let (margin, style) = margin(test, theme);
+        let style_left = if test.margin < 0.0 && !test.tie { theme.strong } else { theme.text };
+        let used = inequality.chars().count() + margin.chars().count();
+        if used < width {
+            lines.push(Line::from(vec![
+                Span::styled(inequality, style_left),
+                Span::raw(" ".repeat(width - used)),
+                Span::styled(margin, style),
+            ]));
+        } else {
+            lines.push(Line::styled(inequality, style_left));
+            lines.push(Line::styled(format!("{margin:>width$}"), style));
+        }
+    }
+    lines
+}
+
+/// An inequality as it stands, with ten digits on both sides.
+fn inequality(test: &Test) -> String {
+    let sign = match test.value.partial_cmp(&test.bound) {
+        _ if test.tie && test.value != test.bound => "≈",
+        Some(std::cmp::Ordering::Less) => "<",
+        Some(std::cmp::Ordering::Greater) => ">",
+        Some(std::cmp::Ordering::Equal) => "=",
+        None => "?",
+    };
+    let (name, bound) = match test.tested {
+        Tested::NormalForce => ("F_n", "0".into()),
+        Tested::ShearForce => ("|F_t|", format!("|T_max| {}", long(test.bound))),
+        Tested::Slip => ("slip·sgn T_max", "0".into()),
+        Tested::Gap => ("g", "0".into()),
+    };
+    format!(" {name} {} {sign} {bound}", long(test.value))
+}
+
+/// How far the inequality is from switching, and its unit.
+fn margin(test: &Test, theme: &Theme) -> (String, Style) {
+    let unit = match test.tested {
+        Tested::NormalForce | Tested::ShearForce => "force",
+        Tested::Slip | Tested::Gap => "length",
+    };
+    match test.tie {
+        true => (format!("a tie, by {} {unit} ", long(test.margin)), theme.warning),
+        false => (format!("margin {} {unit} ", long(test.margin)), theme.faint),
+    }
+}
+
+/// The verdict in words.
+fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
+    if view.model.slaves.is_empty() {
+        return "This scene has no slave nodes to decide on.".into();
+    }
+    let next = view.mode(slave);
+    let Some(record) = record else {
+        return format!("Nothing is decided yet; the node starts {}.", theme::word(next));
+    };
+    let decision = &record.decision;
+    let mut text = reason(decision);
+    if decision.tests.iter().flatten().any(|test| test.tie) {
+        text += match view.frame().state.controls.settings.ties {
+            Ties::Keep => " A tie keeps the mode.",
+            Ties::Printed => " An exact tie, read as the table is printed.",
+        };
+    }
+    let sliding = decision.next == Mode::Sliding && record.t_max != record.t_max_used;
+    if sliding && !decision.changes() {
+        text += &format!(" T_max is not settled: {} was used.", long(record.t_max_used));
+    }
+    if record.carried.contains(&true) {
+        text += " A support carries a part of the force.";
+    }
+    match view.frame().state.nodes[slave].forced {
+        Forced::Once(mode) if next == mode && mode != decision.next => {
+            text += &format!(" You force it to {} for the next minor iteration.", theme::word(mode));
+        }
+        Forced::Held(mode) if decision.rule != Rule::Held => {
+            text += &format!(" You hold it {} from here on.", theme::word(mode));
+        }
+        _ => {}
+    }
+    text
+}
+
+/// Why Table 2 decided as it did.
+fn reason(decision: &Decision) -> String {
+    let text = match decision.rule {
+        Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
+        Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
+        Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
+        Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
+        Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
+        Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
+        Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
+        Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
+        Rule::FreeStays => "Stays free: the gap is open.",
+        Rule::OffSurface => "Free: the projection lies past an end of every surface, so there is nothing to touch.",
+        Rule::Held if decision.wanted == decision.next => {
+            return format!("You hold it {}; Table 2 wants the same.", theme::word(decision.next));
+        }
+        Rule::Held => {
+            let (next, wanted) = (theme::word(decision.next), theme::word(decision.wanted));
+            return format!("You hold it {next}; Table 2 (◁) wanted {wanted}. M releases it.");
+        }
+    };
+    text.into()
+}

@@ -1,0 +1,90 @@
+//! What the panes show: a borrowed, read-only look at a session.
+
+use crate::debug::session::{Frame, Session};
+use crate::scene::{Mode, Model};
+use crate::solve::{Event, Forced, NodeRecord, Norms};
+
+/// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
+#[derive(Debug, Clone)]
+pub struct View<'a> {
+    /// File or built-in name of the scene.
+    pub scene: &'a str,
+    pub model: &'a Model,
+    /// The history, oldest first; never empty.
+    pub frames: &'a [Frame],
+    /// Which of them is shown.
+    pub cursor: usize,
+    /// Whether the solver is at work.
+    pub running: bool,
+    /// Norms by major iteration of the shown increment attempt.
+    pub residuals: Vec<(u32, Norms)>,
+}
+
+impl<'a> View<'a> {
+    /// The look of a session now.
+    pub fn of(session: &'a Session) -> Self {
+        View {
+            scene: session.scene_name(),
+            model: session.model(),
+            frames: session.frames(),
+            cursor: session.cursor(),
+            running: session.is_running(),
+            residuals: session.residual_history(),
+        }
+    }
+
+    /// The frame that is shown.
+    pub fn frame(&self) -> &'a Frame {
+        &self.frames[self.cursor]
+    }
+
+    /// The minor iteration that led to the shown frame; none at the start.
+    pub fn event(&self) -> Option<&'a Event> {
+        self.frame().event.as_deref()
+    }
+
+    /// What that minor iteration found at a slave node.
+    pub fn record(&self, slave: usize) -> Option<&'a NodeRecord> {
+        self.event()?.nodes.get(slave)
+    }
+
+    /// Name of a slave node.
+    pub fn name(&self, slave: usize) -> &'a str {
+        match self.model.slaves.get(slave) {
+            Some(slave) => &self.model.nodes[slave.node].name,
+            None => "",
+        }
+    }
+
+    /// The mode that a slave node takes next: Table 2's, or the user's.
+    pub fn mode(&self, slave: usize) -> Mode {
+        self.frame().state.nodes[slave].mode
+    }
+
+    /// The mode that it had in the shown minor iteration; at the start the one that it starts with.
+    pub fn mode_before(&self, slave: usize) -> Mode {
+        self.record(slave).map_or(self.mode(slave), |record| record.decision.before)
+    }
+
+    /// How the user stands behind its next mode, or else behind the one that it had.
+    pub fn forced(&self, slave: usize) -> Forced {
+        match (self.frame().state.nodes[slave].forced, self.record(slave)) {
+            (Forced::No, Some(record)) => record.forced,
+            (forced, _) => forced,
+        }
+    }
+
+    /// Where a node is: its place in the reference shape, displaced.
+    pub fn place(&self, node: usize) -> [f64; 2] {
+        let at = self.model.nodes[node].at;
+        let u = &self.frame().state.u;
+        let Some(&first) = self.model.dofs.first.get(node) else {
+            return at;
+        };
+        let moved = |axis: usize| u.get(first + axis).copied().unwrap_or(0.0);
+        match self.model.dofs.count.get(node) {
+            Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
+            _ => at,
+        }
+    }
+}
