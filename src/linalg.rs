@@ -31,7 +31,11 @@ impl Pattern {
         for col in 0..n {
             col_ptr[col + 1] += col_ptr[col];
         }
-        Pattern { n, col_ptr, row_idx: entries.into_iter().map(|(row, _)| row).collect() }
+        Pattern {
+            n,
+            col_ptr,
+            row_idx: entries.into_iter().map(|(row, _)| row).collect(),
+        }
     }
 
     /// Number of rows and of columns.
@@ -47,13 +51,18 @@ impl Pattern {
     /// Index of an entry in the array of values, if the pattern has it.
     pub fn slot(&self, row: usize, col: usize) -> Option<usize> {
         let start = self.col_ptr[col];
-        self.row_idx[start..self.col_ptr[col + 1]].binary_search(&row).ok().map(|k| start + k)
+        self.row_idx[start..self.col_ptr[col + 1]]
+            .binary_search(&row)
+            .ok()
+            .map(|k| start + k)
     }
 
     /// All entries as `(row, column)`, in the order of the values.
     pub fn iter(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..self.n).flat_map(move |col| {
-            self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]].iter().map(move |&row| (row, col))
+            self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]]
+                .iter()
+                .map(move |&row| (row, col))
         })
     }
 
@@ -116,8 +125,8 @@ impl Factors {
     /// [`SolveError`] if the pattern is structurally singular or memory runs out.
     pub fn new(pattern: Arc<Pattern>) -> Result<Self, SolveError> {
         let n = pattern.n;
-        let symbolic =
-            factorize_symbolic_lu(symbolic_view(&pattern), Default::default()).map_err(|_| SolveError::OutOfMemory)?;
+        let symbolic = factorize_symbolic_lu(symbolic_view(&pattern), Default::default())
+            .map_err(|_| SolveError::OutOfMemory)?;
         let request = symbolic
             .factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
@@ -208,7 +217,13 @@ impl Factors {
             }
         }
         self.apply_scaled_inverse(&mut probe);
-        let size = probe.iter().fold(0.0_f64, |m, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY });
+        let size = probe.iter().fold(0.0_f64, |m, v| {
+            if v.is_finite() {
+                m.max(v.abs())
+            } else {
+                f64::INFINITY
+            }
+        });
         self.correction = probe;
         size
     }
@@ -270,8 +285,9 @@ impl Factors {
             }
             for col in 0..n {
                 for k in self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1] {
-                    self.scaled[k] =
-                        self.values[k] * self.row_scale[self.pattern.row_idx[k]] * self.col_scale[col];
+                    self.scaled[k] = self.values[k]
+                        * self.row_scale[self.pattern.row_idx[k]]
+                        * self.col_scale[col];
                 }
             }
         }
@@ -279,11 +295,21 @@ impl Factors {
 }
 
 fn inverse_root(size: f64) -> f64 {
-    if size > 0.0 && size.is_finite() { 1.0 / size.sqrt() } else { 1.0 }
+    if size > 0.0 && size.is_finite() {
+        1.0 / size.sqrt()
+    } else {
+        1.0
+    }
 }
 
 fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
-    SymbolicSparseColMatRef::new_checked(pattern.n, pattern.n, &pattern.col_ptr, None, &pattern.row_idx)
+    SymbolicSparseColMatRef::new_checked(
+        pattern.n,
+        pattern.n,
+        &pattern.col_ptr,
+        None,
+        &pattern.row_idx,
+    )
 }
 
 #[cfg(test)]

@@ -100,7 +100,13 @@ pub struct Ties {
 
 /// Table 2.
 pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
-    let opens = ties.test(Tested::NormalForce, numbers.f_n, 0.0, numbers.f_n, ties.force);
+    let opens = ties.test(
+        Tested::NormalForce,
+        numbers.f_n,
+        0.0,
+        numbers.f_n,
+        ties.force,
+    );
     let (next, rule, tests) = match numbers.mode {
         Mode::Free => {
             let test = ties.test(Tested::Gap, numbers.gap, 0.0, numbers.gap, ties.length);
@@ -110,8 +116,12 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
                 (false, _) => (Mode::Free, Rule::FreeStays, [Some(test), None]),
             }
         }
-        Mode::Fixed if ties.switches(&opens, true) => (Mode::Free, Rule::FixedOpens, [Some(opens), None]),
-        Mode::Sliding if ties.switches(&opens, true) => (Mode::Free, Rule::SlidingOpens, [Some(opens), None]),
+        Mode::Fixed if ties.switches(&opens, true) => {
+            (Mode::Free, Rule::FixedOpens, [Some(opens), None])
+        }
+        Mode::Sliding if ties.switches(&opens, true) => {
+            (Mode::Free, Rule::SlidingOpens, [Some(opens), None])
+        }
         Mode::Fixed => {
             let (shear, limit) = (numbers.f_t.abs(), numbers.t_max.abs());
             let test = ties.test(Tested::ShearForce, shear, limit, limit - shear, ties.force);
@@ -121,7 +131,11 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
             }
         }
         Mode::Sliding => {
-            let slip = if numbers.t_max == 0.0 { 0.0 } else { numbers.t_max.signum() * numbers.slip };
+            let slip = if numbers.t_max == 0.0 {
+                0.0
+            } else {
+                numbers.t_max.signum() * numbers.slip
+            };
             let test = ties.test(Tested::Slip, slip, 0.0, slip, ties.length);
             match ties.switches(&test, false) {
                 true => (Mode::Fixed, Rule::SlidingSticks, [Some(opens), Some(test)]),
@@ -129,18 +143,38 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
             }
         }
     };
-    Decision { before: numbers.mode, next, rule, tests, wanted: next }
+    Decision {
+        before: numbers.mode,
+        next,
+        rule,
+        tests,
+        wanted: next,
+    }
 }
 
 impl Ties {
     fn test(&self, tested: Tested, value: f64, bound: f64, margin: f64, tolerance: f64) -> Test {
-        let tie = if self.keep { margin.abs() <= tolerance } else { margin == 0.0 };
-        Test { tested, value, bound, margin, tie }
+        let tie = if self.keep {
+            margin.abs() <= tolerance
+        } else {
+            margin == 0.0
+        };
+        Test {
+            tested,
+            value,
+            bound,
+            margin,
+            tie,
+        }
     }
 
     /// Whether a test changes the mode; `at_zero` says what the printed table does with an exact tie.
     fn switches(&self, test: &Test, at_zero: bool) -> bool {
-        if test.tie { !self.keep && at_zero } else { test.margin < 0.0 }
+        if test.tie {
+            !self.keep && at_zero
+        } else {
+            test.margin < 0.0
+        }
     }
 }
 
@@ -165,11 +199,26 @@ impl Decision {
 mod tests {
     use super::*;
 
-    const TIES: Ties = Ties { force: 1e-10, length: 1e-10, keep: true };
-    const PRINTED: Ties = Ties { keep: false, ..TIES };
+    const TIES: Ties = Ties {
+        force: 1e-10,
+        length: 1e-10,
+        keep: true,
+    };
+    const PRINTED: Ties = Ties {
+        keep: false,
+        ..TIES
+    };
 
     fn numbers(mode: Mode) -> Numbers {
-        Numbers { mode, gap: 0.1, f_n: 2.0, f_t: -0.5, t_max: -1.0, slip: -0.01, smooth: false }
+        Numbers {
+            mode,
+            gap: 0.1,
+            f_n: 2.0,
+            f_t: -0.5,
+            t_max: -1.0,
+            slip: -0.01,
+            smooth: false,
+        }
     }
 
     fn verdict(n: Numbers, ties: &Ties) -> (Mode, Rule) {
@@ -189,25 +238,45 @@ mod tests {
             (s, Sliding, Rule::SlidingStays),
             (Numbers { f_n: -0.1, ..s }, Free, Rule::SlidingOpens),
             (Numbers { gap: -0.1, ..f }, Fixed, Rule::FreeSticks),
-            (Numbers { gap: -0.1, smooth: true, ..f }, Sliding, Rule::FreeSlides),
+            (
+                Numbers {
+                    gap: -0.1,
+                    smooth: true,
+                    ..f
+                },
+                Sliding,
+                Rule::FreeSlides,
+            ),
             (f, Free, Rule::FreeStays),
         ];
         for (n, next, rule) in cases {
             assert_eq!(verdict(n, &TIES), (next, rule));
             assert_eq!(verdict(n, &PRINTED), (next, rule));
             let d = decide(&n, &TIES);
-            assert_eq!(d.changes(), d.margin() < 0.0, "the margin's sign tells the change: {d:?}");
+            assert_eq!(
+                d.changes(),
+                d.margin() < 0.0,
+                "the margin's sign tells the change: {d:?}"
+            );
         }
     }
 
     #[test]
     fn ties_keep_the_mode_and_the_printed_table_opens_without_force() {
-        let stuck = Numbers { f_n: 1e-12, f_t: 0.0, t_max: 0.0, ..numbers(Mode::Fixed) };
+        let stuck = Numbers {
+            f_n: 1e-12,
+            f_t: 0.0,
+            t_max: 0.0,
+            ..numbers(Mode::Fixed)
+        };
         assert_eq!(verdict(stuck, &TIES).0, Mode::Fixed);
         let unloaded = Numbers { f_n: 0.0, ..stuck };
         assert_eq!(verdict(unloaded, &TIES).0, Mode::Fixed);
         assert_eq!(verdict(unloaded, &PRINTED).0, Mode::Free);
-        let touching = Numbers { gap: 0.0, ..numbers(Mode::Free) };
+        let touching = Numbers {
+            gap: 0.0,
+            ..numbers(Mode::Free)
+        };
         assert_eq!(verdict(touching, &TIES).0, Mode::Free);
         assert_eq!(verdict(touching, &PRINTED).0, Mode::Free);
     }

@@ -64,7 +64,14 @@ pub fn project(
         let (distance, xi) = closest(nodes, positions, slave);
         let slack = STAY_TOLERANCE * chord(nodes, positions);
         if best.is_none_or(|(least, _)| distance < least - slack) {
-            *best = Some((distance, Spot { surface, element, xi }));
+            *best = Some((
+                distance,
+                Spot {
+                    surface,
+                    element,
+                    xi,
+                },
+            ));
         }
     };
     if let Some(spot) = previous {
@@ -80,20 +87,32 @@ pub fn project(
 }
 
 /// Geometry at a spot, for a slave node at `slave`.
-pub fn footing(surfaces: &[Surface], spot: Spot, positions: &[[f64; 2]], slave: [f64; 2]) -> Footing {
+pub fn footing(
+    surfaces: &[Surface],
+    spot: Spot,
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+) -> Footing {
     let surface = &surfaces[spot.surface];
     let nodes = &surface.elements[spot.element];
     let s = shape(nodes.len(), spot.xi);
     let foot = blend(nodes, positions, &s.n);
     let normal = normal_at(surface, spot, positions);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
-    Footing { foot, normal, gap, shape: s.n }
+    Footing {
+        foot,
+        normal,
+        gap,
+        shape: s.n,
+    }
 }
 
 /// Outward normal at a spot: the mean of both sides' where two elements meet.
 fn normal_at(surface: &Surface, spot: Spot, positions: &[[f64; 2]]) -> [f64; 2] {
     let own = element_normal(&surface.elements[spot.element], positions, spot.xi);
-    let Some((other, xi)) = neighbour(surface, spot) else { return own };
+    let Some((other, xi)) = neighbour(surface, spot) else {
+        return own;
+    };
     let across = element_normal(&surface.elements[other], positions, xi);
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
@@ -135,7 +154,9 @@ fn closest(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f6
     let start = (0..samples)
         .map(|k| node(samples, k))
         .map(|xi| (distance(xi), xi))
-        .fold((f64::INFINITY, 0.0), |best, now| if now.0 < best.0 { now } else { best });
+        .fold((f64::INFINITY, 0.0), |best, now| {
+            if now.0 < best.0 { now } else { best }
+        });
     let refined = descend(nodes, positions, slave, start.1);
     let ended = (distance(refined), refined);
     if ended.0 <= start.0 { ended } else { start }
@@ -147,11 +168,19 @@ fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64)
     let mut xi = start;
     for _ in 0..50 {
         let s = shape(nodes.len(), xi);
-        let (x, d, dd) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d), blend(nodes, positions, &s.dd));
+        let (x, d, dd) = (
+            blend(nodes, positions, &s.n),
+            blend(nodes, positions, &s.d),
+            blend(nodes, positions, &s.dd),
+        );
         let to = [slave[0] - x[0], slave[1] - x[1]];
         let slope = d[0] * d[0] + d[1] * d[1];
         let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
-        let denominator = if curvature > 0.1 * slope { curvature } else { slope };
+        let denominator = if curvature > 0.1 * slope {
+            curvature
+        } else {
+            slope
+        };
         if denominator == 0.0 {
             break;
         }
@@ -188,16 +217,26 @@ fn chord(nodes: &[usize], positions: &[[f64; 2]]) -> f64 {
 }
 
 fn bounds(nodes: &[usize], positions: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
-    nodes.iter().map(|&n| positions[n]).fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), x| {
-        ([low[0].min(x[0]), low[1].min(x[1])], [high[0].max(x[0]), high[1].max(x[1])])
-    })
+    nodes.iter().map(|&n| positions[n]).fold(
+        ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
+        |(low, high), x| {
+            (
+                [low[0].min(x[0]), low[1].min(x[1])],
+                [high[0].max(x[0]), high[1].max(x[1])],
+            )
+        },
+    )
 }
 
 /// A lower bound of the distance to an element.
 fn box_distance(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> f64 {
     let (low, high) = bounds(nodes, positions);
     let bulge = BULGE * (high[0] - low[0]).hypot(high[1] - low[1]);
-    let outside = |k: usize| (low[k] - bulge - slave[k]).max(slave[k] - high[k] - bulge).max(0.0);
+    let outside = |k: usize| {
+        (low[k] - bulge - slave[k])
+            .max(slave[k] - high[k] - bulge)
+            .max(0.0)
+    };
     outside(0).hypot(outside(1))
 }
 
@@ -206,7 +245,11 @@ mod tests {
     use super::*;
 
     fn surface(elements: Vec<Vec<usize>>) -> Vec<Surface> {
-        vec![Surface { name: "s".into(), elements, rigid: true }]
+        vec![Surface {
+            name: "s".into(),
+            elements,
+            rigid: true,
+        }]
     }
 
     /// A flat floor of two 3-node elements, walked towards −x, so that +y is outward.
@@ -250,8 +293,10 @@ mod tests {
     #[test]
     fn the_closest_point_of_a_curve_is_perpendicular_below_the_node() {
         let m = 5;
-        let positions: Vec<[f64; 2]> =
-            (0..m).map(|k| k as f64 * 0.4).map(|a| [-a.cos(), a.sin()]).collect();
+        let positions: Vec<[f64; 2]> = (0..m)
+            .map(|k| k as f64 * 0.4)
+            .map(|a| [-a.cos(), a.sin()])
+            .collect();
         let s = surface(vec![(0..m).collect()]);
         for angle in [0.1_f64, 0.77, 1.5] {
             for radius in [0.9, 1.0, 1.4] {

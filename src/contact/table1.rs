@@ -59,16 +59,30 @@ pub enum Limit {
     /// T_max of the previous minor iteration.
     Lagged(f64),
     /// T_max follows F_n within the solve: sign · (coefficient · F_n + cohesion).
-    Consistent { sign: f64, coefficient: f64, cohesion: f64 },
+    Consistent {
+        sign: f64,
+        coefficient: f64,
+        cohesion: f64,
+    },
 }
 
 /// Table 1's equations of a node in a mode: normal, then tangential.
 pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
-    let normal = Equation { motion: Motion::Normal, d_n: 0.0, d_t: 0.0, value: known.gap };
+    let normal = Equation {
+        motion: Motion::Normal,
+        d_n: 0.0,
+        d_t: 0.0,
+        value: known.gap,
+    };
     match mode {
         Mode::Fixed => [
             normal,
-            Equation { motion: Motion::Tangential, d_n: 0.0, d_t: 0.0, value: known.gap * known.ratio - known.slip },
+            Equation {
+                motion: Motion::Tangential,
+                d_n: 0.0,
+                d_t: 0.0,
+                value: known.gap * known.ratio - known.slip,
+            },
         ],
         Mode::Sliding => [normal, sliding(known)],
         Mode::Free => [gone(1.0, 0.0, known.f_n), gone(0.0, 1.0, known.f_t)],
@@ -77,17 +91,32 @@ pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
 
 /// The equation that makes a force component vanish.
 pub fn gone(d_n: f64, d_t: f64, force: f64) -> Equation {
-    Equation { motion: Motion::None, d_n, d_t, value: -force }
+    Equation {
+        motion: Motion::None,
+        d_n,
+        d_t,
+        value: -force,
+    }
 }
 
 fn sliding(known: &Known) -> Equation {
     let (d_n, value) = match known.limit {
         Limit::Lagged(t_max) => (0.0, t_max - known.f_t),
-        Limit::Consistent { sign, coefficient, cohesion } => {
-            (-sign * coefficient, sign * (coefficient * known.f_n + cohesion) - known.f_t)
-        }
+        Limit::Consistent {
+            sign,
+            coefficient,
+            cohesion,
+        } => (
+            -sign * coefficient,
+            sign * (coefficient * known.f_n + cohesion) - known.f_t,
+        ),
     };
-    Equation { motion: Motion::None, d_n, d_t: 1.0, value }
+    Equation {
+        motion: Motion::None,
+        d_n,
+        d_t: 1.0,
+        value,
+    }
 }
 
 /// T_max (eqn 20) for a normal force and a direction (the sign of the tangential force, or 0).
@@ -111,7 +140,14 @@ pub fn direction(f_t: f64, tiny_force: f64, slip: f64, tiny_slip: f64, had: f64)
 mod tests {
     use super::*;
 
-    const KNOWN: Known = Known { gap: -0.2, ratio: 1.5, slip: 0.0, f_n: 3.0, f_t: -1.0, limit: Limit::Lagged(-1.7) };
+    const KNOWN: Known = Known {
+        gap: -0.2,
+        ratio: 1.5,
+        slip: 0.0,
+        f_n: 3.0,
+        f_t: -1.0,
+        limit: Limit::Lagged(-1.7),
+    };
 
     #[test]
     fn the_equations_are_those_of_table_1() {
@@ -128,7 +164,11 @@ mod tests {
 
     #[test]
     fn a_consistent_limit_makes_the_total_force_obey_coulomb_for_any_increment() {
-        let limit = Limit::Consistent { sign: -1.0, coefficient: 0.5, cohesion: 0.1 };
+        let limit = Limit::Consistent {
+            sign: -1.0,
+            coefficient: 0.5,
+            cohesion: 0.1,
+        };
         let [_, t] = equations(Mode::Sliding, &Known { limit, ..KNOWN });
         let d_f_n = 0.7;
         let d_f_t = (t.value - t.d_n * d_f_n) / t.d_t;

@@ -16,7 +16,11 @@ pub enum Command {
     /// Back by `count` of `unit`; exact.
     Back { unit: Unit, count: u32 },
     /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
-    Force { slave: usize, mode: Mode, hold: bool },
+    Force {
+        slave: usize,
+        mode: Mode,
+        hold: bool,
+    },
     /// Give a slave node back to Table 2.
     Release { slave: usize },
     /// Change the increment size and start the present increment again.
@@ -24,7 +28,10 @@ pub enum Command {
     /// Change a scalar that may change during a run: `friction.angle`, `friction.cohesion`, `settings.*`.
     Set { path: String, value: String },
     /// Write a snapshot of the shown state. `overwrite` only when asked.
-    Snapshot { file: Option<PathBuf>, overwrite: bool },
+    Snapshot {
+        file: Option<PathBuf>,
+        overwrite: bool,
+    },
 }
 
 /// How far a motion goes.

@@ -45,20 +45,35 @@ impl Assembly {
         let mut elements = Vec::new();
         for body in &model.bodies {
             let BodyKind::Beam(beam) = &body.kind;
-            let section = Section { ea: beam.ea, ei: beam.ei, ga: beam.ga };
+            let section = Section {
+                ea: beam.ea,
+                ei: beam.ei,
+                ga: beam.ga,
+            };
             for (e, nodes) in beam.elements.iter().enumerate() {
                 let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
                 let element = Element::new(&positions, section);
-                let mut dofs: Vec<usize> =
-                    nodes.iter().flat_map(|&n| (0..3).map(move |k| model.dofs.first[n] + k)).collect();
+                let mut dofs: Vec<usize> = nodes
+                    .iter()
+                    .flat_map(|&n| (0..3).map(move |k| model.dofs.first[n] + k))
+                    .collect();
                 if let Some(first) = beam.first_shear {
                     let points = element.gauss_points();
                     dofs.extend((0..points).map(|p| first + e * points + p));
                 }
-                elements.push(Placed { element, dofs, slots: Vec::new() });
+                elements.push(Placed {
+                    element,
+                    dofs,
+                    slots: Vec::new(),
+                });
             }
         }
-        Assembly { elements, force: [0.0; MAX_DOFS], tangent: vec![0.0; MAX_DOFS * MAX_DOFS], u: [0.0; MAX_DOFS] }
+        Assembly {
+            elements,
+            force: [0.0; MAX_DOFS],
+            tangent: vec![0.0; MAX_DOFS * MAX_DOFS],
+            u: [0.0; MAX_DOFS],
+        }
     }
 
     /// Entries `(row, column)`, in equations, that the elements have; some repeat.
@@ -113,7 +128,9 @@ impl Assembly {
                         out.values[slot] += value;
                     }
                 }
-                let Some(equation) = dofs.equation[d] else { continue };
+                let Some(equation) = dofs.equation[d] else {
+                    continue;
+                };
                 for (value, &other) in row.iter().zip(&placed.dofs) {
                     if dofs.equation[other].is_none() {
                         out.coupling[equation] += value * step[other];

@@ -82,7 +82,11 @@ impl Element {
                 }
             })
             .collect();
-        Element { nodes: m, section, points }
+        Element {
+            nodes: m,
+            section,
+            points,
+        }
     }
 
     /// Number of Gauss points, m − 1.
@@ -92,7 +96,12 @@ impl Element {
 
     /// Number of degrees of freedom.
     pub fn dofs(&self) -> usize {
-        3 * self.nodes + if self.section.ga.is_none() { self.points.len() } else { 0 }
+        3 * self.nodes
+            + if self.section.ga.is_none() {
+                self.points.len()
+            } else {
+                0
+            }
     }
 
     /// Strains and forces at Gauss point p, for displacements `u` of the element.
@@ -107,12 +116,19 @@ impl Element {
             kappa += point.d[i] * u[3 * i + 2];
         }
         let (s, c) = (point.angle + theta).sin_cos();
-        let strain = Vector3::new(self.axial_strain(point, &r, theta), c * r[1] - s * r[0], kappa);
+        let strain = Vector3::new(
+            self.axial_strain(point, &r, theta),
+            c * r[1] - s * r[0],
+            kappa,
+        );
         let q = match self.section.ga {
             Some(ga) => ga * strain.y,
             None => u[3 * m + p],
         };
-        SectionState { strain, force: Vector3::new(self.section.ea * strain.x, q, self.section.ei * strain.z) }
+        SectionState {
+            strain,
+            force: Vector3::new(self.section.ea * strain.x, q, self.section.ei * strain.z),
+        }
     }
 
     /// t · r' − 1 without cancellation: small strains of a stiff beam are differences of numbers near one.
@@ -136,7 +152,17 @@ impl Element {
             let (w, stretch, shear) = (point.weight, 1.0 + state.strain.x, state.strain.y);
             let b = |i: usize| {
                 let (n, d) = (point.n[i], point.d[i]);
-                Matrix3::new(c * d, s * d, shear * n, -s * d, c * d, -stretch * n, 0.0, 0.0, d)
+                Matrix3::new(
+                    c * d,
+                    s * d,
+                    shear * n,
+                    -s * d,
+                    c * d,
+                    -stretch * n,
+                    0.0,
+                    0.0,
+                    d,
+                )
             };
             let stiffness = Matrix3::from_diagonal(&Vector3::new(
                 self.section.ea,
@@ -186,15 +212,28 @@ impl Element {
 mod tests {
     use super::*;
 
-    const SECTION: Section = Section { ea: 100.0, ei: 8.0, ga: Some(30.0) };
+    const SECTION: Section = Section {
+        ea: 100.0,
+        ei: 8.0,
+        ga: Some(30.0),
+    };
 
     fn curved(m: usize) -> Vec<[f64; 2]> {
-        (0..m).map(|i| i as f64 / (m - 1) as f64).map(|t| [2.0 * t, 0.5 * (2.0 * t).sin()]).collect()
+        (0..m)
+            .map(|i| i as f64 / (m - 1) as f64)
+            .map(|t| [2.0 * t, 0.5 * (2.0 * t).sin()])
+            .collect()
     }
 
     fn displaced(element: &Element, m: usize) -> Vec<f64> {
         (0..element.dofs())
-            .map(|k| if k < 3 * m { 0.4 * ((k * 7 % 11) as f64 / 11.0 - 0.5) } else { 3.0 - k as f64 % 5.0 })
+            .map(|k| {
+                if k < 3 * m {
+                    0.4 * ((k * 7 % 11) as f64 / 11.0 - 0.5)
+                } else {
+                    3.0 - k as f64 % 5.0
+                }
+            })
             .collect()
     }
 
@@ -223,7 +262,10 @@ mod tests {
                     let (minus, _) = evaluate(&element, &moved);
                     for i in 0..n {
                         let difference = (plus[i] - minus[i]) / (2.0 * h);
-                        assert!((difference - k[i * n + j]).abs() < 1e-8 * scale, "m {m} entry {i} {j}");
+                        assert!(
+                            (difference - k[i * n + j]).abs() < 1e-8 * scale,
+                            "m {m} entry {i} {j}"
+                        );
                         assert!((k[i * n + j] - k[j * n + i]).abs() < 1e-13 * scale);
                     }
                 }
@@ -241,11 +283,18 @@ mod tests {
                 let u: Vec<f64> = x
                     .iter()
                     .flat_map(|p| {
-                        [c * p[0] - s * p[1] - p[0] + 3.0, s * p[0] + c * p[1] - p[1] - 1.0, angle]
+                        [
+                            c * p[0] - s * p[1] - p[0] + 3.0,
+                            s * p[0] + c * p[1] - p[1] - 1.0,
+                            angle,
+                        ]
                     })
                     .collect();
                 let (f, _) = evaluate(&element, &u);
-                assert!(f.iter().all(|f| f.abs() < 1e-11), "m {m} angle {angle}: {f:?}");
+                assert!(
+                    f.iter().all(|f| f.abs() < 1e-11),
+                    "m {m} angle {angle}: {f:?}"
+                );
             }
         }
     }

@@ -25,7 +25,11 @@ pub fn node(m: usize, i: usize) -> f64 {
 ///
 /// Each N_i is a product of m − 1 linear factors; its derivatives leave out one and two of them.
 pub fn shape(m: usize, xi: f64) -> Shape {
-    let mut s = Shape { n: [0.0; MAX_NODES], d: [0.0; MAX_NODES], dd: [0.0; MAX_NODES] };
+    let mut s = Shape {
+        n: [0.0; MAX_NODES],
+        d: [0.0; MAX_NODES],
+        dd: [0.0; MAX_NODES],
+    };
     for i in 0..m {
         // Value, first and second derivative of the product so far: multiply by (ξ − ξ_j)/(ξ_i − ξ_j) in turn.
         let (mut v, mut d, mut dd) = (1.0, 0.0, 0.0);
@@ -85,12 +89,21 @@ mod tests {
                 let s = shape(m, xi);
                 for degree in 0..m as i32 {
                     let at = |x: f64| x.powi(degree);
-                    let sum = |c: &[f64; MAX_NODES]| (0..m).map(|i| c[i] * at(node(m, i))).sum::<f64>();
+                    let sum =
+                        |c: &[f64; MAX_NODES]| (0..m).map(|i| c[i] * at(node(m, i))).sum::<f64>();
                     let k = f64::from(degree);
                     assert!((sum(&s.n) - at(xi)).abs() < 1e-12);
-                    let first = if degree > 0 { k * xi.powi(degree - 1) } else { 0.0 };
+                    let first = if degree > 0 {
+                        k * xi.powi(degree - 1)
+                    } else {
+                        0.0
+                    };
                     assert!((sum(&s.d) - first).abs() < 1e-11);
-                    let second = if degree > 1 { k * (k - 1.0) * xi.powi(degree - 2) } else { 0.0 };
+                    let second = if degree > 1 {
+                        k * (k - 1.0) * xi.powi(degree - 2)
+                    } else {
+                        0.0
+                    };
                     assert!((sum(&s.dd) - second).abs() < 1e-9);
                 }
             }
@@ -101,8 +114,15 @@ mod tests {
     fn gauss_rules_integrate_polynomials_of_degree_2n_minus_1() {
         for count in 1..=MAX_NODES {
             for degree in 0..2 * count {
-                let sum: f64 = gauss(count).iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
-                let exact = if degree % 2 == 0 { 2.0 / (degree as f64 + 1.0) } else { 0.0 };
+                let sum: f64 = gauss(count)
+                    .iter()
+                    .map(|(x, w)| w * x.powi(degree as i32))
+                    .sum();
+                let exact = if degree % 2 == 0 {
+                    2.0 / (degree as f64 + 1.0)
+                } else {
+                    0.0
+                };
                 assert!((sum - exact).abs() < 1e-14, "{count} {degree} {sum}");
             }
         }

@@ -1,7 +1,179 @@
 //! What to solve: the scene file and the checked model made of it.
+//!
+//! - [`spec`]: the file as its author writes it; [`read`]: from text to that, [`locate`]: from that back to a line.
+//! - [`paths`]: every scalar of a scene by its path, to list and to set.
+//! - `compile`, with `nodes`, `geometry` and `limits`: from a [`Spec`] to a [`Model`], or to what is wrong.
+//! - [`cost`]: what a scene costs, and what it does without.
+//! - [`builtin`]: the scenes that the program carries.
 
+pub mod builtin;
+pub mod error;
+pub mod limits;
+pub mod locate;
 pub mod model;
+pub mod nodes;
+pub mod paths;
+pub mod read;
 pub mod spec;
 
+mod compile;
+mod geometry;
+
+pub use builtin::Builtin;
+pub use error::SceneError;
 pub use model::Model;
 pub use spec::{Friction, Mode, Settings, Spec};
+
+use error::Fault;
+use nodes::Names;
+use paths::Override;
+
+/// A scene that has been read and found sound.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Path of the file, or name of the built-in scene.
+    pub name: String,
+    /// The file as it stands; empty for a scene that came as a [`Spec`].
+    pub text: String,
+    /// What the author wrote, with what was set from outside.
+    pub spec: Spec,
+    /// What the solver uses.
+    pub model: Model,
+    names: Names,
+    overrides: Vec<Override>,
+}
+
+impl Scene {
+    /// Opens a scene file, or a built-in scene by its name; a file of that name wins. `overrides` are pairs of a path
+    /// and a value, as `--set` gives them.
+    ///
+    /// # Errors
+    /// If there is no such scene, or it is unsound.
+    pub fn open(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
+        if !std::path::Path::new(name).is_file()
+            && let Some(builtin) = builtin::find(name)
+        {
+            return Scene::from_text(builtin.name, builtin.text, overrides);
+        }
+        let text = read::text(name).map_err(|mut error| {
+            if !std::path::Path::new(name).exists() {
+                error.message = no_such_scene(name);
+            }
+            error
+        })?;
+        Scene::from_text(name, &text, overrides)
+    }
+
+    /// Reads a scene from a text; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// If the scene is unsound.
+    pub fn from_text(
+        name: &str,
+        text: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Scene, SceneError> {
+        let spec = read::spec(name, text)?;
+        Scene::assemble(name, text, spec, overrides, Vec::new())
+    }
+
+    /// Checks a scene that came without a text, as from a snapshot.
+    ///
+    /// # Errors
+    /// If the scene is unsound; there are no lines to name then.
+    pub fn from_spec(name: &str, spec: Spec) -> Result<Scene, SceneError> {
+        Scene::assemble(name, "", spec, &[], Vec::new())
+    }
+
+    /// This scene with one scalar set, as `--set` or the debugger's `:set` does it.
+    ///
+    /// # Errors
+    /// If there is no such path, or the value is unsound there.
+    pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
+        let change = [(path.to_owned(), value.to_owned())];
+        Scene::assemble(
+            &self.name,
+            &self.text,
+            self.spec.clone(),
+            &change,
+            self.overrides.clone(),
+        )
+    }
+
+    /// The number of a node by any of its names: `ID.3`, `ID.end`, `ID@0.5`, or the id of a single node.
+    ///
+    /// # Errors
+    /// A message that tells which names there are.
+    pub fn node(&self, name: &str) -> Result<usize, String> {
+        self.names.node(name)
+    }
+
+    /// All names by which nodes can be called, and what they stand for.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// What was set from outside, in order: path and value.
+    pub fn overrides(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.overrides
+            .iter()
+            .map(|o| (o.path.as_str(), o.value.as_str()))
+    }
+
+    fn assemble(
+        name: &str,
+        text: &str,
+        mut spec: Spec,
+        changes: &[(String, String)],
+        mut overrides: Vec<Override>,
+    ) -> Result<Scene, SceneError> {
+        for (path, value) in changes {
+            let change = paths::set(&mut spec, path, value).map_err(|message| SceneError {
+                set: Some(error::shortened(&format!("{path}={value}"))),
+                ..SceneError::whole(name, message)
+            })?;
+            overrides.retain(|earlier| earlier.at != change.at);
+            overrides.push(change);
+        }
+        let (model, names) =
+            compile::compile(&spec).map_err(|fault| placed(name, text, &overrides, fault))?;
+        Ok(Scene {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            spec,
+            model,
+            names,
+            overrides,
+        })
+    }
+}
+
+/// Finds out where a fault comes from: a setting from outside, or a line of the file.
+fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> SceneError {
+    let Fault { path, message } = fault;
+    // What was set last is the likelier culprit; a fault of a whole is due to a part of it that was set.
+    let blamed = |o: &&Override| path == o.at || (!path.0.is_empty() && path.contains(&o.at));
+    let set = overrides
+        .iter()
+        .rev()
+        .find(blamed)
+        .map(|o| format!("{}={}", o.path, o.value));
+    let at = (set.is_none() && !text.is_empty())
+        .then(|| locate::line_and_column(text, locate::locate(text, &path).start));
+    SceneError {
+        file: file.to_owned(),
+        at,
+        set,
+        path: path.to_string(),
+        message,
+    }
+}
+
+fn no_such_scene(name: &str) -> String {
+    let names = || builtin::list().iter().map(|scene| scene.name);
+    format!(
+        "there is no such file, and no built-in scene of that name{} (built-in: {})",
+        error::did_you_mean(name, names()),
+        names().collect::<Vec<_>>().join(", ")
+    )
+}

@@ -86,9 +86,30 @@ pub enum Nodes {
         per_element: usize,
     },
     /// A chain through given points; elements are the Lagrange curves through them.
-    Through { id: String, points: Vec<Point>, per_element: usize },
+    Through {
+        id: String,
+        points: Vec<Point>,
+        per_element: usize,
+    },
     /// A chain over nodes that exist already, which it shares (a rigid joint between beams). Not refined.
-    Chain { id: String, of: Vec<String>, per_element: usize },
+    Chain {
+        id: String,
+        of: Vec<String>,
+        per_element: usize,
+    },
+}
+
+impl Nodes {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        match self {
+            Nodes::Node { id, .. }
+            | Nodes::Line { id, .. }
+            | Nodes::Arc { id, .. }
+            | Nodes::Through { id, .. }
+            | Nodes::Chain { id, .. } => id,
+        }
+    }
 }
 
 /// A material or section.
@@ -109,12 +130,32 @@ pub enum Material {
     },
 }
 
+impl Material {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        let Material::Section { id, .. } = self;
+        id
+    }
+}
+
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum BodySpec {
     /// A geometrically exact planar beam along a chain of nodes.
-    Beam { id: String, along: String, material: String },
+    Beam {
+        id: String,
+        along: String,
+        material: String,
+    },
+}
+
+impl BodySpec {
+    /// Its id.
+    pub fn id(&self) -> &str {
+        let BodySpec::Beam { id, .. } = self;
+        id
+    }
 }
 
 /// A master surface: the interface elements along a chain of nodes.
@@ -193,13 +234,23 @@ pub struct SupportSpec {
     pub fix: Vec<Component>,
 }
 
-/// A degree of freedom of a node.
+/// A degree of freedom of a node. Prints as the scene file has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Component {
     X,
     Y,
     Rotation,
+}
+
+impl std::fmt::Display for Component {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Component::X => "x",
+            Component::Y => "y",
+            Component::Rotation => "rotation",
+        })
+    }
 }
 
 /// A reference load; what acts is its value times the load factor (or times `scale` of it).
@@ -265,9 +316,11 @@ pub struct Settings {
     pub majors: u32,
     /// What happens when `minors` are used up. Default: stop.
     pub at_minor_limit: AtLimit,
+    /// What happens when the minor iterations cycle. Default: stop.
+    pub at_cycle: AtCycle,
     /// What happens when `majors` are used up. Default: stop.
     pub at_major_limit: AtLimit,
-    /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-10.
+    /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
     pub tolerance: f64,
 }
 
@@ -281,8 +334,9 @@ impl Default for Settings {
             minors: 100,
             majors: 60,
             at_minor_limit: AtLimit::default(),
+            at_cycle: AtCycle::default(),
             at_major_limit: AtLimit::default(),
-            tolerance: 1e-10,
+            tolerance: 1e-11,
         }
     }
 }
@@ -340,6 +394,19 @@ pub enum AtLimit {
     Stop,
     /// Go on with what there is, as the paper's studies do; the increment is marked.
     Accept,
+}
+
+/// What happens when the minor iterations return to where they had been.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AtCycle {
+    /// The increment fails.
+    #[default]
+    Stop,
+    /// Aim the present major iteration at half the load that is left of the increment, and at half of that again,
+    /// until its minor iterations settle; the next major iteration aims at the whole again. For cycles that the
+    /// error of the linearisation makes, as where a force goes to zero. Fails where no part can be taken.
+    Damp,
 }
 
 /// A number to report after every converged increment.

@@ -6,7 +6,9 @@ use crate::scene::Mode;
 use serde::{Deserialize, Serialize};
 
 /// Where the solver is. All counts start at 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
+)]
 pub struct Position {
     pub increment: u32,
     /// How often this increment was started (with another size).
@@ -93,12 +95,19 @@ pub struct Norms {
 pub enum Outcome {
     /// Modes or T_max changed: another minor iteration.
     Minor,
+    /// The minor iterations cycle, and the settings want this major iteration damped: it starts its minor iterations
+    /// again, aiming at this load factor.
+    Damped { cycle: Cycle, aim: f64 },
     /// The minor iterations are done, but equilibrium is not reached: another major iteration. `settled` is false
     /// where the limit of minor iterations was accepted.
     Major { after: Norms, settled: bool },
     /// The increment is accepted. `unsettled` counts minor loops and majors whose limits were accepted instead of
     /// reached; `last` says that the history ends here.
-    Increment { after: Norms, unsettled: u32, last: bool },
+    Increment {
+        after: Norms,
+        unsettled: u32,
+        last: bool,
+    },
     /// The increment failed.
     Failed(Failure),
 }

@@ -2,14 +2,16 @@
 //!
 //! - [`state`]: plain data from which everything goes on; [`stepper`]: the state machine over it.
 //! - [`system`]: the linearised equations of a major iteration; [`singular`]: why they have no solution.
-//! - [`event`]: what a minor iteration did, typed.
+//! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
 pub mod event;
+pub mod intervene;
 pub mod singular;
 pub mod state;
 pub mod stepper;
 pub mod system;
 
 pub use event::{Event, Failure, Forced, NodeRecord, Norms, Outcome, Position};
+pub use intervene::Intervention;
 pub use state::{State, Status};
-pub use stepper::{Intervention, Stepper};
+pub use stepper::Stepper;

@@ -25,7 +25,9 @@ pub fn diagnose<'a>(
     frame.supports(&mut conditions);
     frame.joints(&mut conditions);
     for (s, node) in nodes.iter().enumerate() {
-        let (Some(footing), Some(spot)) = (footing(s), node.spot) else { continue };
+        let (Some(footing), Some(spot)) = (footing(s), node.spot) else {
+            continue;
+        };
         let master = &model.surfaces[spot.surface].elements[spot.element];
         let directions = [footing.normal, tangent(footing.normal)];
         let active = match node.mode {
@@ -42,8 +44,15 @@ pub fn diagnose<'a>(
             conditions.push(row);
         }
     }
-    let motions = null_space(conditions, frame.columns()).iter().flat_map(|v| frame.name(v)).collect::<Vec<_>>();
-    if motions.is_empty() { Singular::Unexplained } else { Singular::Rigid { motions } }
+    let motions = null_space(conditions, frame.columns())
+        .iter()
+        .flat_map(|v| frame.name(v))
+        .collect::<Vec<_>>();
+    if motions.is_empty() {
+        Singular::Unexplained
+    } else {
+        Singular::Rigid { motions }
+    }
 }
 
 /// Rigid motions of all bodies: columns x, y and turn (times the scene's length) of each.
@@ -63,12 +72,17 @@ impl Frame<'_> {
 
     fn center(&self, body: usize) -> [f64; 2] {
         let nodes = &self.model.bodies[body].nodes;
-        let sum = nodes.iter().fold([0.0; 2], |s, &n| [s[0] + self.positions[n][0], s[1] + self.positions[n][1]]);
+        let sum = nodes.iter().fold([0.0; 2], |s, &n| {
+            [s[0] + self.positions[n][0], s[1] + self.positions[n][1]]
+        });
         sum.map(|s| s / nodes.len() as f64)
     }
 
     fn body_of(&self, node: usize) -> Option<usize> {
-        self.model.bodies.iter().position(|b| b.nodes.contains(&node))
+        self.model
+            .bodies
+            .iter()
+            .position(|b| b.nodes.contains(&node))
     }
 
     /// Adds weight times the motion of a node of a body in a direction.
@@ -77,7 +91,8 @@ impl Frame<'_> {
         let arm = [x[0] - center[0], x[1] - center[1]];
         row[3 * body] += weight * direction[0];
         row[3 * body + 1] += weight * direction[1];
-        row[3 * body + 2] += weight * (direction[1] * arm[0] - direction[0] * arm[1]) / self.model.length;
+        row[3 * body + 2] +=
+            weight * (direction[1] * arm[0] - direction[0] * arm[1]) / self.model.length;
     }
 
     fn add(&self, row: &mut [f64], node: usize, direction: [f64; 2], weight: f64) {
@@ -87,7 +102,14 @@ impl Frame<'_> {
     }
 
     /// A component of a node of a body: a displacement, or the turn.
-    fn add_component(&self, row: &mut [f64], body: usize, node: usize, component: Component, weight: f64) {
+    fn add_component(
+        &self,
+        row: &mut [f64],
+        body: usize,
+        node: usize,
+        component: Component,
+        weight: f64,
+    ) {
         match component {
             Component::X => self.add_as(row, body, node, [1.0, 0.0], weight),
             Component::Y => self.add_as(row, body, node, [0.0, 1.0], weight),
@@ -99,7 +121,9 @@ impl Frame<'_> {
         for (b, body) in self.model.bodies.iter().enumerate() {
             for &n in &body.nodes {
                 for component in [Component::X, Component::Y, Component::Rotation] {
-                    let Some(dof) = self.model.dofs.dof(n, component) else { continue };
+                    let Some(dof) = self.model.dofs.dof(n, component) else {
+                        continue;
+                    };
                     if self.model.dofs.equation[dof].is_none() {
                         let mut row = self.row();
                         self.add_component(&mut row, b, n, component, 1.0);
@@ -113,7 +137,9 @@ impl Frame<'_> {
     fn joints(&self, conditions: &mut Vec<Vec<f64>>) {
         for (b, body) in self.model.bodies.iter().enumerate() {
             for &n in &body.nodes {
-                let Some(first) = self.body_of(n).filter(|&first| first != b) else { continue };
+                let Some(first) = self.body_of(n).filter(|&first| first != b) else {
+                    continue;
+                };
                 for component in [Component::X, Component::Y, Component::Rotation] {
                     let mut row = self.row();
                     self.add_component(&mut row, first, n, component, 1.0);
@@ -139,7 +165,10 @@ impl Frame<'_> {
                     let length = x.hypot(y);
                     Motion::Translation([x / length, y / length])
                 };
-                RigidMotion { body: self.model.bodies[b].name.clone(), motion }
+                RigidMotion {
+                    body: self.model.bodies[b].name.clone(),
+                    motion,
+                }
             })
             .collect()
     }
@@ -153,7 +182,9 @@ fn null_space(mut conditions: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     }
     let matrix = DMatrix::from_fn(conditions.len(), columns, |i, j| conditions[i][j]);
     let svd = matrix.svd(false, true);
-    let Some(v_t) = svd.v_t else { return Vec::new() };
+    let Some(v_t) = svd.v_t else {
+        return Vec::new();
+    };
     let mut basis: Vec<Vec<f64>> = (0..columns)
         .filter(|&k| svd.singular_values[k] < ZERO)
         .map(|k| v_t.row(k).iter().copied().collect())
@@ -166,7 +197,8 @@ fn null_space(mut conditions: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
 fn reduce(basis: &mut [Vec<f64>], columns: usize) {
     let mut done = 0;
     for col in 0..columns {
-        let Some(pivot) = (done..basis.len()).max_by(|&a, &b| basis[a][col].abs().total_cmp(&basis[b][col].abs()))
+        let Some(pivot) = (done..basis.len())
+            .max_by(|&a, &b| basis[a][col].abs().total_cmp(&basis[b][col].abs()))
         else {
             return;
         };
@@ -177,7 +209,10 @@ fn reduce(basis: &mut [Vec<f64>], columns: usize) {
         let row: Vec<f64> = basis[done].iter().map(|x| x / basis[done][col]).collect();
         for (k, other) in basis.iter_mut().enumerate() {
             let factor = if k == done { 0.0 } else { other[col] };
-            other.iter_mut().zip(&row).for_each(|(x, r)| *x -= factor * r);
+            other
+                .iter_mut()
+                .zip(&row)
+                .for_each(|(x, r)| *x -= factor * r);
         }
         basis[done] = row;
         done += 1;

@@ -26,6 +26,10 @@ pub struct State {
     pub controls: Arc<Controls>,
     /// What went into the minor iterations of the present major one so far, to recognise a cycle.
     pub trail: Arc<Trail>,
+    /// Load factor that the present major iteration aims at: `load_factor`, unless it was damped.
+    pub aim: f64,
+    /// Load factor that the last major iteration aimed at; at first the one at the start of the increment.
+    pub reached: f64,
     /// Minor iterations done in the present increment attempt.
     pub minors: u32,
     /// Loops of the present attempt that were ended by a limit and accepted.
@@ -116,8 +120,16 @@ impl Input {
     fn of(node: &NodeState) -> Self {
         Input {
             mode: node.mode,
-            t_max: if node.mode == Mode::Sliding { node.t_max } else { 0.0 },
-            ratio: if node.mode == Mode::Free { 0.0 } else { node.ratio },
+            t_max: if node.mode == Mode::Sliding {
+                node.t_max
+            } else {
+                0.0
+            },
+            ratio: if node.mode == Mode::Free {
+                0.0
+            } else {
+                node.ratio
+            },
         }
     }
 
@@ -125,7 +137,8 @@ impl Input {
     fn repeats(&self, other: &Input, force: f64, ratio: f64) -> bool {
         self.mode == other.mode
             && (self.t_max - other.t_max).abs() <= force
-            && (self.ratio - other.ratio).abs() <= ratio * (1.0 + self.ratio.abs().max(other.ratio.abs()))
+            && (self.ratio - other.ratio).abs()
+                <= ratio * (1.0 + self.ratio.abs().max(other.ratio.abs()))
     }
 }
 
@@ -145,11 +158,28 @@ impl Trail {
         self.entries.extend(nodes.iter().map(Input::of));
     }
 
+    /// Number of iterations remembered.
+    pub fn len(&self, nodes: usize) -> usize {
+        self.entries.len() / nodes.max(1)
+    }
+
+    /// What the first of the iterations started from.
+    pub fn first(&self, nodes: usize) -> &[Input] {
+        &self.entries[..nodes.min(self.entries.len())]
+    }
+
     /// The iterations since an earlier one that started from the same as the next will; none if there is none.
-    pub fn round(&self, nodes: &[NodeState], force: f64, ratio: f64) -> Option<std::slice::ChunksExact<'_, Input>> {
+    pub fn round(
+        &self,
+        nodes: &[NodeState],
+        force: f64,
+        ratio: f64,
+    ) -> Option<std::slice::ChunksExact<'_, Input>> {
         let width = nodes.len().max(1);
         let same = |then: &[Input]| {
-            then.iter().zip(nodes).all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
+            then.iter()
+                .zip(nodes)
+                .all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
         };
         let found = self.entries.chunks_exact(width).rposition(same)?;
         Some(self.entries[found * width..].chunks_exact(width))
@@ -160,22 +190,39 @@ impl State {
     /// The scene before its first increment.
     pub fn new(model: &Model) -> Self {
         let u = Arc::new(vec![0.0; model.dofs.len()]);
-        let nodes: Vec<NodeState> = model.slaves.iter().map(|s| NodeState::new(s.start)).collect();
+        let nodes: Vec<NodeState> = model
+            .slaves
+            .iter()
+            .map(|s| NodeState::new(s.start))
+            .collect();
         let load_factor = model.path[0];
         let controls = Controls {
             increment: model.increment,
             friction: model.slaves.iter().map(|s| s.friction).collect(),
             settings: model.settings,
         };
-        let start = IncrementStart { load_factor, leg: 0, u: u.clone(), nodes: nodes.clone() };
+        let start = IncrementStart {
+            load_factor,
+            leg: 0,
+            u: u.clone(),
+            nodes: nodes.clone(),
+        };
+        let aim = next_load_factor(&model.path, &start, controls.increment);
         State {
-            next: Position { increment: 1, attempt: 1, major: 1, minor: 1 },
-            load_factor: next_load_factor(&model.path, &start, controls.increment),
+            next: Position {
+                increment: 1,
+                attempt: 1,
+                major: 1,
+                minor: 1,
+            },
+            load_factor: aim,
             u,
             nodes,
             start: Arc::new(start),
             controls: Arc::new(controls),
             trail: Arc::default(),
+            aim,
+            reached: load_factor,
             minors: 0,
             unsettled: 0,
             correction: 0.0,
@@ -223,5 +270,9 @@ fn tidy(load_factor: f64, path: &[f64]) -> f64 {
     let size = path.iter().fold(load_factor.abs(), |m, p| m.max(p.abs()));
     let unit = 10f64.powi(13 - size.log10().ceil() as i32);
     let rounded = (load_factor * unit).round() / unit;
-    if rounded.is_finite() { rounded } else { load_factor }
+    if rounded.is_finite() {
+        rounded
+    } else {
+        load_factor
+    }
 }

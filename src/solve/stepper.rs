@@ -11,12 +11,15 @@
 use crate::contact::decision::{Numbers, Rule, Ties, decide};
 use crate::contact::projection::project;
 use crate::contact::table1::{direction, t_max};
-use crate::scene::spec::{AtLimit, Axis, FrictionLimit, ResidualMethod, SlipCount};
-use crate::scene::{Mode, Model, spec};
 use crate::scene::model::Watched;
-use crate::solve::event::{Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular};
+use crate::scene::spec::{AtCycle, AtLimit, Axis, FrictionLimit, ResidualMethod, SlipCount};
+use crate::scene::{Mode, Model, spec};
+use crate::solve::event::{
+    Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular,
+};
+use crate::solve::intervene::Intervention;
 use crate::solve::singular;
-use crate::solve::state::{IncrementStart, NodeState, State, Status, next_load_factor};
+use crate::solve::state::{IncrementStart, NodeState, State, Status};
 use crate::solve::system::{Solved, System};
 use std::sync::Arc;
 
@@ -24,6 +27,8 @@ use std::sync::Arc;
 const DIVERGED: f64 = 1e4;
 /// Two states of a minor loop whose numbers differ by less than this, relatively, are the same.
 const SAME: f64 = 1e-12;
+/// A major iteration is not damped below this part of its load.
+const SMALLEST_PART: f64 = 1e-6;
 /// Inequalities closer than this times the tolerance, relatively, tie.
 const TIE: f64 = 1.0;
 
@@ -35,21 +40,6 @@ pub struct Stepper {
     /// Whether `system` is linearised about `state`.
     linearised: bool,
     event: Event,
-}
-
-/// What the user does to a run. Serialised into snapshots and replayed.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Intervention {
-    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
-    Force { slave: usize, mode: Mode, hold: bool },
-    /// Give a slave node back to Table 2.
-    Release { slave: usize },
-    /// Change the increment size and start the present increment again.
-    Increment(f64),
-    /// Replace the friction of every slave node.
-    Friction(spec::Friction),
-    /// Replace the settings.
-    Settings(spec::Settings),
 }
 
 impl Stepper {
@@ -70,7 +60,10 @@ impl Stepper {
             model,
         };
         stepper.find_spots();
-        let start = IncrementStart { nodes: stepper.state.nodes.clone(), ..(*stepper.state.start).clone() };
+        let start = IncrementStart {
+            nodes: stepper.state.nodes.clone(),
+            ..(*stepper.state.start).clone()
+        };
         stepper.state.start = Arc::new(start);
         stepper
     }
@@ -151,9 +144,7 @@ impl Stepper {
             return Outcome::Failed(failure);
         }
         self.state.minors += 1;
-        if self.state.trail.is_empty() {
-            Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
-        }
+        Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
         let settled = self.judge();
         if settled {
             return self.end_major(true);
@@ -162,7 +153,12 @@ impl Stepper {
     }
 
     fn diagnose(&self) -> Singular {
-        singular::diagnose(&self.model, &self.system.positions, &self.state.nodes, |s| self.system.footing(s))
+        singular::diagnose(
+            &self.model,
+            &self.system.positions,
+            &self.state.nodes,
+            |s| self.system.footing(s),
+        )
     }
 
     /// A touching node with a gap that no unknown can close.
@@ -195,8 +191,18 @@ impl Stepper {
             let record = self.record(slave, &ties);
             let node = &mut self.state.nodes[slave];
             let motion = self.system.relative_motion(&self.model, slave, &before);
-            node.travel = if motion[0].abs() > f64::MIN_POSITIVE { motion[1] / motion[0] } else { 0.0 };
-            node.sign = direction(record.f_t, ties.force, sense(&before, &record, motion), ties.length, before.sign);
+            node.travel = if motion[0].abs() > f64::MIN_POSITIVE {
+                motion[1] / motion[0]
+            } else {
+                0.0
+            };
+            node.sign = direction(
+                record.f_t,
+                ties.force,
+                sense(&before, &record, motion),
+                ties.length,
+                before.sign,
+            );
             node.t_max = t_max(&self.state.controls.friction[slave], record.f_n, node.sign);
             node.mode = record.decision.next;
             if let Forced::Once(_) = node.forced {
@@ -206,7 +212,10 @@ impl Stepper {
             let lag = before.mode == Mode::Sliding
                 && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
             settled &= !record.decision.changes() && !lag;
-            self.event.nodes.push(NodeRecord { t_max: node.t_max, ..record });
+            self.event.nodes.push(NodeRecord {
+                t_max: node.t_max,
+                ..record
+            });
         }
         settled
     }
@@ -220,7 +229,12 @@ impl Stepper {
         let motion = self.system.relative_motion(&self.model, slave, node);
         let footing = self.system.footing(slave);
         let start_gap = footing.map_or(f64::INFINITY, |f| f.gap);
-        let here = motion[1] - if node.ratio == 0.0 { 0.0 } else { start_gap * node.ratio };
+        let here = motion[1]
+            - if node.ratio == 0.0 {
+                0.0
+            } else {
+                start_gap * node.ratio
+            };
         let slip = match (node.mode, settings.slip) {
             (Mode::Free, _) => 0.0,
             (_, SlipCount::Increment) => node.slip + here,
@@ -272,44 +286,93 @@ impl Stepper {
         let settings = self.state.controls.settings;
         let accept = settings.at_minor_limit == AtLimit::Accept;
         let minor = self.state.next.minor;
-        let at_limit = minor % settings.minors == 0;
+        let at_limit = self.state.trail.len(self.state.nodes.len()) as u32 % settings.minors == 0;
         if at_limit && accept {
             return self.end_major(false);
         }
         self.state.next.minor += 1;
         if !accept && let Some(cycle) = self.find_cycle(minor) {
-            self.forget_trail();
+            if settings.at_cycle == AtCycle::Damp && self.damp() {
+                return Outcome::Damped {
+                    cycle,
+                    aim: self.state.aim,
+                };
+            }
+            self.state.forget_trail();
             return Outcome::Failed(Failure::Cycle(cycle));
         }
         if at_limit {
             let changing = self.changing();
-            return Outcome::Failed(Failure::MinorLimit { limit: settings.minors, changing });
+            return Outcome::Failed(Failure::MinorLimit {
+                limit: settings.minors,
+                changing,
+            });
         }
         Outcome::Minor
+    }
+
+    /// Starts the minor iterations of this major one again, with half the load; false if too little is left of it.
+    fn damp(&mut self) -> bool {
+        let left = self.state.aim - self.state.reached;
+        if left.abs()
+            < SMALLEST_PART * (self.state.load_factor - self.state.start.load_factor).abs()
+        {
+            return false;
+        }
+        self.state.aim = self.state.reached + left / 2.0;
+        self.linearised = false;
+        let first = self.state.trail.first(self.state.nodes.len());
+        for (node, input) in self.state.nodes.iter_mut().zip(first) {
+            (node.mode, node.ratio) = (input.mode, input.ratio);
+            if input.mode == Mode::Sliding {
+                (node.t_max, node.sign) = (input.t_max, input.t_max.signum());
+            }
+        }
+        self.state.forget_trail();
+        true
     }
 
     /// Slave nodes whose mode or T_max still changed in the last minor iteration.
     fn changing(&self) -> Vec<usize> {
         let force = self.ties().force;
         let moves = |r: &NodeRecord| r.decision.changes() || (r.t_max - r.t_max_used).abs() > force;
-        self.event.nodes.iter().enumerate().filter(|(_, r)| moves(r)).map(|(s, _)| s).collect()
+        self.event
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| moves(r))
+            .map(|(s, _)| s)
+            .collect()
     }
 
-    /// Whether the next minor iteration starts from where an earlier one of this major did; remembers it if not.
-    fn find_cycle(&mut self, minor: u32) -> Option<Cycle> {
+    /// Whether the next minor iteration starts from where an earlier one of this major did.
+    fn find_cycle(&self, minor: u32) -> Option<Cycle> {
         let force = SAME * self.system.norms().scale;
         if let Some(round) = self.state.trail.round(&self.state.nodes, force, SAME) {
             let period = round.len() as u32;
-            let pattern = |s: usize| round.clone().map(|inputs| inputs[s].mode).collect::<Vec<_>>();
+            let pattern = |s: usize| {
+                round
+                    .clone()
+                    .map(|inputs| inputs[s].mode)
+                    .collect::<Vec<_>>()
+            };
             let takes_part = |s: &usize| {
                 let mut inputs = round.clone().map(|inputs| inputs[*s]);
-                inputs.next().is_some_and(|first| inputs.any(|other| other != first))
+                inputs
+                    .next()
+                    .is_some_and(|first| inputs.any(|other| other != first))
             };
-            let members = (0..self.state.nodes.len()).filter(takes_part).map(|s| (s, pattern(s))).collect();
+            let members = (0..self.state.nodes.len())
+                .filter(takes_part)
+                .map(|s| (s, pattern(s)))
+                .collect();
             // The last round starts with what iteration `minor + 1 - period` started from.
-            return Some(Cycle { start: minor + 1 - period, period, members });
+            return Some(Cycle {
+                start: minor + 1 - period,
+                period,
+                members,
+            });
         }
-        Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
         None
     }
 
@@ -324,7 +387,9 @@ impl Stepper {
         };
         let size = self.state.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
-        let balanced = after.relative <= after.limit && after.interface <= after.limit.max(settings.tolerance);
+        let balanced = self.state.reached == self.state.load_factor
+            && after.relative <= after.limit
+            && after.interface <= after.limit.max(settings.tolerance);
         let at_limit = self.state.next.major % settings.majors == 0;
         if settled && balanced {
             return self.accept(after);
@@ -336,21 +401,21 @@ impl Stepper {
         self.state.next.major += 1;
         self.state.next.minor = 1;
         if !bounded {
-            return Outcome::Failed(Failure::Diverged { relative: after.relative });
+            return Outcome::Failed(Failure::Diverged {
+                relative: after.relative,
+            });
         }
         if at_limit {
-            return Outcome::Failed(Failure::MajorLimit { limit: settings.majors, relative: after.relative });
+            return Outcome::Failed(Failure::MajorLimit {
+                limit: settings.majors,
+                relative: after.relative,
+            });
         }
         Outcome::Major { after, settled }
     }
 
-    fn forget_trail(&mut self) {
-        if !self.state.trail.is_empty() {
-            Arc::make_mut(&mut self.state.trail).clear();
-        }
-    }
-
     fn update(&mut self) {
+        (self.state.reached, self.state.aim) = (self.state.aim, self.state.load_factor);
         let mut largest = 0.0_f64;
         let u = Arc::make_mut(&mut self.state.u);
         for n in 0..self.model.nodes.len() {
@@ -369,7 +434,13 @@ impl Stepper {
                 0.0
             } else {
                 let motion = self.system.relative_motion(&self.model, s, node);
-                let touched = self.system.footing(s).map_or(0.0, |f| if node.ratio == 0.0 { 0.0 } else { f.gap * node.ratio });
+                let touched = self.system.footing(s).map_or(0.0, |f| {
+                    if node.ratio == 0.0 {
+                        0.0
+                    } else {
+                        f.gap * node.ratio
+                    }
+                });
                 node.slip + motion[1] - touched
             };
             node.ratio = 0.0;
@@ -381,7 +452,7 @@ impl Stepper {
         if self.state.controls.settings.residual == ResidualMethod::Stress {
             self.take_forces_from_stresses();
         }
-        self.forget_trail();
+        self.state.forget_trail();
     }
 
     /// Projects every slave node anew. Forces keep their components in the frame that turns with the surface.
@@ -390,11 +461,22 @@ impl Stepper {
         let positions = &self.system.positions;
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
             let at = positions[slave.node];
-            node.spot = project(at, &self.model.surfaces, &slave.surfaces, positions, node.spot);
+            node.spot = project(
+                at,
+                &self.model.surfaces,
+                &slave.surfaces,
+                positions,
+                node.spot,
+            );
             match node.spot {
                 Some(spot) => {
-                    node.normal =
-                        crate::contact::projection::footing(&self.model.surfaces, spot, positions, at).normal;
+                    node.normal = crate::contact::projection::footing(
+                        &self.model.surfaces,
+                        spot,
+                        positions,
+                        at,
+                    )
+                    .normal;
                 }
                 None => {
                     node.mode = Mode::Free;
@@ -416,11 +498,18 @@ impl Stepper {
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
             let first = self.model.dofs.first[slave.node];
             let held = (0..2).any(|k| self.model.dofs.equation[first + k].is_none());
-            let master = self.model.surfaces.iter().any(|s| !s.rigid && s.elements.iter().flatten().any(|&n| n == slave.node));
+            let master = self
+                .model
+                .surfaces
+                .iter()
+                .any(|s| !s.rigid && s.elements.iter().flatten().any(|&n| n == slave.node));
             if node.mode == Mode::Free || held || master {
                 continue;
             }
-            let force = [self.system.nodal_force(first), self.system.nodal_force(first + 1)];
+            let force = [
+                self.system.nodal_force(first),
+                self.system.nodal_force(first + 1),
+            ];
             let [c, s] = node.normal;
             node.f_n = c * force[0] + s * force[1];
             node.f_t = -s * force[0] + c * force[1];
@@ -441,7 +530,8 @@ impl Stepper {
             node.slip = 0.0;
         }
         let mut leg = self.state.start.leg;
-        while leg + 1 < self.model.path.len() && self.state.load_factor == self.model.path[leg + 1] {
+        while leg + 1 < self.model.path.len() && self.state.load_factor == self.model.path[leg + 1]
+        {
             leg += 1;
         }
         let start = Arc::make_mut(&mut self.state.start);
@@ -455,91 +545,23 @@ impl Stepper {
         } else {
             let p = &mut self.state.next;
             (p.increment, p.attempt) = (p.increment + 1, 1);
-            self.begin();
+            self.state.begin(&self.model);
+            self.linearised = false;
         }
-        Outcome::Increment { after, unsettled, last }
+        Outcome::Increment {
+            after,
+            unsettled,
+            last,
+        }
     }
 
-    /// Sets out on the increment that follows `start`.
-    fn begin(&mut self) {
-        let state = &mut self.state;
-        (state.next.major, state.next.minor) = (1, 1);
-        (state.minors, state.unsettled, state.correction) = (0, 0, 0.0);
-        state.load_factor = next_load_factor(&self.model.path, &state.start, state.controls.increment);
-        self.linearised = false;
-    }
-
-    /// Applies what the user wants changed. The position stays, except that a new increment size starts the
-    /// present increment again.
+    /// Applies what the user wants changed.
     ///
     /// # Errors
-    /// A message for values that make no sense.
+    /// Those of [`State::intervene`].
     pub fn intervene(&mut self, intervention: &Intervention) -> Result<(), String> {
-        if self.state.status == Status::Finished {
-            return Err("the history is done: step back first".into());
-        }
-        match intervention {
-            Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,
-            Intervention::Release { slave } => self.node(*slave)?.forced = Forced::No,
-            Intervention::Increment(increment) => self.retry(*increment)?,
-            Intervention::Friction(friction) => {
-                if !(0.0..90.0).contains(&friction.angle) || friction.cohesion.is_nan() || friction.cohesion < 0.0 {
-                    return Err("a friction angle lies in 0 <= angle < 90 degrees, a cohesion is not negative".into());
-                }
-                Arc::make_mut(&mut self.state.controls).friction.fill(*friction);
-                for node in &mut self.state.nodes {
-                    node.t_max = t_max(friction, node.f_n, node.sign);
-                }
-            }
-            Intervention::Settings(settings) => {
-                if settings.minors == 0 || settings.majors == 0 {
-                    return Err("limits of iterations are at least 1".into());
-                }
-                Arc::make_mut(&mut self.state.controls).settings = *settings;
-                self.linearised = false;
-            }
-        }
-        self.forget_trail();
-        Ok(())
-    }
-
-    fn node(&mut self, slave: usize) -> Result<&mut NodeState, String> {
-        let count = self.state.nodes.len();
-        self.state.nodes.get_mut(slave).ok_or_else(|| format!("there are {count} slave nodes, and none of number {slave}"))
-    }
-
-    fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), String> {
-        let node = self.node(slave)?;
-        if node.spot.is_none() && mode != Mode::Free {
-            return Err("the node is past the end of its surface: there is nothing to touch".into());
-        }
-        let before = node.mode;
-        node.mode = mode;
-        node.forced = if hold { Forced::Held(mode) } else { Forced::Once(mode) };
-        if before == Mode::Free && mode != Mode::Free {
-            node.ratio = node.travel;
-        }
-        Ok(())
-    }
-
-    fn retry(&mut self, increment: f64) -> Result<(), String> {
-        if !(increment.is_finite() && increment > 0.0) {
-            return Err(format!("an increment is a positive number, not {increment}"));
-        }
-        let state = &mut self.state;
-        Arc::make_mut(&mut state.controls).increment = increment;
-        let held: Vec<Forced> = state.nodes.iter().map(|n| n.forced).collect();
-        state.u = state.start.u.clone();
-        state.nodes.clone_from(&state.start.nodes);
-        for (node, forced) in state.nodes.iter_mut().zip(held) {
-            if let Forced::Held(mode) = forced {
-                (node.forced, node.mode) = (forced, mode);
-            }
-        }
-        state.next.attempt += 1;
-        state.status = Status::Running;
-        self.begin();
-        Ok(())
+        self.linearised = false;
+        self.state.intervene(&self.model, intervention)
     }
 
     /// Values of the scene's monitors at the start of the present major iteration (after an accepted increment: at
@@ -553,7 +575,9 @@ impl Stepper {
                     let k = if *axis == Axis::X { 0 } else { 1 };
                     slaves.iter().map(|&s| self.state.nodes[s].force()[k]).sum()
                 }
-                Watched::Reaction { dof } => self.system.nodal_force(*dof) - self.system.interaction(*dof),
+                Watched::Reaction { dof } => {
+                    self.system.nodal_force(*dof) - self.system.interaction(*dof)
+                }
             });
         }
     }
@@ -561,7 +585,11 @@ impl Stepper {
 
 /// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free.
 fn sense(before: &NodeState, record: &NodeRecord, motion: [f64; 2]) -> f64 {
-    if before.mode == Mode::Free { motion[1] } else { record.slip }
+    if before.mode == Mode::Free {
+        motion[1]
+    } else {
+        record.slip
+    }
 }
 
 /// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens.

@@ -139,7 +139,10 @@ impl System {
     pub fn place(&mut self, model: &Model, u: &[f64]) {
         for (n, position) in self.positions.iter_mut().enumerate() {
             let first = model.dofs.first[n];
-            *position = [model.nodes[n].at[0] + u[first], model.nodes[n].at[1] + u[first + 1]];
+            *position = [
+                model.nodes[n].at[0] + u[first],
+                model.nodes[n].at[1] + u[first + 1],
+            ];
         }
     }
 
@@ -149,19 +152,28 @@ impl System {
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
         self.place(model, &state.u);
-        for (interface, (node, slave)) in self.interfaces.iter_mut().zip(state.nodes.iter().zip(&model.slaves)) {
-            interface.footing = node
-                .spot
-                .map(|spot| footing(&model.surfaces, spot, &self.positions, self.positions[slave.node]));
+        for (interface, (node, slave)) in self
+            .interfaces
+            .iter_mut()
+            .zip(state.nodes.iter().zip(&model.slaves))
+        {
+            interface.footing = node.spot.map(|spot| {
+                footing(
+                    &model.surfaces,
+                    spot,
+                    &self.positions,
+                    self.positions[slave.node],
+                )
+            });
         }
         self.bind(model, state)?;
         self.external.fill(0.0);
         for load in &model.loads {
-            self.external[load.dof] += load.value * load.scale.at(state.load_factor);
+            self.external[load.dof] += load.value * load.scale.at(state.aim);
         }
         self.step.fill(0.0);
         for p in &model.prescribed {
-            self.step[p.dof] = p.value * p.scale.at(state.load_factor) - state.u[p.dof];
+            self.step[p.dof] = p.value * p.scale.at(state.aim) - state.u[p.dof];
         }
         let out = Assembled {
             force: &mut self.force,
@@ -169,7 +181,8 @@ impl System {
             values: &mut self.stiffness,
             coupling: &mut self.coupling,
         };
-        self.assembly.assemble(&model.dofs, &state.u, &self.step, out);
+        self.assembly
+            .assemble(&model.dofs, &state.u, &self.step, out);
         self.measure_interfaces(model);
         self.balance(model, state);
         Ok(())
@@ -178,18 +191,30 @@ impl System {
     /// Renews the pattern where a slave node has found another element with unknowns; rigid ones have no entries.
     fn bind(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
         let changed = self.factors.is_none()
-            || state.nodes.iter().zip(&self.pairing).any(|(node, pair)| pairing(model, node) != *pair);
+            || state
+                .nodes
+                .iter()
+                .zip(&self.pairing)
+                .any(|(node, pair)| pairing(model, node) != *pair);
         if changed {
             self.pairing.clear();
-            self.pairing.extend(state.nodes.iter().map(|node| pairing(model, node)));
+            self.pairing
+                .extend(state.nodes.iter().map(|node| pairing(model, node)));
         }
-        for ((interface, node), slave) in self.interfaces.iter_mut().zip(&state.nodes).zip(&model.slaves) {
+        for ((interface, node), slave) in self
+            .interfaces
+            .iter_mut()
+            .zip(&state.nodes)
+            .zip(&model.slaves)
+        {
             interface.link(model, node, slave.node);
         }
         if changed {
             self.analyse(model)?;
         }
-        let Some(factors) = &self.factors else { return Ok(()) };
+        let Some(factors) = &self.factors else {
+            return Ok(());
+        };
         let pattern = factors.pattern();
         for (s, interface) in self.interfaces.iter_mut().enumerate() {
             interface.find_slots(model, pattern, model.dofs.equations + 2 * s);
@@ -204,7 +229,11 @@ impl System {
             let row = equations + 2 * s;
             for k in 0..2 {
                 entries.extend([(row + k, row), (row + k, row + 1)]);
-                for equation in interface.links.iter().filter_map(|l| model.dofs.equation[l.dof]) {
+                for equation in interface
+                    .links
+                    .iter()
+                    .filter_map(|l| model.dofs.equation[l.dof])
+                {
                     entries.extend([(row + k, equation), (equation, row + k)]);
                 }
             }
@@ -226,7 +255,9 @@ impl System {
         for interface in &mut self.interfaces {
             interface.prescribed = [0.0; 2];
             interface.moves = [false; 2];
-            let Some(frame) = interface.footing.map(|f| [f.normal, tangent(f.normal)]) else { continue };
+            let Some(frame) = interface.footing.map(|f| [f.normal, tangent(f.normal)]) else {
+                continue;
+            };
             for link in &interface.links {
                 if model.dofs.equation[link.dof].is_none() {
                     interface.prescribed[link.axis] += link.weight * self.step[link.dof];
@@ -254,7 +285,9 @@ impl System {
             match self.kind[d] {
                 Kind::Shear => shear = shear.max(self.force[d].abs() / model.length),
                 Kind::Force { lever } => {
-                    scale = scale.max(self.size[d] / lever).max(self.external[d].abs() / lever);
+                    scale = scale
+                        .max(self.size[d] / lever)
+                        .max(self.external[d].abs() / lever);
                     if equation.is_some() {
                         force = force.max(balance.abs() / lever);
                     }
@@ -285,14 +318,18 @@ impl System {
 
     /// Round-off of the internal forces: the machine precision times |K| |u|.
     fn round_off(&mut self, model: &Model, u: &[f64]) -> f64 {
-        let Some(factors) = &self.factors else { return 0.0 };
+        let Some(factors) = &self.factors else {
+            return 0.0;
+        };
         self.x.fill(0.0);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
             if let Some(e) = equation {
                 self.x[*e] = u[d];
             }
         }
-        factors.pattern().multiply_abs(&self.stiffness, &self.x, &mut self.work);
+        factors
+            .pattern()
+            .multiply_abs(&self.stiffness, &self.x, &mut self.work);
         let mut worst = 0.0_f64;
         for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
             if let (Kind::Force { lever }, Some(e)) = (kind, equation) {
@@ -306,7 +343,9 @@ impl System {
     fn violation(&self, model: &Model, state: &State) -> f64 {
         let mut worst = 0.0_f64;
         for (s, node) in state.nodes.iter().enumerate() {
-            let Some(gap) = self.interfaces[s].footing.map(|f| f.gap) else { continue };
+            let Some(gap) = self.interfaces[s].footing.map(|f| f.gap) else {
+                continue;
+            };
             let length = match node.mode {
                 Mode::Free => (-gap).max(0.0),
                 _ => gap.abs(),
@@ -357,7 +396,11 @@ impl System {
     pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
         self.values.copy_from_slice(&self.stiffness);
         let unknowns = model.dofs.equations;
-        for (rhs, (residual, coupling)) in self.rhs.iter_mut().zip(self.residual.iter().zip(&self.coupling)) {
+        for (rhs, (residual, coupling)) in self
+            .rhs
+            .iter_mut()
+            .zip(self.residual.iter().zip(&self.coupling))
+        {
             *rhs = residual - coupling;
         }
         for s in 0..self.interfaces.len() {
@@ -381,14 +424,20 @@ impl System {
                 }
             }
         }
-        let Some(factors) = &mut self.factors else { return Solved::Not };
+        let Some(factors) = &mut self.factors else {
+            return Solved::Not;
+        };
         if factors.factor(&self.values).is_err() {
             return Solved::Not;
         }
         if factors.solve(&self.rhs, &mut self.x).is_err() {
             return Solved::Not;
         }
-        if factors.inverse_norm() > SUSPICIOUS_INVERSE { Solved::Suspicious } else { Solved::Well }
+        if factors.inverse_norm() > SUSPICIOUS_INVERSE {
+            Solved::Suspicious
+        } else {
+            Solved::Well
+        }
     }
 
     /// Table 1's rows of a node; a row in which nothing can move is given to the support.
@@ -397,16 +446,25 @@ impl System {
         let friction = &state.controls.friction[s];
         let limit = match state.controls.settings.t_max {
             FrictionLimit::Lagged => Limit::Lagged(node.t_max),
-            FrictionLimit::Consistent => {
-                Limit::Consistent { sign: node.sign, coefficient: friction.coefficient(), cohesion: friction.cohesion }
-            }
+            FrictionLimit::Consistent => Limit::Consistent {
+                sign: node.sign,
+                coefficient: friction.coefficient(),
+                cohesion: friction.cohesion,
+            },
         };
         let gap = interface.footing.map_or(0.0, |f| f.gap);
         let slip = match state.controls.settings.slip {
             SlipCount::Increment => node.slip,
             SlipCount::Major => 0.0,
         };
-        let known = Known { gap, ratio: node.ratio, slip, f_n: node.f_n, f_t: node.f_t, limit };
+        let known = Known {
+            gap,
+            ratio: node.ratio,
+            slip,
+            f_n: node.f_n,
+            f_t: node.f_t,
+            limit,
+        };
         let mut rows = equations(node.mode, &known);
         let forces = [node.f_n, node.f_t];
         interface.carried = [false; 2];
@@ -454,7 +512,12 @@ impl Interface {
         self.links.clear();
         let mut add = |n: usize, weight: f64| {
             let first = model.dofs.first[n];
-            self.links.extend((0..2).map(|axis| Link { dof: first + axis, axis, weight, slots: None }));
+            self.links.extend((0..2).map(|axis| Link {
+                dof: first + axis,
+                axis,
+                weight,
+                slots: None,
+            }));
         };
         add(slave, -1.0);
         if let (Some(spot), Some(footing)) = (node.spot, &self.footing) {
@@ -469,10 +532,20 @@ impl Interface {
         let slot = |i, j| pattern.slot(i, j);
         for link in &mut self.links {
             link.slots = model.dofs.equation[link.dof].and_then(|e| {
-                Some([slot(row, e)?, slot(e, row)?, slot(row + 1, e)?, slot(e, row + 1)?])
+                Some([
+                    slot(row, e)?,
+                    slot(e, row)?,
+                    slot(row + 1, e)?,
+                    slot(e, row + 1)?,
+                ])
             });
         }
-        let block = [(row, row), (row, row + 1), (row + 1, row), (row + 1, row + 1)];
+        let block = [
+            (row, row),
+            (row, row + 1),
+            (row + 1, row),
+            (row + 1, row + 1),
+        ];
         for (place, (i, j)) in self.block.iter_mut().zip(block) {
             *place = slot(i, j).unwrap_or(*place);
         }
@@ -485,7 +558,9 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// The element that a node's equations reach into, if that has unknowns.
 fn pairing(model: &Model, node: &NodeState) -> Option<(usize, usize)> {
-    node.spot.filter(|s| !model.surfaces[s.surface].rigid).map(|s| (s.surface, s.element))
+    node.spot
+        .filter(|s| !model.surfaces[s.surface].rigid)
+        .map(|s| (s.surface, s.element))
 }
 
 /// What the equation of each degree of freedom balances.
@@ -493,7 +568,11 @@ fn kinds(model: &Model) -> Vec<Kind> {
     let mut kinds = vec![Kind::Shear; model.dofs.len()];
     for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
         for k in 0..count as usize {
-            let lever = if k == Component::Rotation as usize { model.length } else { 1.0 };
+            let lever = if k == Component::Rotation as usize {
+                model.length
+            } else {
+                1.0
+            };
             kinds[first + k] = Kind::Force { lever };
         }
     }
@@ -503,7 +582,10 @@ fn kinds(model: &Model) -> Vec<Kind> {
 /// Largest force that the scene's loads reach over its history.
 fn reference_force(model: &Model, kinds: &[Kind]) -> f64 {
     model.loads.iter().fold(0.0, |most, load| {
-        let peak = model.path.iter().fold(0.0_f64, |m, &p| m.max(load.scale.at(p).abs()));
+        let peak = model
+            .path
+            .iter()
+            .fold(0.0_f64, |m, &p| m.max(load.scale.at(p).abs()));
         match kinds[load.dof] {
             Kind::Force { lever } => most.max(peak * load.value.abs() / lever),
             Kind::Shear => most,

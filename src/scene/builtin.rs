@@ -1,0 +1,46 @@
+//! The scenes that the program carries inside itself.
+
+/// A built-in scene: its name, and the text of its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Builtin {
+    /// What the command line calls it: the file's name without its ending.
+    pub name: &'static str,
+    /// The file.
+    pub text: &'static str,
+}
+
+macro_rules! scenes {
+    ($($name:literal),* $(,)?) => {
+        &[$(Builtin { name: $name, text: include_str!(concat!("../../problems/", $name, ".ron")) }),*]
+    };
+}
+
+/// In the order in which they are offered.
+const SCENES: &[Builtin] = scenes![
+    "01-pinned-beam-rough-floor",
+    "02-two-cantilevers-smooth",
+    "02-two-cantilevers-rough",
+    "osc-inclined-cantilever",
+];
+
+/// All built-in scenes, in the order in which they are offered.
+pub fn list() -> &'static [Builtin] {
+    SCENES
+}
+
+/// The built-in scene with a name, with or without the ending `.ron`.
+pub fn find(name: &str) -> Option<&'static Builtin> {
+    let name = name.strip_suffix(".ron").unwrap_or(name);
+    SCENES.iter().find(|scene| scene.name == name)
+}
+
+impl Builtin {
+    /// One line that says what the scene is: its title.
+    ///
+    /// A built-in scene that cannot be read is a bug that the tests find; its description is empty then.
+    pub fn title(&self) -> String {
+        super::read::spec(self.name, self.text)
+            .map(|spec| spec.title)
+            .unwrap_or_default()
+    }
+}

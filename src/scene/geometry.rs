@@ -1,0 +1,179 @@
+//! Whether elements are sound curves, and how far a point is from a chain of them.
+
+use super::error::{Fault, Path};
+use super::limits;
+use super::model::Node;
+
+/// Refuses chains with an element whose nodes coincide, or whose curve folds back or stands still.
+///
+/// `length` is the diagonal of the scene. An element is the Lagrange curve through its nodes at equal steps of the
+/// parameter; with unevenly placed nodes it can run back and forth, and its Jacobian changes sign.
+pub(crate) fn check_elements(
+    path: &Path,
+    nodes: &[Node],
+    elements: &[Vec<usize>],
+    length: f64,
+) -> Result<(), Fault> {
+    let slopes = slopes(elements.first().map_or(2, Vec::len));
+    for element in elements {
+        check_distances(path, nodes, element, length)?;
+        let points: Vec<[f64; 2]> = element.iter().map(|&n| nodes[n].at).collect();
+        if folds(&slopes, &points) {
+            let (first, last) = (
+                &nodes[element[0]].name,
+                &nodes[element[element.len() - 1]].name,
+            );
+            let message = format!(
+                "the element {first} to {last} is folded: its Jacobian vanishes or changes sign; \
+                 space its nodes more evenly"
+            );
+            return Err(Fault::new(path.clone(), message));
+        }
+    }
+    Ok(())
+}
+
+fn check_distances(
+    path: &Path,
+    nodes: &[Node],
+    element: &[usize],
+    length: f64,
+) -> Result<(), Fault> {
+    for (k, pair) in element.windows(2).enumerate() {
+        let (a, b) = (&nodes[pair[0]], &nodes[pair[1]]);
+        let message = if element[..=k].contains(&pair[1]) {
+            format!("node {} stands twice in one element", b.name)
+        } else if distance(a.at, b.at) <= limits::SHORTEST * length {
+            let [x, y] = b.at;
+            format!(
+                "an element has no length: its nodes {} and {} are both at ({x:?}, {y:?})",
+                a.name, b.name
+            )
+        } else {
+            continue;
+        };
+        return Err(Fault::new(path.clone(), message));
+    }
+    Ok(())
+}
+
+/// Whether the tangent of a Lagrange curve all but vanishes, or turns by more than a right angle within a small step.
+fn folds(slopes: &[Vec<f64>], points: &[[f64; 2]]) -> bool {
+    const SMALLEST: f64 = 1e-3;
+    let tangent = |slopes: &Vec<f64>| {
+        let add = |sum: [f64; 2], (s, p): (&f64, &[f64; 2])| [sum[0] + s * p[0], sum[1] + s * p[1]];
+        slopes.iter().zip(points).fold([0.0, 0.0], add)
+    };
+    let tangents: Vec<[f64; 2]> = slopes.iter().map(tangent).collect();
+    let norm = |t: &[f64; 2]| t[0].hypot(t[1]);
+    let largest = tangents.iter().map(norm).fold(0.0, f64::max);
+    let still = tangents.iter().any(|t| norm(t) <= SMALLEST * largest);
+    let turns = tangents
+        .windows(2)
+        .any(|t| t[0][0] * t[1][0] + t[0][1] * t[1][1] <= 0.0);
+    still || turns
+}
+
+/// Derivatives of the m Lagrange functions at many places, for nodes at the parameters 0, 1, 2, …
+fn slopes(m: usize) -> Vec<Vec<f64>> {
+    let steps = 8 * (m - 1);
+    let place = |k: usize| (m - 1) as f64 * k as f64 / steps as f64;
+    (0..=steps)
+        .map(|k| (0..m).map(|i| slope(m, i, place(k))).collect())
+        .collect()
+}
+
+fn slope(m: usize, i: usize, t: f64) -> f64 {
+    let others = |skip: usize| (0..m).filter(move |j| *j != i && *j != skip);
+    let factor = |j: usize| (t - j as f64) / (i as f64 - j as f64);
+    others(i)
+        .map(|skip| others(skip).map(factor).product::<f64>() / (i as f64 - skip as f64))
+        .sum()
+}
+
+/// Distance of two points.
+pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Distance of a point from the polygon through the nodes of elements, or any distance up to `enough` once one is
+/// found: the caller wants to know no more, and a scene may have many.
+pub(crate) fn distance_up_to(
+    enough: f64,
+    at: [f64; 2],
+    nodes: &[Node],
+    elements: &[Vec<usize>],
+) -> f64 {
+    let mut least = f64::INFINITY;
+    for pair in elements.iter().flat_map(|element| element.windows(2)) {
+        least = least.min(distance_to_segment(
+            at,
+            nodes[pair[0]].at,
+            nodes[pair[1]].at,
+        ));
+        if least <= enough {
+            break;
+        }
+    }
+    least
+}
+
+fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    let share = if square > 0.0 {
+        (((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    distance(p, [a[0] + share * along[0], a[1] + share * along[1]])
+}
+
+/// Diagonal of the bounding box of nodes; 0 for none.
+pub(crate) fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
+    let mut corners: Option<([f64; 2], [f64; 2])> = None;
+    for Node { at, .. } in nodes {
+        let (low, high) = corners.get_or_insert((*at, *at));
+        for k in 0..2 {
+            low[k] = low[k].min(at[k]);
+            high[k] = high[k].max(at[k]);
+        }
+    }
+    corners.map_or(0.0, |(low, high)| distance(low, high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folds(points: &[[f64; 2]]) -> bool {
+        super::folds(&slopes(points.len()), points)
+    }
+
+    #[test]
+    fn even_curves_are_sound_and_folded_ones_are_not() {
+        assert!(!folds(&[[0.0, 0.0], [1.0, 0.0]]));
+        assert!(!folds(&[[-1.0, 0.0], [0.0, 1.0], [1.0, 0.0]]));
+        assert!(!folds(&[[0.0, 0.0], [0.3, 0.0], [1.0, 0.0]]));
+        assert!(
+            folds(&[[0.0, 0.0], [0.2, 0.0], [1.0, 0.0]]),
+            "runs back before it goes"
+        );
+        assert!(
+            folds(&[[0.0, 0.0], [0.25, 0.0], [1.0, 0.0]]),
+            "stands still at its start"
+        );
+        assert!(
+            folds(&[[1.0, 0.0], [-1.0, 0.0], [1.0, 0.0]]),
+            "goes and comes back"
+        );
+    }
+
+    #[test]
+    fn distance_to_a_segment_ends_at_its_ends() {
+        let (a, b) = ([0.0, 0.0], [2.0, 0.0]);
+        assert_eq!(distance_to_segment([1.0, 3.0], a, b), 3.0);
+        assert_eq!(distance_to_segment([5.0, 4.0], a, b), 5.0);
+        assert_eq!(distance_to_segment([0.0, 1.0], a, a), 1.0);
+    }
+}

@@ -1,0 +1,85 @@
+//! How large a scene may be, and checks of single numbers.
+//!
+//! The limits keep a slip of the finger (`elements: 100000000`) from taking the machine; nothing that can be looked at
+//! on a terminal comes near them.
+
+use super::error::{Fault, Path};
+
+/// Most bytes of a scene file.
+pub const FILE_BYTES: usize = 8 << 20;
+/// Most nodes of a scene, after refinement.
+pub const NODES: usize = 200_000;
+/// Most slave nodes.
+pub const SLAVES: usize = 10_000;
+/// Most increments of a history.
+pub const INCREMENTS: f64 = 1e6;
+/// Most minor or major iterations that the settings may allow.
+pub const ITERATIONS: u32 = 1_000_000;
+/// Most characters of a name.
+pub const NAME: usize = 64;
+/// Largest coordinate, load or prescribed value.
+pub const MAGNITUDE: f64 = 1e12;
+/// Smallest and largest stiffness: their squares are still far from the ends of floating-point range.
+pub const STIFFNESS: (f64, f64) = (1e-30, 1e30);
+/// Shortest distance between two neighbours in an element, in diagonals of the scene.
+pub const SHORTEST: f64 = 1e-9;
+
+/// Refuses NaN, the infinities and sizes that no scene has.
+pub(crate) fn finite(path: &Path, value: f64, what: &str) -> Result<(), Fault> {
+    if value.abs() <= MAGNITUDE {
+        return Ok(());
+    }
+    Err(Fault::new(
+        path.clone(),
+        format!("{what} is {value:?}; it must be a finite number between -1e12 and 1e12"),
+    ))
+}
+
+/// Refuses what is no usable stiffness.
+pub(crate) fn stiffness(path: &Path, value: f64, what: &str) -> Result<(), Fault> {
+    if (STIFFNESS.0..=STIFFNESS.1).contains(&value) {
+        return Ok(());
+    }
+    Err(Fault::new(
+        path.clone(),
+        format!("{what} is {value:?}; a stiffness must be positive and finite (1e-30 to 1e30)"),
+    ))
+}
+
+/// Refuses a whole number outside of a range.
+pub(crate) fn count(
+    path: &Path,
+    value: usize,
+    range: std::ops::RangeInclusive<usize>,
+    what: &str,
+) -> Result<(), Fault> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let (least, most) = (range.start(), range.end());
+    Err(Fault::new(
+        path.clone(),
+        format!("{what} is {value}; it must be {least} to {most}"),
+    ))
+}
+
+/// Refuses names that could not be told apart in a command line, a CSV column or a message.
+pub(crate) fn id(path: &Path, id: &str) -> Result<(), Fault> {
+    let wrong = if id.is_empty() {
+        "is empty"
+    } else if id.chars().count() > NAME {
+        "is longer than 64 characters"
+    } else if !id
+        .chars()
+        .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+    {
+        "has other characters"
+    } else {
+        return Ok(());
+    };
+    let shown = super::error::quoted(id);
+    Err(Fault::new(
+        path.clone(),
+        format!("the id {shown} {wrong}; an id is made of letters, digits, - and _"),
+    ))
+}

@@ -1,0 +1,413 @@
+//! Where a value stands in a RON text.
+//!
+//! ron tells the position of what it cannot read; of a value that reads well and means nothing (a name that nothing
+//! has) nobody knows the place any more. This finds it again, by walking the text along the value's path. It relies on
+//! the text being RON that has been read; on any other text it finds something or other, and never fails.
+
+use super::error::{Path, Step};
+use std::ops::Range;
+
+/// Byte range of the value at a path, or of the innermost value around it that the text has.
+pub fn locate(text: &str, path: &Path) -> Range<usize> {
+    let mut scan = Scan::new(text);
+    scan.skip_attributes();
+    let mut here = scan.at;
+    for step in &path.0 {
+        scan.at = here;
+        match scan.enter(step) {
+            Some(inner) => here = inner,
+            None => break,
+        }
+    }
+    scan.at = here;
+    scan.skip_value();
+    here..scan.end_of_value.max(here)
+}
+
+/// Line and column of a byte, both from 1; columns count characters.
+pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
+    let mut byte = byte.min(text.len());
+    while !text.is_char_boundary(byte) {
+        byte -= 1;
+    }
+    let before = &text[..byte];
+    let line = 1 + before.matches('\n').count();
+    let start = before.rfind('\n').map_or(0, |k| k + 1);
+    (line, 1 + before[start..].chars().count())
+}
+
+/// A place in the text.
+struct Scan<'a> {
+    text: &'a str,
+    at: usize,
+    /// Where the last skipped value ended, before the blanks and comments that follow it.
+    end_of_value: usize,
+}
+
+impl<'a> Scan<'a> {
+    fn new(text: &'a str) -> Self {
+        let mut scan = Scan {
+            text,
+            at: 0,
+            end_of_value: 0,
+        };
+        scan.skip_blanks();
+        scan
+    }
+
+    fn rest(&self) -> &'a str {
+        // Every move ends at a character's border; a bug there must not become a panic.
+        self.text.get(self.at..).unwrap_or("")
+    }
+
+    fn peek(&self) -> Option<char> {
+        self.rest().chars().next()
+    }
+
+    fn bump(&mut self) {
+        self.at += self.peek().map_or(0, char::len_utf8);
+    }
+
+    /// Moves past a literal if it stands here.
+    fn eat(&mut self, literal: &str) -> bool {
+        let here = self.rest().starts_with(literal);
+        if here {
+            self.at += literal.len();
+        }
+        here
+    }
+
+    /// Moves to just behind the next occurrence of a text, or to the end.
+    fn past(&mut self, needle: &str) {
+        self.at += self
+            .rest()
+            .find(needle)
+            .map_or(self.rest().len(), |k| k + needle.len());
+    }
+
+    /// Skips white space and comments.
+    fn skip_blanks(&mut self) {
+        loop {
+            if self.peek().is_some_and(is_blank) {
+                self.bump();
+            } else if self.rest().starts_with("//") {
+                self.past("\n");
+            } else if self.eat("/*") {
+                self.skip_block_comment();
+            } else {
+                return;
+            }
+        }
+    }
+
+    fn skip_block_comment(&mut self) {
+        let mut depth = 1;
+        while depth > 0 && self.peek().is_some() {
+            if self.eat("/*") {
+                depth += 1;
+            } else if self.eat("*/") {
+                depth -= 1;
+            } else {
+                self.bump();
+            }
+        }
+    }
+
+    /// Skips headers like `#![enable(implicit_some)]`.
+    fn skip_attributes(&mut self) {
+        self.skip_blanks();
+        while self.rest().starts_with('#') {
+            self.past("]");
+            self.skip_blanks();
+        }
+    }
+
+    fn is_word_start(c: char) -> bool {
+        c == '_' || c.is_alphabetic()
+    }
+
+    /// Reads an identifier, raw ones (`r#name`) without their mark.
+    fn word(&mut self) -> Option<&'a str> {
+        if self.rest().starts_with("r#") && !self.rest()[2..].starts_with(['"', '#']) {
+            self.at += 2;
+        } else if !self.peek().is_some_and(Self::is_word_start) || self.starts_string().is_some() {
+            return None;
+        }
+        let start = self.at;
+        while self
+            .peek()
+            .is_some_and(|c| c.is_alphanumeric() || matches!(c, '_' | '.' | '+' | '-'))
+        {
+            self.bump();
+        }
+        Some(&self.text[start..self.at])
+    }
+
+    /// Whether a string starts here: length of its opening, and of hash marks if it is raw.
+    fn starts_string(&self) -> Option<(usize, Option<usize>)> {
+        let rest = self.rest();
+        let body = rest.strip_prefix('b').unwrap_or(rest);
+        let prefix = rest.len() - body.len();
+        if body.starts_with('"') {
+            return Some((prefix + 1, None));
+        }
+        let hashes = body.strip_prefix('r')?;
+        let count = hashes.len() - hashes.trim_start_matches('#').len();
+        hashes[count..]
+            .starts_with('"')
+            .then_some((prefix + 2 + count, Some(count)))
+    }
+
+    fn skip_string(&mut self, opening: usize, raw: Option<usize>) {
+        self.at += opening;
+        if let Some(hashes) = raw {
+            return self.past(&format!("\"{}", "#".repeat(hashes)));
+        }
+        while let Some(c) = self.peek() {
+            self.bump();
+            match c {
+                '\\' => self.bump(),
+                '"' => return,
+                _ => {}
+            }
+        }
+    }
+
+    /// Skips a character literal; an apostrophe that starts none is skipped alone.
+    fn skip_char(&mut self) {
+        self.bump();
+        if self.eat("\\") {
+            self.bump();
+            return self.past("'");
+        }
+        let mut ahead = self.rest().chars();
+        if let (Some(_), Some('\'')) = (ahead.next(), ahead.next()) {
+            self.bump();
+            self.bump();
+        }
+    }
+
+    /// Moves to what ends the value that starts here: a comma, a colon or a closing bracket of the value around it,
+    /// or the end of the text.
+    fn skip_value(&mut self) {
+        let mut depth = 0usize;
+        self.skip_blanks();
+        self.end_of_value = self.at;
+        while let Some(c) = self.peek() {
+            match c {
+                ',' | ':' | ')' | ']' | '}' if depth == 0 => return,
+                '(' | '[' | '{' => {
+                    depth += 1;
+                    self.bump();
+                }
+                ')' | ']' | '}' => {
+                    depth -= 1;
+                    self.bump();
+                }
+                '\'' => self.skip_char(),
+                _ => match self.starts_string() {
+                    Some((opening, raw)) => self.skip_string(opening, raw),
+                    None if self.word().is_some() => {}
+                    None => self.bump(),
+                },
+            }
+            self.end_of_value = self.at;
+            self.skip_blanks();
+        }
+    }
+
+    /// Moves past the opening bracket of the value that starts here, past its name and any `Some(`; tells which
+    /// bracket it is.
+    fn open(&mut self) -> Option<char> {
+        loop {
+            self.skip_blanks();
+            let name = self.word();
+            self.skip_blanks();
+            let bracket = self.peek().filter(|c| matches!(c, '(' | '[' | '{'))?;
+            self.bump();
+            if name != Some("Some") {
+                return Some(bracket);
+            }
+        }
+    }
+
+    /// Finds the start of an inner value of the value that starts here.
+    fn enter(&mut self, step: &Step) -> Option<usize> {
+        loop {
+            let bracket = self.open()?;
+            let first = self.at;
+            let found = match step {
+                Step::Index(index) => self.nth(*index),
+                Step::Key(key) => self.keyed(key),
+            };
+            if found.is_some() {
+                return found;
+            }
+            // A newtype, `Name((...))`: its only value stands for it.
+            self.at = first;
+            self.skip_blanks();
+            if bracket != '(' || !matches!(step, Step::Key(_)) || !self.is_newtype() {
+                return None;
+            }
+        }
+    }
+
+    /// Whether what follows an opening bracket is a single value without a key. Leaves the place as it is.
+    fn is_newtype(&mut self) -> bool {
+        let start = self.at;
+        self.skip_value();
+        let alone = self.peek() != Some(':') && self.at > start;
+        self.at = start;
+        alone
+    }
+
+    /// Start of the value number `index` of a list or tuple whose bracket is just behind.
+    fn nth(&mut self, index: usize) -> Option<usize> {
+        for _ in 0..index {
+            self.skip_value();
+            if !self.eat(",") {
+                return None;
+            }
+        }
+        self.skip_blanks();
+        let start = self.at;
+        self.peek()
+            .filter(|c| !matches!(c, ')' | ']' | '}'))
+            .map(|_| start)
+    }
+
+    /// Start of the value of a key in a struct or map whose bracket is just behind.
+    fn keyed(&mut self, key: &str) -> Option<usize> {
+        loop {
+            self.skip_blanks();
+            let start = self.at;
+            let word = self.word();
+            self.skip_blanks();
+            let found = match word {
+                Some(word) if self.peek() == Some(':') => word == key,
+                _ => {
+                    self.at = start;
+                    self.skip_value();
+                    self.text
+                        .get(start..self.end_of_value)
+                        .is_some_and(|name| name.trim_matches('"') == key)
+                }
+            };
+            if self.eat(":") {
+                self.skip_blanks();
+                if found {
+                    return Some(self.at);
+                }
+                self.skip_value();
+            }
+            if !self.eat(",") {
+                return None;
+            }
+        }
+    }
+}
+
+/// What RON takes for white space.
+fn is_blank(c: char) -> bool {
+    matches!(
+        c,
+        ' ' | '\t'
+            | '\n'
+            | '\r'
+            | '\x0B'
+            | '\x0C'
+            | '\u{85}'
+            | '\u{200E}'
+            | '\u{200F}'
+            | '\u{2028}'
+            | '\u{2029}'
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::error::at;
+    use super::*;
+    use proptest::prelude::*;
+
+    fn found<'a>(text: &'a str, path: Path) -> &'a str {
+        &text[locate(text, &path)]
+    }
+
+    #[test]
+    fn fields_and_elements() {
+        let text = "(title: \"a, b: (c\", slaves: [(nodes: [\"x\", \"y\"], on: []), ( nodes : [ \"z\" , ] )])";
+        assert_eq!(found(text, at!["title"]), "\"a, b: (c\"");
+        assert_eq!(found(text, at!["slaves", 0, "nodes", 1]), "\"y\"");
+        assert_eq!(found(text, at!["slaves", 1, "nodes", 0]), "\"z\"");
+        assert_eq!(found(text, at!["slaves", 0, "on"]), "[]");
+    }
+
+    #[test]
+    fn what_is_not_there_is_the_nearest_thing_around_it() {
+        let text = "(friction: (angle: 3), slaves: [(nodes: [])])";
+        assert_eq!(found(text, at!["friction", "cohesion"]), "(angle: 3)");
+        assert_eq!(found(text, at!["slaves", 0, "nodes", 4]), "[]");
+        assert_eq!(found(text, at!["slaves", 7]), "[(nodes: [])]");
+        assert_eq!(found(text, at!["nothing"]), text);
+    }
+
+    #[test]
+    fn comments_strings_and_characters_hide_nothing() {
+        let text = "#![enable(implicit_some)] // (a: 1)\n/* [ /* nested ) */ \" */\nScene(\n  // b: 2,\n  \
+                    a: r#\"raw \" , ) \"#, c: '\\'', d: '(', e: b\"x\\\")\", s: \"\\\\\", /* ] */ b : 5 /* x */ , )";
+        assert_eq!(found(text, at!["a"]), "r#\"raw \" , ) \"#");
+        assert_eq!(found(text, at!["c"]), "'\\''");
+        assert_eq!(found(text, at!["d"]), "'('");
+        assert_eq!(found(text, at!["e"]), "b\"x\\\")\"");
+        assert_eq!(found(text, at!["b"]), "5");
+    }
+
+    #[test]
+    fn variants_tuples_maps_and_options() {
+        let text = "(nodes: [Line(id: \"a\", from: (0, -1.5e3)), Arc((radius: 2))], m: {\"k\": 1, \"l\": {3: 4}}, \
+                    f: Some((angle: Some(7))), r#type: 8, g: None)";
+        assert_eq!(
+            found(text, at!["nodes", 0]),
+            "Line(id: \"a\", from: (0, -1.5e3))"
+        );
+        assert_eq!(found(text, at!["nodes", 0, "from", 1]), "-1.5e3");
+        assert_eq!(found(text, at!["nodes", 1, "radius"]), "2");
+        assert_eq!(found(text, at!["m", "l", "3"]), "4");
+        assert_eq!(found(text, at!["f", "angle"]), "Some(7)");
+        assert_eq!(found(text, at!["type"]), "8");
+        assert_eq!(found(text, at!["g", "angle"]), "None");
+    }
+
+    #[test]
+    fn lines_and_columns_count_from_one_in_characters() {
+        assert_eq!(line_and_column("ab\ncé d", 0), (1, 1));
+        assert_eq!(line_and_column("ab\ncé d", 3), (2, 1));
+        assert_eq!(line_and_column("ab\ncé d", 7), (2, 4));
+        assert_eq!(line_and_column("ab", 99), (1, 3));
+        assert_eq!(line_and_column("é", 1), (1, 1));
+    }
+
+    fn any_path() -> impl Strategy<Value = Path> {
+        let step = prop_oneof![
+            (0usize..4).prop_map(Step::Index),
+            "[a-c]{1,2}".prop_map(Step::Key),
+            Just(Step::Key("nodes".into())),
+        ];
+        prop::collection::vec(step, 0..5).prop_map(Path)
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_has_an_answer(text in "[\\PC\n]{0,80}", path in any_path()) {
+            let range = locate(&text, &path);
+            prop_assert!(text.get(range).is_some());
+        }
+
+        #[test]
+        fn any_near_ron_has_an_answer(text in "[](){}\"'/*,:abSomer#\\\\\n é1]{0,60}", path in any_path()) {
+            let range = locate(&text, &path);
+            prop_assert!(text.get(range).is_some());
+        }
+    }
+}

@@ -1,0 +1,542 @@
+//! Nodes and their names: chains laid out, aliases resolved.
+
+use super::error::{Fault, Path, at, did_you_mean, quoted};
+use super::limits;
+use super::model::Node;
+use super::spec::{Nodes, Point, Spec};
+use std::collections::HashMap;
+
+/// All nodes of a scene, and every name by which they can be called.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Names {
+    pub(crate) nodes: Vec<Node>,
+    entries: Vec<Entry>,
+    index: HashMap<String, usize>,
+}
+
+/// What one entry of the scene's `nodes` made.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Entry {
+    id: String,
+    /// Node numbers in order.
+    pub nodes: Vec<usize>,
+    /// Nodes per element of a chain; none for a single node.
+    pub per_element: Option<usize>,
+    /// Position in the scene's `nodes`.
+    pub at: usize,
+}
+
+impl Entry {
+    /// Node numbers of each element, in order.
+    pub fn elements(&self) -> Vec<Vec<usize>> {
+        let step = self.per_element.map_or(1, |m| m - 1);
+        let last = self.nodes.len().saturating_sub(1);
+        (0..last)
+            .step_by(step)
+            .map(|k| self.nodes[k..=k + step].to_vec())
+            .collect()
+    }
+}
+
+impl Names {
+    /// Lays out all nodes of a scene. Chains over existing nodes come last, so that they may name what stands below
+    /// them.
+    pub(crate) fn of(spec: &Spec) -> Result<Names, Fault> {
+        limits::count(&at!["refine"], spec.refine, 1..=limits::NODES, "refine")?;
+        ids(spec)?;
+        check_total(spec)?;
+        let mut names = Names::default();
+        let shares = |nodes: &Nodes| matches!(nodes, Nodes::Chain { .. });
+        let entries = spec.nodes.iter().enumerate();
+        for (at, nodes) in entries.clone().filter(|(_, nodes)| !shares(nodes)) {
+            names.generate(at, nodes, spec.refine)?;
+        }
+        for (at, nodes) in entries {
+            if let Nodes::Chain {
+                id,
+                of,
+                per_element,
+            } = nodes
+            {
+                names.share(at, id, of, *per_element)?;
+            }
+        }
+        Ok(names)
+    }
+
+    /// The number of a node by any of its names.
+    ///
+    /// # Errors
+    /// A message that tells which names there are.
+    pub fn node(&self, name: &str) -> Result<usize, String> {
+        let (entry, selector) = self.split(name)?;
+        let count = entry.nodes.len();
+        let index = match selector {
+            Selector::Whole if entry.per_element.is_none() => 0,
+            Selector::Whole | Selector::All => {
+                let id = &entry.id;
+                return Err(format!(
+                    "{name:?} is a chain of {count} nodes; name one of them, as \"{id}.start\", \"{id}.end\" or \"{id}.{}\"",
+                    count.min(2)
+                ));
+            }
+            Selector::Index(index) => index,
+        };
+        Ok(entry.nodes[index])
+    }
+
+    /// The numbers of the nodes that a name stands for: all of a chain for `ID.all`, else one.
+    ///
+    /// # Errors
+    /// As [`Names::node`].
+    pub fn nodes(&self, name: &str) -> Result<Vec<usize>, String> {
+        match self.split(name)? {
+            (entry, Selector::All) => Ok(entry.nodes.clone()),
+            _ => Ok(vec![self.node(name)?]),
+        }
+    }
+
+    /// The chain with an id.
+    pub(crate) fn chain(&self, id: &str) -> Result<&Entry, String> {
+        if let Some(&k) = self.index.get(id) {
+            let entry = &self.entries[k];
+            return match entry.per_element {
+                Some(_) => Ok(entry),
+                None => Err(format!(
+                    "{id:?} is a single node; a chain is needed (Line, Arc, Through or Chain)"
+                )),
+            };
+        }
+        let chains = || {
+            self.entries
+                .iter()
+                .filter(|e| e.per_element.is_some())
+                .map(|e| e.id.as_str())
+        };
+        Err(format!(
+            "no chain of nodes called {}{} (chains: {})",
+            quoted(id),
+            did_you_mean(id, chains()),
+            super::error::some_of(chains())
+        ))
+    }
+
+    /// The entries, single nodes and chains.
+    pub(crate) fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    fn split(&self, name: &str) -> Result<(&Entry, Selector), String> {
+        let cut = name.find(['.', '@']).unwrap_or(name.len());
+        let (id, selector) = name.split_at(cut);
+        let Some(entry) = self.index.get(id).map(|&k| &self.entries[k]) else {
+            return Err(self.unknown(name));
+        };
+        if selector.is_empty() {
+            return Ok((entry, Selector::Whole));
+        }
+        if entry.per_element.is_none() {
+            return Err(format!(
+                "{id:?} is a single node, not a chain; its only name is {id:?}"
+            ));
+        }
+        let found = match selector.strip_prefix('@') {
+            Some(fraction) => Ok(Selector::Index(at_fraction(
+                name,
+                fraction,
+                entry.nodes.len(),
+            )?)),
+            None => self.selected(name, &selector[1..], entry),
+        };
+        Ok((entry, found?))
+    }
+
+    fn selected(&self, name: &str, selector: &str, entry: &Entry) -> Result<Selector, String> {
+        let count = entry.nodes.len();
+        match selector {
+            "start" => Ok(Selector::Index(0)),
+            "end" => Ok(Selector::Index(count - 1)),
+            "all" => Ok(Selector::All),
+            _ => match selector.parse::<usize>() {
+                Ok(k) if (1..=count).contains(&k) => Ok(Selector::Index(k - 1)),
+                Ok(_) => Err(format!(
+                    "no node called {}: the chain has {count} nodes, \"{}.1\" to \"{}.{count}\"",
+                    quoted(name),
+                    entry.id,
+                    entry.id
+                )),
+                Err(_) => Err(self.unknown(name)),
+            },
+        }
+    }
+
+    fn unknown(&self, name: &str) -> String {
+        let mut known = Vec::new();
+        let mut shown = Vec::new();
+        for Entry {
+            id,
+            nodes,
+            per_element,
+            ..
+        } in &self.entries
+        {
+            known.push(id.clone());
+            if per_element.is_some() {
+                known.extend(["start", "end", "all"].map(|which| format!("{id}.{which}")));
+                shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
+            } else {
+                shown.push(id.clone());
+            }
+        }
+        let more = shown.len().saturating_sub(8);
+        shown.truncate(8);
+        let more = if more > 0 {
+            format!(" and {more} more")
+        } else {
+            String::new()
+        };
+        format!(
+            "no node called {}{} (nodes: {}{more})",
+            quoted(name),
+            did_you_mean(name, known.iter().map(String::as_str)),
+            shown.join(", ")
+        )
+    }
+
+    fn generate(&mut self, at: usize, nodes: &Nodes, refine: usize) -> Result<(), Fault> {
+        let here = at!["nodes", at];
+        let (points, per_element) = match nodes {
+            Nodes::Node { at, .. } => {
+                point(&here.then("at"), *at)?;
+                (vec![*at], None)
+            }
+            Nodes::Line {
+                from,
+                to,
+                elements,
+                per_element,
+                ..
+            } => {
+                let n = intervals(&here, *elements, *per_element, refine)?;
+                (line(&here, *from, *to, n)?, Some(*per_element))
+            }
+            Nodes::Arc {
+                center,
+                radius,
+                from,
+                to,
+                elements,
+                per_element,
+                ..
+            } => {
+                let n = intervals(&here, *elements, *per_element, refine)?;
+                (
+                    arc(&here, *center, *radius, (*from, *to), n)?,
+                    Some(*per_element),
+                )
+            }
+            Nodes::Through {
+                points,
+                per_element,
+                ..
+            } => (
+                through(&here, points, *per_element, refine)?,
+                Some(*per_element),
+            ),
+            Nodes::Chain { .. } => return Ok(()),
+        };
+        let id = nodes.id();
+        let first = self.nodes.len();
+        for (k, at) in points.iter().enumerate() {
+            let name = if per_element.is_some() {
+                format!("{id}.{}", k + 1)
+            } else {
+                id.to_owned()
+            };
+            self.nodes.push(Node {
+                name,
+                at: [at.0, at.1],
+            });
+        }
+        self.enter(at, id, (first..self.nodes.len()).collect(), per_element);
+        Ok(())
+    }
+
+    fn share(
+        &mut self,
+        at: usize,
+        id: &str,
+        of: &[String],
+        per_element: usize,
+    ) -> Result<(), Fault> {
+        let here = at!["nodes", at];
+        check_per_element(&here, per_element)?;
+        let mut shared: Vec<usize> = Vec::new();
+        for (k, name) in of.iter().enumerate() {
+            let fault = |message: String| Fault::new(here.then("of").then(k), message);
+            let found = self.nodes(name).map_err(fault)?;
+            if shared.len() + found.len() > limits::NODES {
+                return Err(fault(format!(
+                    "the chain has more than {} nodes",
+                    limits::NODES
+                )));
+            }
+            if shared.last().is_some() && shared.last() == found.first() {
+                return Err(fault(format!(
+                    "{name:?} stands twice in a row; a chain must go on to another node"
+                )));
+            }
+            shared.extend(found);
+        }
+        check_chain_count(&here.then("of"), shared.len(), per_element)?;
+        self.enter(at, id, shared, Some(per_element));
+        Ok(())
+    }
+
+    fn enter(&mut self, at: usize, id: &str, nodes: Vec<usize>, per_element: Option<usize>) {
+        self.index.insert(id.to_owned(), self.entries.len());
+        self.entries.push(Entry {
+            id: id.to_owned(),
+            nodes,
+            per_element,
+            at,
+        });
+    }
+}
+
+/// What a name picks of an entry.
+enum Selector {
+    Whole,
+    All,
+    Index(usize),
+}
+
+/// Index of the node at a fraction of a chain of `count` nodes.
+fn at_fraction(name: &str, fraction: &str, count: usize) -> Result<usize, String> {
+    let last = count.saturating_sub(1) as f64;
+    let place = match fraction.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => value * last,
+        _ => {
+            return Err(format!(
+                "no node called {}: what follows @ is a number from 0 to 1",
+                quoted(name)
+            ));
+        }
+    };
+    let index = place.round();
+    if (place - index).abs() <= 1e-6 {
+        return Ok(index as usize);
+    }
+    Err(format!(
+        "no node called {}: the chain has {count} nodes; the nearest are at @{} and @{}",
+        quoted(name),
+        place.floor() / last,
+        place.ceil() / last
+    ))
+}
+
+/// Ids of nodes: usable, and none twice.
+fn ids(spec: &Spec) -> Result<(), Fault> {
+    if spec.nodes.is_empty() {
+        return Err(Fault::new(at!["nodes"], "the scene has no nodes"));
+    }
+    unique("nodes", spec.nodes.iter().map(Nodes::id))
+}
+
+/// Refuses unusable ids and second ones of the entries of a list.
+pub(crate) fn unique<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
+    let mut seen = HashMap::new();
+    for (k, id) in ids.enumerate() {
+        let here = at![list, k, "id"];
+        limits::id(&here, id)?;
+        if let Some(first) = seen.insert(id, k) {
+            return Err(Fault::new(
+                here,
+                format!("the id {id:?} is taken already by {list}[{first}]"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses too many nodes before any is made.
+fn check_total(spec: &Spec) -> Result<(), Fault> {
+    let mut total = 0.0;
+    for (k, nodes) in spec.nodes.iter().enumerate() {
+        // Floating point cannot overflow here, and is exact where it matters.
+        total += match nodes {
+            Nodes::Node { .. } => 1.0,
+            Nodes::Line {
+                elements,
+                per_element,
+                ..
+            }
+            | Nodes::Arc {
+                elements,
+                per_element,
+                ..
+            } => *elements as f64 * *per_element as f64 * spec.refine as f64,
+            Nodes::Through { points, .. } => points.len() as f64 * spec.refine as f64,
+            Nodes::Chain { .. } => 0.0,
+        };
+        if total > limits::NODES as f64 {
+            let message = format!(
+                "up to here the scene has about {total} nodes (refine: {}); at most {} can be had",
+                spec.refine,
+                limits::NODES
+            );
+            return Err(Fault::new(at!["nodes", k], message));
+        }
+    }
+    Ok(())
+}
+
+fn point(path: &Path, (x, y): Point) -> Result<(), Fault> {
+    limits::finite(&path.then(0), x, "x")?;
+    limits::finite(&path.then(1), y, "y")
+}
+
+fn check_per_element(here: &Path, per_element: usize) -> Result<(), Fault> {
+    limits::count(
+        &here.then("per_element"),
+        per_element,
+        2..=9,
+        "the number of nodes per element",
+    )
+}
+
+fn check_chain_count(path: &Path, count: usize, per_element: usize) -> Result<(), Fault> {
+    let step = per_element - 1;
+    if count > step && (count - 1) % step == 0 {
+        return Ok(());
+    }
+    let below = (count.saturating_sub(1) / step).max(1) * step + 1;
+    let fits = if below < count {
+        format!("{below} or {}", below + step)
+    } else {
+        below.to_string()
+    };
+    Err(Fault::new(
+        path.clone(),
+        format!(
+            "{count} nodes do not make whole elements of {per_element} nodes, which share their ends; {fits} would"
+        ),
+    ))
+}
+
+/// Number of intervals between nodes along a generated chain.
+fn intervals(
+    here: &Path,
+    elements: usize,
+    per_element: usize,
+    refine: usize,
+) -> Result<usize, Fault> {
+    limits::count(
+        &here.then("elements"),
+        elements,
+        1..=limits::NODES,
+        "the number of elements",
+    )?;
+    check_per_element(here, per_element)?;
+    // Bounded by `check_total`.
+    Ok(elements * (per_element - 1) * refine)
+}
+
+fn line(here: &Path, from: Point, to: Point, n: usize) -> Result<Vec<Point>, Fault> {
+    point(&here.then("from"), from)?;
+    point(&here.then("to"), to)?;
+    if from == to {
+        return Err(Fault::new(
+            here.then("to"),
+            format!("the line has no length: it ends at {to:?}, where it starts"),
+        ));
+    }
+    let between = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
+    let at = |t| (between(from.0, to.0, t), between(from.1, to.1, t));
+    Ok((0..=n).map(|k| at(k as f64 / n as f64)).collect())
+}
+
+fn arc(
+    here: &Path,
+    center: Point,
+    radius: f64,
+    (from, to): (f64, f64),
+    n: usize,
+) -> Result<Vec<Point>, Fault> {
+    point(&here.then("center"), center)?;
+    limits::finite(&here.then("radius"), radius, "the radius")?;
+    if radius <= 0.0 {
+        return Err(Fault::new(
+            here.then("radius"),
+            format!("the radius is {radius:?}; it must be positive"),
+        ));
+    }
+    limits::finite(&here.then("from"), from, "the angle")?;
+    limits::finite(&here.then("to"), to, "the angle")?;
+    if from == to || (to - from).abs() > 360.0 {
+        return Err(Fault::new(
+            here.then("to"),
+            format!(
+                "the arc goes from {from:?} to {to:?} degrees; it must turn by more than 0 and at most 360"
+            ),
+        ));
+    }
+    let at = |t: f64| {
+        let (sin, cos) = sin_cos_degrees(from * (1.0 - t) + to * t);
+        (center.0 + radius * cos, center.1 + radius * sin)
+    };
+    Ok((0..=n).map(|k| at(k as f64 / n as f64)).collect())
+}
+
+/// Sine and cosine of an angle in degrees, exact at right angles.
+fn sin_cos_degrees(angle: f64) -> (f64, f64) {
+    let quarter = (angle / 90.0).round();
+    let (sin, cos) = (angle - 90.0 * quarter).to_radians().sin_cos();
+    match quarter.rem_euclid(4.0) as u8 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// The nodes along Lagrange curves through points, each curve divided into `refine` elements.
+fn through(here: &Path, points: &[Point], m: usize, refine: usize) -> Result<Vec<Point>, Fault> {
+    check_per_element(here, m)?;
+    let list = here.then("points");
+    for (k, at) in points.iter().enumerate() {
+        point(&list.then(k), *at)?;
+        if k > 0 && points[k - 1] == *at {
+            return Err(Fault::new(
+                list.then(k),
+                format!("the point {at:?} stands twice in a row"),
+            ));
+        }
+    }
+    check_chain_count(&list, points.len(), m)?;
+    let mut made = vec![points[0]];
+    for start in (0..points.len() - 1).step_by(m - 1) {
+        let curve = &points[start..start + m];
+        let steps = (m - 1) * refine;
+        made.extend((1..=steps).map(|k| on_curve(curve, k, refine)));
+    }
+    Ok(made)
+}
+
+/// The point of the Lagrange curve through equally spaced nodes, at `k / refine` intervals between nodes.
+fn on_curve(curve: &[Point], k: usize, refine: usize) -> Point {
+    if k % refine == 0 {
+        // A node itself: its very bits.
+        return curve[k / refine];
+    }
+    let t = k as f64 / refine as f64;
+    let mut at = (0.0, 0.0);
+    for (i, node) in curve.iter().enumerate() {
+        let others = (0..curve.len()).filter(|j| *j != i);
+        let shape: f64 = others
+            .map(|j| (t - j as f64) / (i as f64 - j as f64))
+            .product();
+        at = (at.0 + shape * node.0, at.1 + shape * node.1);
+    }
+    at
+}

@@ -1,0 +1,129 @@
+//! From the text of a file to a [`Spec`]: syntax and types, with the place of what is wrong.
+
+use super::error::{Path, SceneError, Step, did_you_mean, some_of};
+use super::limits;
+use super::spec::Spec;
+use ron::extensions::Extensions;
+use serde_path_to_error::Segment;
+use std::io::Read;
+
+/// How scene files are read and written: `Some` may be left out.
+pub fn options() -> ron::Options {
+    // The recursion limit is ron's own (128), spelled out because the stack depends on it.
+    ron::Options::default()
+        .with_default_extension(Extensions::IMPLICIT_SOME)
+        .with_recursion_limit(128)
+}
+
+/// Reads a scene's text.
+pub(crate) fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
+    let error = |spanned: ron::error::SpannedError, path: String| SceneError {
+        file: file.to_owned(),
+        at: Some(place(&spanned)),
+        set: None,
+        path,
+        message: message(&spanned.code),
+    };
+    let options = options();
+    let mut reader = ron::Deserializer::from_str_with_options(text, &options)
+        .map_err(|e| error(e, String::new()))?;
+    let read = serde_path_to_error::deserialize::<_, Spec>(&mut reader);
+    let spec = read.map_err(|e| {
+        let path = plain(e.path());
+        error(reader.span_error(e.into_inner()), path)
+    })?;
+    reader
+        .end()
+        .map_err(|e| error(reader.span_error(e), String::new()))?;
+    Ok(spec)
+}
+
+/// The text of a scene file.
+pub(crate) fn text(file: &str) -> Result<String, SceneError> {
+    let whole = |message: String| SceneError::whole(file, message);
+    let mut bytes = Vec::new();
+    let most = limits::FILE_BYTES as u64;
+    std::fs::File::open(file)
+        .and_then(|open| open.take(most + 1).read_to_end(&mut bytes))
+        .map_err(|e| whole(format!("the file cannot be read: {e}")))?;
+    from_bytes(file, bytes)
+}
+
+/// A scene's text from the bytes of its file.
+pub(crate) fn from_bytes(file: &str, bytes: Vec<u8>) -> Result<String, SceneError> {
+    if bytes.len() > limits::FILE_BYTES {
+        let most = limits::FILE_BYTES >> 20;
+        return Err(SceneError::whole(
+            file,
+            format!("the file has more than {most} MiB; a scene is a page or two"),
+        ));
+    }
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let good =
+            String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).into_owned();
+        SceneError {
+            at: Some(super::locate::line_and_column(&good, good.len())),
+            ..SceneError::whole(
+                file,
+                "the file is not text in UTF-8; a scene is written in RON",
+            )
+        }
+    })?;
+    // Some editors begin a file with a mark that RON does not know.
+    Ok(text
+        .strip_prefix('\u{feff}')
+        .map(str::to_owned)
+        .unwrap_or(text))
+}
+
+/// The path without names of variants.
+fn plain(path: &serde_path_to_error::Path) -> String {
+    let step = |segment: &Segment| match segment {
+        Segment::Seq { index } => Some(Step::Index(*index)),
+        Segment::Map { key } => Some(Step::Key(key.clone())),
+        Segment::Enum { .. } | Segment::Unknown => None,
+    };
+    Path(path.iter().filter_map(step).collect()).to_string()
+}
+
+/// ron's cursor stands behind what it has read; the start of the span is nearer to the fault.
+fn place(error: &ron::error::SpannedError) -> (usize, usize) {
+    (error.span.start.line, error.span.start.col)
+}
+
+/// ron's message, in words for an author who is no programmer where that helps.
+fn message(error: &ron::Error) -> String {
+    use ron::Error as E;
+    match error {
+        E::NoSuchStructField {
+            expected, found, ..
+        } => format!(
+            "there is no field {found:?} here{} (fields: {})",
+            did_you_mean(found, expected.iter().copied()),
+            expected.join(", ")
+        ),
+        E::NoSuchEnumVariant {
+            expected, found, ..
+        } => format!(
+            "{found:?} is none of the choices{} (choices: {})",
+            did_you_mean(found, expected.iter().copied()),
+            some_of(expected.iter().copied()).replace('"', "")
+        ),
+        E::MissingStructField { field, .. } => {
+            format!("the field {field:?} is missing; it has no default")
+        }
+        E::DuplicateStructField { field, .. } => format!("the field {field:?} stands here twice"),
+        E::ExceededRecursionLimit => "brackets are nested far too deep for a scene".to_owned(),
+        E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
+        E::TrailingCharacters => {
+            "something follows the end of the scene, its closing bracket".to_owned()
+        }
+        other => {
+            let text = other.to_string();
+            let mut letters = text.chars();
+            letters.next().map_or_else(String::new, |first| {
+                first.to_lowercase().chain(letters).collect()
+            })
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! What a user does to a run: force a mode, change the increment, friction or settings.
+
+use crate::contact::table1::t_max;
+use crate::scene::spec::{Friction, Settings};
+use crate::scene::{Mode, Model};
+use crate::solve::event::Forced;
+use crate::solve::state::{NodeState, State, Status, next_load_factor};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A change from outside; recorded in snapshots and replayed from them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Intervention {
+    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
+    Force {
+        slave: usize,
+        mode: Mode,
+        hold: bool,
+    },
+    /// Give a slave node back to Table 2.
+    Release { slave: usize },
+    /// Change the increment size and start the present increment again.
+    Increment(f64),
+    /// Replace the friction of every slave node.
+    Friction(Friction),
+    /// Replace the settings.
+    Settings(Settings),
+}
+
+impl State {
+    /// Applies an intervention. The position stays, except that a new increment size starts the present increment
+    /// again.
+    ///
+    /// # Errors
+    /// A message for values that make no sense, and when the history is done.
+    pub fn intervene(&mut self, model: &Model, intervention: &Intervention) -> Result<(), String> {
+        if self.status == Status::Finished {
+            return Err("the history is done; step back first".into());
+        }
+        match intervention {
+            Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,
+            Intervention::Release { slave } => self.node_mut(*slave)?.forced = Forced::No,
+            Intervention::Increment(increment) => self.retry(model, *increment)?,
+            Intervention::Friction(friction) => self.rub(friction)?,
+            Intervention::Settings(settings) => self.set(settings)?,
+        }
+        self.forget_trail();
+        Ok(())
+    }
+
+    /// Forgets what went into the minor iterations so far.
+    pub(super) fn forget_trail(&mut self) {
+        if !self.trail.is_empty() {
+            Arc::make_mut(&mut self.trail).clear();
+        }
+    }
+
+    /// Sets out on the increment that follows `start`.
+    pub(super) fn begin(&mut self, model: &Model) {
+        (self.next.major, self.next.minor) = (1, 1);
+        (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
+        self.load_factor = next_load_factor(&model.path, &self.start, self.controls.increment);
+        (self.aim, self.reached) = (self.load_factor, self.start.load_factor);
+        self.forget_trail();
+    }
+
+    fn node_mut(&mut self, slave: usize) -> Result<&mut NodeState, String> {
+        let count = self.nodes.len();
+        self.nodes.get_mut(slave).ok_or_else(|| {
+            format!("there are {count} slave nodes, numbered from 0; {slave} is none")
+        })
+    }
+
+    fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), String> {
+        let node = self.node_mut(slave)?;
+        if node.spot.is_none() && mode != Mode::Free {
+            return Err("the node is past the end of its surface: it has nothing to touch".into());
+        }
+        if node.mode == Mode::Free && mode != Mode::Free {
+            node.ratio = node.travel;
+        }
+        node.mode = mode;
+        node.forced = if hold {
+            Forced::Held(mode)
+        } else {
+            Forced::Once(mode)
+        };
+        Ok(())
+    }
+
+    fn rub(&mut self, friction: &Friction) -> Result<(), String> {
+        let sound = (0.0..90.0).contains(&friction.angle)
+            && (0.0..f64::INFINITY).contains(&friction.cohesion);
+        if !sound {
+            return Err(
+                "a friction angle is at least 0 and less than 90 degrees, a cohesion not negative"
+                    .into(),
+            );
+        }
+        Arc::make_mut(&mut self.controls).friction.fill(*friction);
+        for node in &mut self.nodes {
+            node.t_max = t_max(friction, node.f_n, node.sign);
+        }
+        Ok(())
+    }
+
+    fn set(&mut self, settings: &Settings) -> Result<(), String> {
+        if settings.minors == 0 || settings.majors == 0 {
+            return Err("limits of iterations are at least 1".into());
+        }
+        Arc::make_mut(&mut self.controls).settings = *settings;
+        Ok(())
+    }
+
+    fn retry(&mut self, model: &Model, increment: f64) -> Result<(), String> {
+        if !(increment.is_finite() && increment > 0.0) {
+            return Err(format!(
+                "an increment is a positive number, not {increment}"
+            ));
+        }
+        Arc::make_mut(&mut self.controls).increment = increment;
+        self.u = self.start.u.clone();
+        for (node, start) in self.nodes.iter_mut().zip(&self.start.nodes) {
+            let forced = node.forced;
+            *node = *start;
+            node.forced = Forced::No;
+            if let Forced::Held(mode) = forced {
+                (node.forced, node.mode) = (forced, mode);
+            }
+        }
+        self.next.attempt += 1;
+        self.status = Status::Running;
+        self.begin(model);
+        Ok(())
+    }
+}

@@ -1,0 +1,105 @@
+//! What several test programs share: scenes run to their end, and reference tables.
+#![allow(dead_code)]
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use stickslip::scene::Scene;
+use stickslip::solve::{Event, Failure, Intervention, Outcome, State, Stepper};
+
+/// A scene with `--set` like overrides.
+pub fn scene(name: &str, overrides: &[(&str, &str)]) -> Scene {
+    let overrides: Vec<_> = overrides
+        .iter()
+        .map(|(p, v)| (p.to_string(), v.to_string()))
+        .collect();
+    Scene::open(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// One accepted increment.
+pub struct Accepted {
+    pub load: f64,
+    pub majors: u32,
+    pub minors: u32,
+    pub monitors: HashMap<String, f64>,
+    pub event: Event,
+    pub state: State,
+}
+
+/// A run, as far as it came.
+pub struct Run {
+    pub stepper: Stepper,
+    pub accepted: Vec<Accepted>,
+    pub failure: Option<(Event, Failure)>,
+    pub steps: usize,
+}
+
+/// Steps to the end of the history or the first failure.
+pub fn run(scene: &Scene) -> Run {
+    let stepper = Stepper::new(Arc::new(scene.model.clone()));
+    go_on(Run {
+        stepper,
+        accepted: Vec::new(),
+        failure: None,
+        steps: 0,
+    })
+}
+
+/// Goes on with a run, for example after an intervention.
+pub fn go_on(mut run: Run) -> Run {
+    run.failure = None;
+    while let Some(event) = run.stepper.step().cloned() {
+        run.steps += 1;
+        match &event.outcome {
+            Outcome::Increment { .. } => {
+                let mut values = Vec::new();
+                run.stepper.monitors(&mut values);
+                let names = run.stepper.model().monitors.iter().map(|m| m.name.clone());
+                run.accepted.push(Accepted {
+                    load: event.load_factor,
+                    majors: event.position.major,
+                    minors: event.position.minor,
+                    monitors: names.zip(values).collect(),
+                    state: run.stepper.state().clone(),
+                    event,
+                });
+            }
+            Outcome::Failed(failure) => {
+                run.failure = Some((event.clone(), failure.clone()));
+                break;
+            }
+            _ => {}
+        }
+    }
+    run
+}
+
+/// Forces a slave node in a run that failed.
+pub fn force(run: &mut Run, slave: usize, mode: stickslip::scene::Mode, hold: bool) {
+    run.stepper
+        .intervene(&Intervention::Force { slave, mode, hold })
+        .unwrap();
+}
+
+/// A reference table: rows of named text fields.
+pub fn table(file: &str) -> Vec<HashMap<String, String>> {
+    let path = format!("{}/tests/references/{file}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().filter(|l| !l.starts_with('#'));
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    lines
+        .map(|l| {
+            header
+                .iter()
+                .map(|h| h.to_string())
+                .zip(l.split(',').map(String::from))
+                .collect()
+        })
+        .collect()
+}
+
+/// A number of a reference row.
+pub fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+    row[column]
+        .parse()
+        .unwrap_or_else(|_| panic!("{column}: {:?}", row[column]))
+}
