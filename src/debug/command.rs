@@ -5,7 +5,7 @@
 //! action that lacks an argument it needs asks for it ([`Ui::Ask`]). Keys are plain strings here (`"s"`, `"F10"`,
 //! `"Ctrl-c"`); no terminal library is known to this file.
 
-use crate::scene::{Mode, Model};
+use crate::scene::{Mode, Model, Scene};
 use std::path::PathBuf;
 
 /// What the debugger can be told to do to the solver.
@@ -116,8 +116,10 @@ pub enum Question {
 /// What an action needs to know to understand its arguments.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Context<'a> {
-    /// The scene, if one is open.
+    /// The model, if a scene is open.
     pub model: Option<&'a Model>,
+    /// The scene itself, which knows more names of its nodes than the model does (`beam.end` for `beam.5`).
+    pub scene: Option<&'a Scene>,
     /// The selected slave node, by slave number.
     pub selected: usize,
     /// Names of the built-in scenes.
@@ -167,13 +169,17 @@ pub struct Entry {
 enum Verb {
     Forward(Unit),
     Back(Unit),
-    Force { hold: bool },
+    Force {
+        hold: bool,
+    },
     Release,
     Increment,
     Set,
     /// A short name for one path of `set`.
     SetPath(&'static str),
-    Snapshot { overwrite: bool },
+    Snapshot {
+        overwrite: bool,
+    },
     Node,
     Open,
     Do(Ui),
@@ -189,7 +195,15 @@ const fn entry(
     help: &'static str,
     verb: Verb,
 ) -> Entry {
-    Entry { name, arguments, keys, group, label, help, verb }
+    Entry {
+        name,
+        arguments,
+        keys,
+        group,
+        label,
+        help,
+        verb,
+    }
 }
 
 /// The one table.
@@ -255,6 +269,7 @@ pub const PATHS: &[&str] = &[
     "settings.minors",
     "settings.majors",
     "settings.at_minor_limit",
+    "settings.at_cycle",
     "settings.at_major_limit",
     "settings.tolerance",
 ];
@@ -274,7 +289,10 @@ pub fn by_name(word: &str) -> Result<&'static Entry, String> {
     {
         return Ok(entry);
     }
-    let found: Vec<_> = ACTIONS.iter().filter(|entry| begins(entry.name, word)).collect();
+    let found: Vec<_> = ACTIONS
+        .iter()
+        .filter(|entry| begins(entry.name, word))
+        .collect();
     match found[..] {
         [entry] => Ok(entry),
         [] => Err(format!("no action is called '{word}'; ? lists them all")),
@@ -312,21 +330,37 @@ impl Entry {
             return Err(self.usage());
         }
         let command = match &self.verb {
-            Verb::Forward(unit) => Command::Forward { unit: *unit, count: self.count(&words)? },
-            Verb::Back(unit) => Command::Back { unit: *unit, count: self.count(&words)? },
+            Verb::Forward(unit) => Command::Forward {
+                unit: *unit,
+                count: self.count(&words)?,
+            },
+            Verb::Back(unit) => Command::Back {
+                unit: *unit,
+                count: self.count(&words)?,
+            },
             Verb::Force { hold } => return self.force(&words, *hold, context),
-            Verb::Release => Command::Release { slave: chosen(words.first().copied(), context)? },
-            Verb::Increment if words.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Increment))),
+            Verb::Release => Command::Release {
+                slave: chosen(words.first().copied(), context)?,
+            },
+            Verb::Increment if words.is_empty() => {
+                return Ok(Action::Ui(Ui::Ask(Question::Increment)));
+            }
             Verb::Increment => Command::Increment(increment(rest)?),
             Verb::Set => self.set(&words)?,
             Verb::SetPath(path) => match words[..] {
-                [value] => Command::Set { path: path.to_string(), value: value.into() },
+                [value] => Command::Set {
+                    path: path.to_string(),
+                    value: value.into(),
+                },
                 _ => return Err(self.usage()),
             },
             Verb::Snapshot { overwrite: true } if rest.is_empty() => return Err(self.usage()),
             Verb::Snapshot { overwrite } => {
                 let file = (!rest.is_empty()).then(|| PathBuf::from(rest));
-                Command::Snapshot { file, overwrite: *overwrite }
+                Command::Snapshot {
+                    file,
+                    overwrite: *overwrite,
+                }
             }
             Verb::Node if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Node))),
             Verb::Node => return Ok(Action::Ui(Ui::Select(find(rest, context)?))),
@@ -344,7 +378,9 @@ impl Entry {
 
     /// How it is written.
     pub fn usage(&self) -> String {
-        format!("usage: {} {}", self.name, self.arguments).trim_end().to_string()
+        format!("usage: {} {}", self.name, self.arguments)
+            .trim_end()
+            .to_string()
     }
 
     /// File and scene names may hold blanks; elsewhere a word too many is a mistake.
@@ -372,15 +408,23 @@ impl Entry {
             [node, word] => (Some(node), word),
             _ => return Err(self.usage()),
         };
-        let mode = mode(word).ok_or_else(|| format!("'{word}' is no mode; free, sliding or fixed would be"))?;
-        Ok(Action::Session(Command::Force { slave: chosen(node, context)?, mode, hold }))
+        let mode = mode(word)
+            .ok_or_else(|| format!("'{word}' is no mode; free, sliding or fixed would be"))?;
+        Ok(Action::Session(Command::Force {
+            slave: chosen(node, context)?,
+            mode,
+            hold,
+        }))
     }
 
     fn set(&self, words: &[&str]) -> Result<Command, String> {
         let [path, value] = words[..] else {
             return Err(format!("{}; paths: {}", self.usage(), PATHS.join(", ")));
         };
-        Ok(Command::Set { path: path.into(), value: value.into() })
+        Ok(Command::Set {
+            path: path.into(),
+            value: value.into(),
+        })
     }
 }
 
@@ -403,7 +447,10 @@ pub fn mode(word: &str) -> Option<Mode> {
 pub fn increment(word: &str) -> Result<f64, String> {
     match word.trim().parse::<f64>() {
         Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
-        _ => Err(format!("'{}' is no increment; a positive number such as 0.005 would be", word.trim())),
+        _ => Err(format!(
+            "'{}' is no increment; a positive number such as 0.005 would be",
+            word.trim()
+        )),
     }
 }
 
@@ -423,33 +470,53 @@ fn slaves<'a>(context: &Context<'a>) -> Result<&'a Model, String> {
 /// The slave node of exactly this name. No guesses here: what follows changes the solve.
 fn exact(word: &str, context: &Context) -> Result<usize, String> {
     let model = slaves(context)?;
-    if let Some(slave) = names(model).position(|name| name == word) {
+    let alias = context.scene.and_then(|scene| scene.node(word).ok());
+    let node = model
+        .nodes
+        .iter()
+        .position(|node| node.name == word)
+        .or(alias);
+    if let Some(slave) = model
+        .slaves
+        .iter()
+        .position(|slave| Some(slave.node) == node)
+    {
         return Ok(slave);
     }
     let known = some_names(model);
-    match model.nodes.iter().any(|node| node.name == word) {
+    match node.is_some() {
         true => Err(format!("{word} is not a slave node; those are {known}")),
-        false => Err(format!("no node is called '{word}'; slave nodes are {known}")),
+        false => Err(format!(
+            "no node is called '{word}'; slave nodes are {known}"
+        )),
     }
 }
 
 /// The next slave node after the selected one whose name is, or else contains, the word.
 fn find(word: &str, context: &Context) -> Result<usize, String> {
-    let model = slaves(context)?;
-    if let Some(slave) = names(model).position(|name| name == word) {
+    if let Ok(slave) = exact(word, context) {
         return Ok(slave);
     }
+    let model = slaves(context)?;
     let count = model.slaves.len();
     let hit = |slave: &usize| model.nodes[model.slaves[*slave].node].name.contains(word);
     (1..=count)
         .map(|step| (context.selected + step) % count)
         .find(hit)
-        .ok_or_else(|| format!("no slave node's name contains '{word}'; there are {}", some_names(model)))
+        .ok_or_else(|| {
+            format!(
+                "no slave node's name contains '{word}'; there are {}",
+                some_names(model)
+            )
+        })
 }
 
 /// Names of the slave nodes, by slave number.
 fn names(model: &Model) -> impl Iterator<Item = &str> {
-    model.slaves.iter().map(|slave| model.nodes[slave.node].name.as_str())
+    model
+        .slaves
+        .iter()
+        .map(|slave| model.nodes[slave.node].name.as_str())
 }
 
 /// The first few slave nodes' names, for messages.
@@ -470,7 +537,11 @@ pub fn complete(line: &str, context: &Context) -> Vec<String> {
         None => ACTIONS.iter().map(|entry| entry.name.to_string()).collect(),
         Some(name) => by_name(name).map_or(Vec::new(), |entry| entry.candidates(before, context)),
     };
-    candidates.iter().filter(|c| c.starts_with(word)).map(|c| format!("{before}{c}")).collect()
+    candidates
+        .iter()
+        .filter(|c| c.starts_with(word))
+        .map(|c| format!("{before}{c}"))
+        .collect()
 }
 
 impl Entry {
@@ -484,7 +555,10 @@ impl Entry {
             (Verb::Force { .. }, 1) => modes.into(),
             (Verb::Release | Verb::Node, 0) => nodes().collect(),
             (Verb::Set, 0) => PATHS.iter().map(|path| path.to_string()).collect(),
-            (Verb::Set, 1) => values(before).iter().map(|value| value.to_string()).collect(),
+            (Verb::Set, 1) => values(before)
+                .iter()
+                .map(|value| value.to_string())
+                .collect(),
             (Verb::Open, 0) => context.scenes.to_vec(),
             _ => Vec::new(),
         }
@@ -498,6 +572,7 @@ fn values(before: &str) -> &'static [&'static str] {
         Some("settings.t_max") => &["lagged", "consistent"],
         Some("settings.slip") => &["increment", "major"],
         Some("settings.ties") => &["keep", "printed"],
+        Some("settings.at_cycle") => &["stop", "damp"],
         Some("settings.at_minor_limit" | "settings.at_major_limit") => &["stop", "accept"],
         _ => &[],
     }
@@ -511,7 +586,12 @@ pub fn markdown() -> String {
         for entry in ACTIONS.iter().filter(|entry| entry.group == group) {
             let keys: Vec<_> = entry.keys.iter().map(|key| format!("`{key}`")).collect();
             let name = format!("{} {}", entry.name, entry.arguments);
-            text += &format!("| {} | `{}` | {} |\n", keys.join(" "), name.trim_end(), entry.help);
+            text += &format!(
+                "| {} | `{}` | {} |\n",
+                keys.join(" "),
+                name.trim_end(),
+                entry.help
+            );
         }
         text.push('\n');
     }
@@ -527,8 +607,18 @@ mod tests {
 
     fn model() -> Model {
         let names = ["beam.1", "beam.4", "beam.5"];
-        let nodes = names.map(|name| Node { name: name.into(), at: [0.0; 2] }).into();
-        let slave = |node| Slave { node, surfaces: vec![], friction: Friction::default(), start: Mode::Free };
+        let nodes = names
+            .map(|name| Node {
+                name: name.into(),
+                at: [0.0; 2],
+            })
+            .into();
+        let slave = |node| Slave {
+            node,
+            surfaces: vec![],
+            friction: Friction::default(),
+            start: Mode::Free,
+        };
         Model {
             title: String::new(),
             about: String::new(),
@@ -549,7 +639,14 @@ mod tests {
 
     fn read(line: &str) -> Result<Action, String> {
         let model = model();
-        parse(line, &Context { model: Some(&model), selected: 1, scenes: &[] })
+        parse(
+            line,
+            &Context {
+                model: Some(&model),
+                selected: 1,
+                ..Context::default()
+            },
+        )
     }
 
     fn forward(unit: Unit, count: u32) -> Result<Action, String> {
@@ -574,14 +671,26 @@ mod tests {
         assert_eq!(read("s 3"), forward(Unit::Minor, 3));
         assert_eq!(read("ne"), forward(Unit::Major, 1));
         assert_eq!(read("  fin  "), forward(Unit::Increment, 1));
-        assert_eq!(read("F 2"), Ok(Action::Session(Command::Back { unit: Unit::Increment, count: 2 })));
-        assert_eq!(read("step 0"), Err("'0' is no count; usage: step [COUNT]".into()));
+        assert_eq!(
+            read("F 2"),
+            Ok(Action::Session(Command::Back {
+                unit: Unit::Increment,
+                count: 2
+            }))
+        );
+        assert_eq!(
+            read("step 0"),
+            Err("'0' is no count; usage: step [COUNT]".into())
+        );
         assert_eq!(read("step 1 2"), Err("usage: step [COUNT]".into()));
     }
 
     #[test]
     fn unknown_and_ambiguous_names_are_told() {
-        assert_eq!(read("jump"), Err("no action is called 'jump'; ? lists them all".into()));
+        assert_eq!(
+            read("jump"),
+            Err("no action is called 'jump'; ? lists them all".into())
+        );
         assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
         assert_eq!(read("re"), Err(
             "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, redraw".into()
@@ -595,25 +704,46 @@ mod tests {
         assert_eq!(read("force x"), force(1, Mode::Fixed, false));
         assert_eq!(read("hold fr"), force(1, Mode::Free, true));
         assert_eq!(read("force"), Ok(Action::Ui(Ui::Ask(Question::Mode))));
-        assert_eq!(read("force beam.1 s"), Err("beam.1 is not a slave node; those are beam.4, beam.5".into()));
-        assert_eq!(read("force tip s"), Err("no node is called 'tip'; slave nodes are beam.4, beam.5".into()));
-        assert_eq!(read("force glued"), Err("'glued' is no mode; free, sliding or fixed would be".into()));
-        assert_eq!(read("release"), Ok(Action::Session(Command::Release { slave: 1 })));
+        assert_eq!(
+            read("force beam.1 s"),
+            Err("beam.1 is not a slave node; those are beam.4, beam.5".into())
+        );
+        assert_eq!(
+            read("force tip s"),
+            Err("no node is called 'tip'; slave nodes are beam.4, beam.5".into())
+        );
+        assert_eq!(
+            read("force glued"),
+            Err("'glued' is no mode; free, sliding or fixed would be".into())
+        );
+        assert_eq!(
+            read("release"),
+            Ok(Action::Session(Command::Release { slave: 1 }))
+        );
     }
 
     #[test]
     fn numbers_and_paths() {
-        assert_eq!(read("increment 0.005"), Ok(Action::Session(Command::Increment(0.005))));
+        assert_eq!(
+            read("increment 0.005"),
+            Ok(Action::Session(Command::Increment(0.005)))
+        );
         assert!(read("increment -1").is_err_and(|e| e.contains("'-1' is no increment")));
         assert!(read("increment NaN").is_err());
         let set = |path: &str, value: &str| {
-            Ok(Action::Session(Command::Set { path: path.into(), value: value.into() }))
+            Ok(Action::Session(Command::Set {
+                path: path.into(),
+                value: value.into(),
+            }))
         };
         assert_eq!(read("set friction.angle 20"), set("friction.angle", "20"));
         assert_eq!(read("friction 20"), set("friction.angle", "20"));
         assert_eq!(read("minors 50"), set("settings.minors", "50"));
         let snapshot = |file: Option<&str>, overwrite| {
-            Ok(Action::Session(Command::Snapshot { file: file.map(PathBuf::from), overwrite }))
+            Ok(Action::Session(Command::Snapshot {
+                file: file.map(PathBuf::from),
+                overwrite,
+            }))
         };
         assert_eq!(read("w"), snapshot(None, false));
         assert_eq!(read("snap a b.ron"), snapshot(Some("a b.ron"), false));
@@ -632,12 +762,22 @@ mod tests {
     fn completion_knows_names_nodes_paths_and_values() {
         let model = model();
         let scenes = ["01-pinned".to_string()];
-        let context = Context { model: Some(&model), selected: 0, scenes: &scenes };
+        let context = Context {
+            model: Some(&model),
+            scenes: &scenes,
+            ..Context::default()
+        };
         let ask = |line: &str| complete(line, &context);
         assert_eq!(ask("ste"), ["step"]);
-        assert_eq!(ask("force beam.5 f"), ["force beam.5 free", "force beam.5 fixed"]);
+        assert_eq!(
+            ask("force beam.5 f"),
+            ["force beam.5 free", "force beam.5 fixed"]
+        );
         assert_eq!(ask("release b"), ["release beam.4", "release beam.5"]);
-        assert_eq!(ask("set friction."), ["set friction.angle", "set friction.cohesion"]);
+        assert_eq!(
+            ask("set friction."),
+            ["set friction.angle", "set friction.cohesion"]
+        );
         assert_eq!(ask("set settings.ties p"), ["set settings.ties printed"]);
         assert_eq!(ask("open "), ["open 01-pinned"]);
         assert!(ask("nonsense ").is_empty());
@@ -647,7 +787,11 @@ mod tests {
     fn markdown_names_every_action_once() {
         let text = markdown();
         for entry in ACTIONS {
-            assert!(text.contains(&format!("| {} |", entry.help)), "{}", entry.name);
+            assert!(
+                text.contains(&format!("| {} |", entry.help)),
+                "{}",
+                entry.name
+            );
         }
     }
 }

@@ -30,9 +30,13 @@ pub enum Effect {
 pub enum Overlay {
     None,
     /// The list of actions, from this line on.
-    Help { top: usize },
+    Help {
+        top: usize,
+    },
     /// The list of scenes, with one of them selected.
-    Chooser { at: usize },
+    Chooser {
+        at: usize,
+    },
     /// A line being typed.
     Line(CommandLine),
     /// A letter for the mode of the selected node.
@@ -64,15 +68,24 @@ pub struct Camera {
 
 impl Camera {
     /// All of the shape.
-    pub const ALL: Camera = Camera { zoom: 1.0, pan: [0.0; 2] };
+    pub const ALL: Camera = Camera {
+        zoom: 1.0,
+        pan: [0.0; 2],
+    };
 
     fn zoomed(self, factor: f64) -> Camera {
-        Camera { zoom: (self.zoom * factor).clamp(0.05, 1e4), ..self }
+        Camera {
+            zoom: (self.zoom * factor).clamp(0.05, 1e4),
+            ..self
+        }
     }
 
     fn panned(self, x: f64, y: f64) -> Camera {
         let step = 0.1 / self.zoom;
-        Camera { pan: [self.pan[0] + step * x, self.pan[1] + step * y], ..self }
+        Camera {
+            pan: [self.pan[0] + step * x, self.pan[1] + step * y],
+            ..self
+        }
     }
 }
 
@@ -125,7 +138,10 @@ impl App {
             zoomed: false,
             selected: 0,
             count: None,
-            message: Message { text: String::new(), tone: Tone::Plain },
+            message: Message {
+                text: String::new(),
+                tone: Tone::Plain,
+            },
             camera: Camera::ALL,
             offers,
             tick: 0,
@@ -136,12 +152,18 @@ impl App {
 
     /// Says something.
     pub fn say(&mut self, text: impl Into<String>) {
-        self.message = Message { text: text.into(), tone: Tone::Plain };
+        self.message = Message {
+            text: text.into(),
+            tone: Tone::Plain,
+        };
     }
 
     /// Says what went wrong.
     pub fn complain(&mut self, text: impl Into<String>) {
-        self.message = Message { text: text.into(), tone: Tone::Error };
+        self.message = Message {
+            text: text.into(),
+            tone: Tone::Error,
+        };
     }
 
     /// Shows a scene that was just opened.
@@ -160,7 +182,12 @@ impl App {
 
     /// The user's part in the arrangement of the screen.
     pub fn choice(&self, slaves: usize) -> Choice {
-        Choice { focus: self.focus, page: self.page, zoomed: self.zoomed, slaves }
+        Choice {
+            focus: self.focus,
+            page: self.page,
+            zoomed: self.zoomed,
+            slaves,
+        }
     }
 
     /// What a key does.
@@ -183,10 +210,6 @@ impl App {
         if let Overlay::Line(line) = &mut self.overlay {
             line.insert(text);
         }
-    }
-
-    fn context<'a>(&'a self, view: Option<&View<'a>>, scenes: &'a [String]) -> Context<'a> {
-        Context { model: view.map(|view| view.model), selected: self.selected, scenes }
     }
 
     fn scenes(&self) -> Vec<String> {
@@ -216,7 +239,14 @@ impl App {
         if let Some(digit) = digit(name)
             && (digit > 0 || self.count.is_some())
         {
-            self.count = Some((self.count.unwrap_or(0).saturating_mul(10).saturating_add(digit)).min(MOST));
+            self.count = Some(
+                (self
+                    .count
+                    .unwrap_or(0)
+                    .saturating_mul(10)
+                    .saturating_add(digit))
+                .min(MOST),
+            );
             return None;
         }
         let count = self.count.take();
@@ -224,13 +254,23 @@ impl App {
             self.complain(format!("{name} does nothing here; ? lists the keys"));
             return None;
         };
-        let rest = count.filter(|_| entry.takes_count()).map(|count| count.to_string());
-        let action = entry.act(&rest.unwrap_or_default(), &self.context(view, &[]));
+        let rest = count
+            .filter(|_| entry.takes_count())
+            .map(|count| count.to_string());
+        let action = entry.act(
+            &rest.unwrap_or_default(),
+            &context(view, self.selected, &[]),
+        );
         self.attempt(action, count, view)
     }
 
     /// Carries out an action, or says why it cannot be.
-    fn attempt(&mut self, action: Result<Action, String>, count: Option<u32>, view: Option<&View>) -> Option<Effect> {
+    fn attempt(
+        &mut self,
+        action: Result<Action, String>,
+        count: Option<u32>,
+        view: Option<&View>,
+    ) -> Option<Effect> {
         match action {
             Ok(Action::Session(command)) => self.submit(command, view),
             Ok(Action::Ui(ui)) => self.ui(ui, count, view),
@@ -301,7 +341,11 @@ impl App {
 
     fn step(&mut self, step: Step, count: isize, view: Option<&View>) {
         let last = view.map_or(0, |view| view.model.slaves.len().saturating_sub(1));
-        let to = |by: isize| self.selected.saturating_add_signed(by.saturating_mul(count)).min(last);
+        let to = |by: isize| {
+            self.selected
+                .saturating_add_signed(by.saturating_mul(count))
+                .min(last)
+        };
         match (self.focus, step) {
             (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
             (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
@@ -322,7 +366,9 @@ impl App {
         match question {
             Question::Mode if !has_slaves => self.complain("this scene has no slave nodes"),
             Question::Mode => self.overlay = Overlay::Mode,
-            Question::Increment => self.overlay = Overlay::Line(CommandLine::new(Purpose::Increment, "")),
+            Question::Increment => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Increment, ""))
+            }
             Question::Node => self.overlay = Overlay::Line(CommandLine::new(Purpose::Node, "")),
             Question::Scene => self.choose(),
         }
@@ -336,11 +382,20 @@ impl App {
         match wanted {
             Some(mode) => {
                 let hold = name.chars().all(char::is_uppercase);
-                self.submit(Command::Force { slave: self.selected, mode, hold }, view)
+                self.submit(
+                    Command::Force {
+                        slave: self.selected,
+                        mode,
+                        hold,
+                    },
+                    view,
+                )
             }
             None if name == "Esc" => None,
             None => {
-                self.complain(format!("{name} is no mode: f free, s sliding, x fixed; a capital holds it"));
+                self.complain(format!(
+                    "{name} is no mode: f free, s sliding, x fixed; a capital holds it"
+                ));
                 None
             }
         }
@@ -362,7 +417,12 @@ impl App {
             return None;
         };
         match name {
-            "Enter" => return self.offers.get(*at).map(|offer| Effect::Open(offer.name.clone())),
+            "Enter" => {
+                return self
+                    .offers
+                    .get(*at)
+                    .map(|offer| Effect::Open(offer.name.clone()));
+            }
             "q" | "Esc" if view.is_none() => return Some(Effect::Quit),
             "q" | "Esc" => self.overlay = Overlay::None,
             ":" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open ")),
@@ -373,7 +433,7 @@ impl App {
 
     fn line_key(&mut self, key: &KeyEvent, name: &str, view: Option<&View>) -> Option<Effect> {
         let scenes = self.scenes();
-        let context = Context { model: view.map(|view| view.model), selected: self.selected, scenes: &scenes };
+        let context = context(view, self.selected, &scenes);
         let Overlay::Line(line) = &mut self.overlay else {
             return None;
         };
@@ -406,7 +466,7 @@ impl App {
         self.history.retain(|old| *old != line);
         self.history.push(line.clone());
         let scenes = self.scenes();
-        let action = command::parse(&line, &self.context(view, &scenes));
+        let action = command::parse(&line, &context(view, self.selected, &scenes));
         self.attempt(action, None, view)
     }
 
@@ -416,13 +476,28 @@ impl App {
         match &self.overlay {
             Overlay::Mode => Some(format!(
                 "mode of {}:  f free   s sliding   x fixed   (a capital holds it until M releases)",
-                view.name(self.selected)
+                view.slave(self.selected)
             )),
-            Overlay::Line(line) if line.purpose == Purpose::Increment => {
-                Some(format!("new increment (now {}): ", number::plain(view.frame().state.controls.increment)))
-            }
+            Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
+                "new increment (now {}): ",
+                number::plain(view.frame().state.controls.increment)
+            )),
             _ => None,
         }
+    }
+}
+
+/// What actions need to know to read their arguments.
+pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String]) -> Context<'a> {
+    let (model, scene) = (
+        view.map(|view| view.model),
+        view.and_then(|view| view.scene),
+    );
+    Context {
+        model,
+        scene,
+        selected,
+        scenes,
     }
 }
 

@@ -18,7 +18,10 @@ pub type Dot = [f64; 2];
 impl Canvas {
     /// An empty canvas over these cells.
     pub fn new(area: Rect) -> Self {
-        Canvas { area, cells: vec![(0, Style::new()); area.width as usize * area.height as usize] }
+        Canvas {
+            area,
+            cells: vec![(0, Style::new()); area.width as usize * area.height as usize],
+        }
     }
 
     /// Width and height in dots.
@@ -31,7 +34,11 @@ impl Canvas {
         let Some((from, to)) = clip(from, to, self.size()) else {
             return;
         };
-        let steps = (to[0] - from[0]).abs().max((to[1] - from[1]).abs()).ceil().max(1.0);
+        let steps = (to[0] - from[0])
+            .abs()
+            .max((to[1] - from[1]).abs())
+            .ceil()
+            .max(1.0);
         for step in 0..=steps as usize {
             let part = step as f64 / steps;
             self.dot(mix(from, to, part), style);
@@ -61,12 +68,22 @@ impl Canvas {
     pub fn cell(&self, at: Dot) -> Option<(u16, u16)> {
         let [width, height] = self.size();
         let inside = (0.0..width).contains(&at[0]) && (0.0..height).contains(&at[1]);
-        inside.then(|| (self.area.x + at[0] as u16 / 2, self.area.y + at[1] as u16 / 4))
+        inside.then(|| {
+            (
+                self.area.x + at[0] as u16 / 2,
+                self.area.y + at[1] as u16 / 4,
+            )
+        })
     }
 
     /// Puts the dots on the screen; cells without dots stay as they are.
     pub fn render(&self, buffer: &mut Buffer) {
-        for (index, (bits, style)) in self.cells.iter().enumerate().filter(|(_, cell)| cell.0 != 0) {
+        for (index, (bits, style)) in self
+            .cells
+            .iter()
+            .enumerate()
+            .filter(|(_, cell)| cell.0 != 0)
+        {
             let x = self.area.x + (index % self.area.width as usize) as u16;
             let y = self.area.y + (index / self.area.width as usize) as u16;
             let glyph = char::from_u32(0x2800 + *bits as u32).unwrap_or(' ');
@@ -81,7 +98,10 @@ impl Canvas {
 const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
 fn mix(from: Dot, to: Dot, part: f64) -> Dot {
-    [from[0] + (to[0] - from[0]) * part, from[1] + (to[1] - from[1]) * part]
+    [
+        from[0] + (to[0] - from[0]) * part,
+        from[1] + (to[1] - from[1]) * part,
+    ]
 }
 
 /// The part of a line inside the rectangle from (0, 0) to `size` (Liang and Barsky). None if there is none, or if
@@ -117,7 +137,9 @@ mod tests {
         }
         let mut buffer = Buffer::empty(area);
         canvas.render(&mut buffer);
-        (0..2).map(|y| (0..4).map(|x| buffer[(x, y)].symbol()).collect()).collect()
+        (0..2)
+            .map(|y| (0..4).map(|x| buffer[(x, y)].symbol()).collect())
+            .collect()
     }
 
     #[test]

@@ -11,7 +11,12 @@ use unicode_width::UnicodeWidthStr;
 pub fn draw(buffer: &mut Buffer, area: Rect, at: usize, app: &App) {
     let theme = &app.theme;
     let inner = draw::frame(buffer, area, "Choose a scene", true, theme);
-    let width = app.offers.iter().map(|offer| offer.name.width()).max().unwrap_or(0);
+    let width = app
+        .offers
+        .iter()
+        .map(|offer| offer.name.width())
+        .max()
+        .unwrap_or(0);
     let top = (at + 1).saturating_sub(inner.height as usize);
     let lines: Vec<Line> = app
         .offers
@@ -19,7 +24,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, at: usize, app: &App) {
         .enumerate()
         .skip(top)
         .map(|(index, offer)| {
-            let (mark, style) = if index == at { ("▸", theme.selected) } else { (" ", theme.text) };
+            let (mark, style) = if index == at {
+                ("▸", theme.selected)
+            } else {
+                (" ", theme.text)
+            };
             Line::from(vec![
                 Span::styled(format!(" {mark} "), theme.focus),
                 Span::styled(format!("{:<width$}", offer.name), style),

@@ -32,7 +32,12 @@ pub struct CommandLine {
 impl CommandLine {
     /// An open line.
     pub fn new(purpose: Purpose, text: &str) -> Self {
-        CommandLine { purpose, input: Input::new(text.into()), completions: None, back: 0 }
+        CommandLine {
+            purpose,
+            input: Input::new(text.into()),
+            completions: None,
+            back: 0,
+        }
     }
 
     /// What stands in it.
@@ -113,7 +118,11 @@ impl CommandLine {
         let at = self.input.cursor();
         // Columns and characters are the same for what is typed here; a wide character only scrolls early.
         let start = skipped.min(at);
-        let part = |from: usize, to: usize| text[from.min(text.len())..to.min(text.len())].iter().collect::<String>();
+        let part = |from: usize, to: usize| {
+            text[from.min(text.len())..to.min(text.len())]
+                .iter()
+                .collect::<String>()
+        };
         let under = text.get(at).map_or(" ".into(), char::to_string);
         Line::from(vec![
             Span::styled(prompt.to_string(), theme.key),
@@ -126,20 +135,33 @@ impl CommandLine {
     /// What the footer says while the line is open: the completions, or what the action takes.
     pub fn hint(&self, context: &Context, theme: &Theme) -> Line<'static> {
         if let Some((candidates, at)) = &self.completions {
-            let spans = candidates.iter().enumerate().flat_map(|(index, candidate)| {
-                let style = if index == *at { theme.selected } else { theme.faint };
-                let word = candidate.rsplit(' ').next().unwrap_or(candidate);
-                [Span::raw(" "), Span::styled(word.to_string(), style)]
-            });
+            let spans = candidates
+                .iter()
+                .enumerate()
+                .flat_map(|(index, candidate)| {
+                    let style = if index == *at {
+                        theme.selected
+                    } else {
+                        theme.faint
+                    };
+                    let word = candidate.rsplit(' ').next().unwrap_or(candidate);
+                    [Span::raw(" "), Span::styled(word.to_string(), style)]
+                });
             return Line::from(spans.collect::<Vec<_>>());
         }
         let name = self.text().split_whitespace().next();
         let hint = match (self.purpose, name.map(command::by_name)) {
-            (Purpose::Increment, _) => "Enter: this increment starts again with it   Esc: leave it".into(),
+            (Purpose::Increment, _) => {
+                "Enter: this increment starts again with it   Esc: leave it".into()
+            }
             (Purpose::Node, _) => "a name or a part of it; Enter goes to the next such node".into(),
-            (Purpose::Command, Some(Ok(entry))) => format!("{} {}   {}", entry.name, entry.arguments, entry.help),
+            (Purpose::Command, Some(Ok(entry))) => {
+                format!("{} {}   {}", entry.name, entry.arguments, entry.help)
+            }
             (Purpose::Command, Some(Err(_))) => choices(self.text(), context),
-            (Purpose::Command, None) => "an action's name; Tab completes, Up recalls, Esc leaves".into(),
+            (Purpose::Command, None) => {
+                "an action's name; Tab completes, Up recalls, Esc leaves".into()
+            }
         };
         Line::styled(format!(" {hint}"), theme.faint)
     }

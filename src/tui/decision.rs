@@ -5,11 +5,11 @@ use crate::scene::Mode;
 use crate::scene::spec::Ties;
 use crate::solve::{Forced, NodeRecord};
 use crate::tui::app::App;
+use crate::tui::draw;
 use crate::tui::layout::Pane;
 use crate::tui::number::long;
 use crate::tui::theme::{self, Theme};
 use crate::tui::view::View;
-use crate::tui::draw;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -20,8 +20,16 @@ const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
 
 /// Table 2: what sends a node from the mode of the row to that of the column, in two lines.
 const TABLE_2: [[[&str; 2]; 3]; 3] = [
-    [["F_n > 0", "|F_t| < |T_max|"], ["F_n > 0", "|F_t| > |T_max|"], ["F_n ≤ 0", ""]],
-    [["F_n > 0", "T_max·slip < 0"], ["F_n > 0", "T_max·slip > 0"], ["F_n ≤ 0", ""]],
+    [
+        ["F_n > 0", "|F_t| < |T_max|"],
+        ["F_n > 0", "|F_t| > |T_max|"],
+        ["F_n ≤ 0", ""],
+    ],
+    [
+        ["F_n > 0", "T_max·slip < 0"],
+        ["F_n > 0", "T_max·slip > 0"],
+        ["F_n ≤ 0", ""],
+    ],
     [["g < 0", "(rough)"], ["g < 0", "(smooth)"], ["g > 0", ""]],
 ];
 
@@ -33,15 +41,25 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let count = view.model.slaves.len();
     let slave = app.selected.min(count.saturating_sub(1));
-    let title = if count == 0 { "Decision".into() } else { format!("Decision  {}", view.name(slave)) };
+    let title = if count == 0 {
+        "Decision".into()
+    } else {
+        format!("Decision  {}", view.slave(slave))
+    };
     let inner = draw::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
     let record = view.record(slave);
     let decision = record.map(|record| record.decision);
-    let tests = record.map_or(Vec::new(), |record| tests(&record.decision, inner.width as usize, theme));
+    let tests = record.map_or(Vec::new(), |record| {
+        tests(&record.decision, inner.width as usize, theme)
+    });
     let words = words(record, slave, view);
 
     // What must be there comes first; air is added where there is room.
-    let style = if decision.is_some_and(|d| d.changes()) { theme.strong } else { theme.text };
+    let style = if decision.is_some_and(|d| d.changes()) {
+        theme.strong
+    } else {
+        theme.text
+    };
     let words: Vec<Line> = draw::wrap(&words, (inner.width as usize).saturating_sub(2))
         .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
@@ -58,36 +76,55 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 }
 
 /// Table 2 as lines, with the row of the mode before and the cell that fired lit.
-fn grid(decision: Option<&Decision>, width: usize, ruled: bool, theme: &Theme) -> Vec<Line<'static>> {
+fn grid(
+    decision: Option<&Decision>,
+    width: usize,
+    ruled: bool,
+    theme: &Theme,
+) -> Vec<Line<'static>> {
     let cell = width.saturating_sub(LABEL + 6) / 3;
     let bar = Span::styled("│ ", theme.faint);
     let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
     for mode in MODES {
         let text = format!("→ {}", theme::word(mode));
-        head.extend([bar.clone(), Span::styled(format!("{text:<cell$}"), theme.heading)]);
+        head.extend([
+            bar.clone(),
+            Span::styled(format!("{text:<cell$}"), theme.heading),
+        ]);
     }
     let mut lines = vec![Line::from(head)];
     for (row, mode) in MODES.iter().enumerate() {
         if ruled {
             let stroke = format!("┼{}", "─".repeat(cell + 1)).repeat(3);
-            let rule: String = ("─".repeat(LABEL) + &stroke).chars().chain(std::iter::repeat('─')).take(width).collect();
+            let rule: String = ("─".repeat(LABEL) + &stroke)
+                .chars()
+                .chain(std::iter::repeat('─'))
+                .take(width)
+                .collect();
             lines.push(Line::styled(rule, theme.faint));
         }
         let here = decision.is_some_and(|decision| decision.before == *mode);
-        for part in 0..2 {
+        for part in [0, 1] {
             let label = match (part, here) {
                 (0, true) => format!("▸{}", theme::word(*mode)),
                 (0, false) => format!(" {}", theme::word(*mode)),
                 _ => String::new(),
             };
-            let style = if here { theme.mode(*mode).add_modifier(Modifier::BOLD) } else { theme.faint };
+            let style = if here {
+                theme.mode(*mode).add_modifier(Modifier::BOLD)
+            } else {
+                theme.faint
+            };
             let mut spans = vec![Span::styled(format!("{label:<LABEL$}"), style)];
             for (column, next) in MODES.iter().enumerate() {
                 let (mark, style) = cell_look(decision, *mode, *next, theme);
                 let mark = if part == 0 { mark } else { " " };
                 let text = TABLE_2[row][column][part];
                 let room = cell.saturating_sub(1);
-                spans.extend([bar.clone(), Span::styled(format!("{text:<room$.room$}{mark}"), style)]);
+                spans.extend([
+                    bar.clone(),
+                    Span::styled(format!("{text:<room$.room$}{mark}"), style),
+                ]);
             }
             lines.push(Line::from(spans));
         }
@@ -96,13 +133,20 @@ fn grid(decision: Option<&Decision>, width: usize, ruled: bool, theme: &Theme) -
 }
 
 /// Mark and style of a cell: fired, wanted by Table 2 but overruled, in the row of the mode before, or none of these.
-fn cell_look(decision: Option<&Decision>, before: Mode, next: Mode, theme: &Theme) -> (&'static str, Style) {
+fn cell_look(
+    decision: Option<&Decision>,
+    before: Mode,
+    next: Mode,
+    theme: &Theme,
+) -> (&'static str, Style) {
     let Some(decision) = decision.filter(|decision| decision.before == before) else {
         return (" ", theme.faint);
     };
     match decision.rule {
         Rule::OffSurface => (" ", theme.text),
-        Rule::Held if decision.wanted == next => ("◁", theme.text.add_modifier(Modifier::UNDERLINED)),
+        Rule::Held if decision.wanted == next => {
+            ("◁", theme.text.add_modifier(Modifier::UNDERLINED))
+        }
         Rule::Held => (" ", theme.text),
         _ if decision.next == next => ("◀", theme.lit(next)),
         _ => (" ", theme.text),
@@ -115,7 +159,11 @@ fn tests(decision: &Decision, width: usize, theme: &Theme) -> Vec<Line<'static>>
     for test in decision.tests.iter().flatten() {
         let inequality = inequality(test);
         let (margin, style) = margin(test, theme);
-        let style_left = if test.margin < 0.0 && !test.tie { theme.strong } else { theme.text };
+        let style_left = if test.margin < 0.0 && !test.tie {
+            theme.strong
+        } else {
+            theme.text
+        };
         let used = inequality.chars().count() + margin.chars().count();
         if used < width {
             lines.push(Line::from(vec![
@@ -156,7 +204,10 @@ fn margin(test: &Test, theme: &Theme) -> (String, Style) {
         Tested::Slip | Tested::Gap => "length",
     };
     match test.tie {
-        true => (format!("a tie, by {} {unit} ", long(test.margin)), theme.warning),
+        true => (
+            format!("a tie, by {} {unit} ", long(test.margin)),
+            theme.warning,
+        ),
         false => (format!("margin {} {unit} ", long(test.margin)), theme.faint),
     }
 }
@@ -168,7 +219,10 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
     }
     let next = view.mode(slave);
     let Some(record) = record else {
-        return format!("Nothing is decided yet; the node starts {}.", theme::word(next));
+        return format!(
+            "Nothing is decided yet; the node starts {}.",
+            theme::word(next)
+        );
     };
     let decision = &record.decision;
     let mut text = reason(decision);
@@ -180,14 +234,20 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
     }
     let sliding = decision.next == Mode::Sliding && record.t_max != record.t_max_used;
     if sliding && !decision.changes() {
-        text += &format!(" T_max is not settled: {} was used.", long(record.t_max_used));
+        text += &format!(
+            " T_max is not settled: {} was used.",
+            long(record.t_max_used)
+        );
     }
     if record.carried.contains(&true) {
         text += " A support carries a part of the force.";
     }
     match view.frame().state.nodes[slave].forced {
         Forced::Once(mode) if next == mode && mode != decision.next => {
-            text += &format!(" You force it to {} for the next minor iteration.", theme::word(mode));
+            text += &format!(
+                " You force it to {} for the next minor iteration.",
+                theme::word(mode)
+            );
         }
         Forced::Held(mode) if decision.rule != Rule::Held => {
             text += &format!(" You hold it {} from here on.", theme::word(mode));
@@ -209,9 +269,14 @@ fn reason(decision: &Decision) -> String {
         Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
         Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
         Rule::FreeStays => "Stays free: the gap is open.",
-        Rule::OffSurface => "Free: the projection lies past an end of every surface, so there is nothing to touch.",
+        Rule::OffSurface => {
+            "Free: the projection lies past an end of every surface, so there is nothing to touch."
+        }
         Rule::Held if decision.wanted == decision.next => {
-            return format!("You hold it {}; Table 2 wants the same.", theme::word(decision.next));
+            return format!(
+                "You hold it {}; Table 2 wants the same.",
+                theme::word(decision.next)
+            );
         }
         Rule::Held => {
             let (next, wanted) = (theme::word(decision.next), theme::word(decision.wanted));

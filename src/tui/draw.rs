@@ -16,7 +16,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     let slaves = view.map_or(0, |view| view.model.slaves.len());
     let places = layout::places(area, &app.choice(slaves));
     status::draw(buffer, places.status, app, view);
-    let body = places.panes.iter().map(|pane| pane.1).reduce(Rect::union).unwrap_or_default();
+    let body = places
+        .panes
+        .iter()
+        .map(|pane| pane.1)
+        .reduce(Rect::union)
+        .unwrap_or_default();
     match (&app.overlay, view) {
         (Overlay::Help { top }, _) => help::draw(buffer, body, *top, &app.theme),
         (Overlay::Chooser { at }, _) => chooser::draw(buffer, body, *at, app),
@@ -46,7 +51,10 @@ pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme:
         false => (BorderType::Plain, theme.faint, theme.heading),
     };
     let title = Line::styled(format!(" {title} "), title_style);
-    let block = Block::bordered().border_type(kind).border_style(border).title(title);
+    let block = Block::bordered()
+        .border_type(kind)
+        .border_style(border)
+        .title(title);
     let inner = block.inner(area);
     block.render(area, buffer);
     inner
@@ -76,7 +84,12 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
 
 /// The program's own screen as plain text, one line a row, no blanks at the ends.
 pub fn picture(session: &Session, width: u16, height: u16) -> String {
-    text(&App::new(Theme::mono(), Vec::new()), Some(&View::of(session)), width, height)
+    text(
+        &App::new(Theme::mono(), Vec::new()),
+        Some(&View::of(session)),
+        width,
+        height,
+    )
 }
 
 /// Any screen as plain text.
@@ -85,7 +98,10 @@ pub fn text(app: &App, view: Option<&View>, width: u16, height: u16) -> String {
     let mut buffer = Buffer::empty(area);
     draw(&mut buffer, area, app, view);
     let rows = area.rows().map(|row| {
-        let row: String = row.columns().map(|cell| buffer[(cell.x, cell.y)].symbol()).collect();
+        let row: String = row
+            .columns()
+            .map(|cell| buffer[(cell.x, cell.y)].symbol())
+            .collect();
         row.trim_end().to_string() + "\n"
     });
     rows.collect()

@@ -1,7 +1,7 @@
 //! The last two rows: what was said last, or what is being asked; and the keys that matter now, from the table.
 
-use crate::debug::command::{ACTIONS, Context, Entry};
-use crate::tui::app::{App, Overlay, Tone};
+use crate::debug::command::{ACTIONS, Entry};
+use crate::tui::app::{App, Overlay, Tone, context};
 use crate::tui::draw;
 use crate::tui::layout::{Pane, Places};
 use crate::tui::view::View;
@@ -14,7 +14,11 @@ const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
 /// Draws message and keys.
 pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
-    draw::lines(buffer, places.message, &[message(app, view, places.message.width as usize)]);
+    draw::lines(
+        buffer,
+        places.message,
+        &[message(app, view, places.message.width as usize)],
+    );
     draw::lines(buffer, places.footer, &[keys(app, view, places)]);
 }
 
@@ -49,13 +53,23 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
         Overlay::Help { .. } => listed(&[("↑↓", "scroll"), ("Esc", "back")], app),
         Overlay::Chooser { .. } => {
             let leave = if view.is_some() { "back" } else { "quit" };
-            listed(&[("↑↓", "choose"), ("Enter", "open"), (":", "a file: open PATH"), ("q", leave)], app)
+            listed(
+                &[
+                    ("↑↓", "choose"),
+                    ("Enter", "open"),
+                    (":", "a file: open PATH"),
+                    ("q", leave),
+                ],
+                app,
+            )
         }
-        Overlay::Mode => listed(&[("f s x", "once"), ("F S X", "hold"), ("Esc", "leave it")], app),
+        Overlay::Mode => listed(
+            &[("f s x", "once"), ("F S X", "hold"), ("Esc", "leave it")],
+            app,
+        ),
         Overlay::Line(line) => {
             let scenes: Vec<String> = app.offers.iter().map(|offer| offer.name.clone()).collect();
-            let context = Context { model: view.map(|view| view.model), selected: app.selected, scenes: &scenes };
-            line.hint(&context, &app.theme)
+            line.hint(&context(view, app.selected, &scenes), &app.theme)
         }
     }
 }
@@ -66,18 +80,27 @@ fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {
 }
 
 fn hint(key: &str, label: &str, app: &App) -> [Span<'static>; 2] {
-    [Span::styled(format!(" {key}"), app.theme.key), Span::styled(format!(" {label} "), app.theme.faint)]
+    [
+        Span::styled(format!(" {key}"), app.theme.key),
+        Span::styled(format!(" {label} "), app.theme.faint),
+    ]
 }
 
 /// As many of the table's labelled actions as fit, in its order; those that must be there are counted first.
 fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
-    let labelled: Vec<(&Entry, String)> =
-        ACTIONS.iter().filter(|entry| !entry.label.is_empty()).map(|entry| (entry, label(entry, app, places))).collect();
+    let labelled: Vec<(&Entry, String)> = ACTIONS
+        .iter()
+        .filter(|entry| !entry.label.is_empty())
+        .map(|entry| (entry, label(entry, app, places)))
+        .collect();
     let width = |entry: &Entry, label: &str| entry.keys[0].width() + label.width() + 3;
     let needed = |entry: &Entry| ALWAYS.contains(&entry.name);
-    let mut left = labelled.iter().filter(|(entry, _)| needed(entry)).fold(room, |left, (entry, label)| {
-        left.saturating_sub(width(entry, label))
-    });
+    let mut left = labelled
+        .iter()
+        .filter(|(entry, _)| needed(entry))
+        .fold(room, |left, (entry, label)| {
+            left.saturating_sub(width(entry, label))
+        });
     let mut spans = Vec::new();
     for (entry, label) in &labelled {
         let width = width(entry, label);
@@ -95,7 +118,10 @@ fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
 /// Label of an action; where Tab turns pages, it says which page this is.
 fn label(entry: &Entry, app: &App, places: &Places) -> String {
     if entry.name == "pane" && places.paged {
-        let page = Pane::ALL.iter().position(|pane| *pane == app.focus).map_or(1, |at| at + 1);
+        let page = Pane::ALL
+            .iter()
+            .position(|pane| *pane == app.focus)
+            .map_or(1, |at| at + 1);
         return format!("page {page}/{}", Pane::ALL.len());
     }
     entry.label.into()

@@ -11,10 +11,19 @@ use ratatui::text::{Line, Span};
 const MARKS: &[(&str, &str)] = &[
     ("f s x", "free, sliding, fixed"),
     ("*", "the mode changes"),
-    ("~", "T_max has not settled: the next minor iteration is solved with another"),
+    (
+        "~",
+        "T_max has not settled: the next minor iteration is solved with another",
+    ),
     ("◇ ◆", "you forced the mode once; you hold it"),
-    ("◀ ◁", "the cell of Table 2 that fired; the one that would have, had you not held the mode"),
-    ("margin", "distance of the tested inequality from switching; negative has switched"),
+    (
+        "◀ ◁",
+        "the cell of Table 2 that fired; the one that would have, had you not held the mode",
+    ),
+    (
+        "margin",
+        "distance of the tested inequality from switching; negative has switched",
+    ),
     ("a tie", "closer to switching than the tolerance"),
 ];
 
@@ -39,7 +48,11 @@ pub fn page(width: usize, theme: &Theme) -> Vec<Line<'static>> {
             let name = format!("{} {}", entry.name, entry.arguments);
             let room = width.saturating_sub(3 + KEYS + NAMES + 1).max(20);
             for (index, help) in draw::wrap(entry.help, room).into_iter().enumerate() {
-                let (keys, name) = if index == 0 { (entry.keys.join(" "), name.as_str()) } else { Default::default() };
+                let (keys, name) = if index == 0 {
+                    (entry.keys.join(" "), name.as_str())
+                } else {
+                    Default::default()
+                };
                 lines.push(Line::from(vec![
                     Span::styled(format!("   {keys:<KEYS$}"), theme.key),
                     Span::raw(format!("{name:<NAMES$}")),
@@ -51,9 +64,15 @@ pub fn page(width: usize, theme: &Theme) -> Vec<Line<'static>> {
     }
     lines.push(Line::styled(" Marks", theme.heading));
     for (mark, meaning) in MARKS {
-        for (index, meaning) in draw::wrap(meaning, width.saturating_sub(3 + KEYS + 1).max(20)).into_iter().enumerate() {
+        for (index, meaning) in draw::wrap(meaning, width.saturating_sub(3 + KEYS + 1).max(20))
+            .into_iter()
+            .enumerate()
+        {
             let mark = if index == 0 { mark } else { "" };
-            lines.push(Line::from(vec![Span::styled(format!("   {mark:<KEYS$}"), theme.key), Span::raw(meaning)]));
+            lines.push(Line::from(vec![
+                Span::styled(format!("   {mark:<KEYS$}"), theme.key),
+                Span::raw(meaning),
+            ]));
         }
     }
     lines

@@ -56,7 +56,10 @@ pub fn press(name: &str) -> Option<KeyEvent> {
     let code = match (letters.next()?, letters.as_str()) {
         (letter, "") => KeyCode::Char(letter),
         ('F', number) if number.parse::<u8>().is_ok() => KeyCode::F(number.parse().ok()?),
-        _ => NAMED.iter().copied().find(|code| spelled(*code) == Some(rest))?,
+        _ => NAMED
+            .iter()
+            .copied()
+            .find(|code| spelled(*code) == Some(rest))?,
     };
     Some(KeyEvent::new(code, modifiers))
 }

@@ -65,7 +65,13 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
     };
     let footer = u16::from(area.height > 6);
     let message = u16::from(area.height > 2);
-    let rows = [status, area.height - status - footer - message, message, footer].map(Constraint::Length);
+    let rows = [
+        status,
+        area.height - status - footer - message,
+        message,
+        footer,
+    ]
+    .map(Constraint::Length);
     let [status, body, message, footer] = Layout::vertical(rows).areas(area);
     let panes = match () {
         _ if choice.zoomed => vec![(choice.focus, body)],
@@ -74,12 +80,21 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         _ => small(body, choice),
     };
     let paged = panes.len() < Pane::ALL.len() && !choice.zoomed;
-    Places { status, panes, message, footer, paged }
+    Places {
+        status,
+        panes,
+        message,
+        footer,
+        paged,
+    }
 }
 
 /// Rows for the table: as many as it has nodes, but no more than given.
 fn table(choice: &Choice, most: u16) -> u16 {
-    (choice.slaves.min(usize::from(u16::MAX - TABLE_FRAME)) as u16).max(1).saturating_add(TABLE_FRAME).min(most)
+    (choice.slaves.min(usize::from(u16::MAX - TABLE_FRAME)) as u16)
+        .max(1)
+        .saturating_add(TABLE_FRAME)
+        .min(most)
 }
 
 fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
@@ -87,7 +102,8 @@ fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         return vec![(choice.focus, body)];
     }
     let rows = [table(choice, body.height - DECISION), 0];
-    let [upper, lower] = Layout::vertical([Constraint::Length(rows[0]), Constraint::Min(rows[1])]).areas(body);
+    let [upper, lower] =
+        Layout::vertical([Constraint::Length(rows[0]), Constraint::Min(rows[1])]).areas(body);
     vec![(Pane::Nodes, upper), (choice.page, lower)]
 }
 
@@ -95,20 +111,40 @@ fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let most = body.height - TALL_DECISION - 7;
     let rows = [Constraint::Length(table(choice, most)), Constraint::Min(0)];
     let [upper, lower] = Layout::vertical(rows).areas(body);
-    let columns = [Constraint::Length((body.width / 2).clamp(66, 76)), Constraint::Min(0)];
+    let columns = [
+        Constraint::Length((body.width / 2).clamp(66, 76)),
+        Constraint::Min(0),
+    ];
     let [left, right] = Layout::horizontal(columns).areas(lower);
     let rows = [Constraint::Length(TALL_DECISION), Constraint::Min(0)];
     let [decision, residual] = Layout::vertical(rows).areas(left);
-    vec![(Pane::Nodes, upper), (Pane::Decision, decision), (Pane::Residual, residual), (Pane::Shape, right)]
+    vec![
+        (Pane::Nodes, upper),
+        (Pane::Decision, decision),
+        (Pane::Residual, residual),
+        (Pane::Shape, right),
+    ]
 }
 
 fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
-    let columns = [Constraint::Length((body.width * 11 / 20).clamp(104, 130)), Constraint::Min(0)];
+    let columns = [
+        Constraint::Length((body.width * 11 / 20).clamp(104, 130)),
+        Constraint::Min(0),
+    ];
     let [left, right] = Layout::horizontal(columns).areas(body);
     let most = left.height - TALL_DECISION - 10;
-    let rows = [Constraint::Length(table(choice, most)), Constraint::Length(TALL_DECISION), Constraint::Min(0)];
+    let rows = [
+        Constraint::Length(table(choice, most)),
+        Constraint::Length(TALL_DECISION),
+        Constraint::Min(0),
+    ];
     let [nodes, decision, residual] = Layout::vertical(rows).areas(left);
-    vec![(Pane::Nodes, nodes), (Pane::Decision, decision), (Pane::Residual, residual), (Pane::Shape, right)]
+    vec![
+        (Pane::Nodes, nodes),
+        (Pane::Decision, decision),
+        (Pane::Residual, residual),
+        (Pane::Shape, right),
+    ]
 }
 
 #[cfg(test)]
@@ -116,7 +152,12 @@ mod tests {
     use super::*;
 
     fn at(width: u16, height: u16, slaves: usize) -> Places {
-        let choice = Choice { focus: Pane::Nodes, page: Pane::Decision, zoomed: false, slaves };
+        let choice = Choice {
+            focus: Pane::Nodes,
+            page: Pane::Decision,
+            zoomed: false,
+            slaves,
+        };
         places(Rect::new(0, 0, width, height), &choice)
     }
 
@@ -127,7 +168,12 @@ mod tests {
                 let places = at(width, height, slaves);
                 assert_eq!(places.panes.len(), 4);
                 assert!(!places.paged);
-                assert!(places.panes.iter().all(|(_, area)| area.height >= 4 && area.width >= 40));
+                assert!(
+                    places
+                        .panes
+                        .iter()
+                        .all(|(_, area)| area.height >= 4 && area.width >= 40)
+                );
             }
         }
     }
@@ -135,7 +181,10 @@ mod tests {
     #[test]
     fn the_small_screen_has_the_table_and_a_page() {
         let places = at(80, 24, 500);
-        assert_eq!(places.panes.iter().map(|p| p.0).collect::<Vec<_>>(), [Pane::Nodes, Pane::Decision]);
+        assert_eq!(
+            places.panes.iter().map(|p| p.0).collect::<Vec<_>>(),
+            [Pane::Nodes, Pane::Decision]
+        );
         assert_eq!(places.panes[1].1.height, DECISION);
         assert!(places.paged);
     }
@@ -149,7 +198,11 @@ mod tests {
             areas.extend([places.status, places.message, places.footer]);
             for (index, area) in areas.iter().enumerate() {
                 assert_eq!(whole.intersection(*area).area(), area.area());
-                assert!(areas[..index].iter().all(|other| !other.intersects(*area) || area.area() == 0));
+                assert!(
+                    areas[..index]
+                        .iter()
+                        .all(|other| !other.intersects(*area) || area.area() == 0)
+                );
             }
         }
     }

@@ -36,15 +36,36 @@ const LETTERS: usize = 3;
 impl Columns {
     /// The widest arrangement that fits: first words turn into letters, then numbers lose digits, then columns go.
     fn fit(width: usize, name: usize) -> Self {
-        let arrangements = [(true, 13, 13), (true, 12, 9), (true, 11, 9), (false, 11, 9), (false, 10, 9), (false, 9, 8)];
-        let last = Columns { name, words: false, number: 9, ratio: 8, shown: 6 };
+        let arrangements = [
+            (true, 13, 13),
+            (true, 12, 9),
+            (true, 11, 9),
+            (false, 11, 9),
+            (false, 10, 9),
+            (false, 9, 8),
+        ];
+        let last = Columns {
+            name,
+            words: false,
+            number: 9,
+            ratio: 8,
+            shown: 6,
+        };
         let wide = arrangements
-            .map(|(words, number, ratio)| Columns { words, number, ratio, ..last })
+            .map(|(words, number, ratio)| Columns {
+                words,
+                number,
+                ratio,
+                ..last
+            })
             .into_iter()
             .find(|columns| columns.width() <= width);
         wide.unwrap_or_else(|| {
             let fewer = (0..6).rev().map(|shown| Columns { shown, ..last });
-            fewer.into_iter().find(|columns| columns.width() <= width).unwrap_or(Columns { shown: 0, ..last })
+            fewer
+                .into_iter()
+                .find(|columns| columns.width() <= width)
+                .unwrap_or(Columns { shown: 0, ..last })
         })
     }
 
@@ -56,7 +77,8 @@ impl Columns {
         let ratio = if self.shown > 4 { self.ratio } else { 0 };
         let numbers = self.shown - usize::from(self.shown > 4);
         // The last number needs no gap after it.
-        MARKS + self.name + 1 + self.modes() + 1 + numbers * self.number + ratio - usize::from(self.shown > 0)
+        MARKS + self.name + 1 + self.modes() + 1 + numbers * self.number + ratio
+            - usize::from(self.shown > 0)
     }
 }
 
@@ -70,36 +92,76 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let inner = draw::frame(buffer, area, &title, app.focus == Pane::Nodes, &app.theme);
     if count == 0 {
-        draw::lines(buffer, inner, &[Line::styled(" This scene has no slave nodes.", app.theme.faint)]);
+        draw::lines(
+            buffer,
+            inner,
+            &[Line::styled(
+                " This scene has no slave nodes.",
+                app.theme.faint,
+            )],
+        );
         return;
     }
-    let longest = (0..count).map(|slave| view.name(slave).width()).max().unwrap_or(0);
+    let longest = (0..count)
+        .map(|slave| view.slave(slave).width())
+        .max()
+        .unwrap_or(0);
     let columns = Columns::fit(inner.width as usize, longest.clamp(4, 20));
     let rows = (inner.height as usize).saturating_sub(1);
     let top = first_row(selected, rows, count);
     let mut lines = vec![headings(&columns, app)];
-    lines.extend((top..count.min(top + rows)).map(|slave| row(slave, slave == selected, &columns, app, view)));
+    lines.extend(
+        (top..count.min(top + rows))
+            .map(|slave| row(slave, slave == selected, &columns, app, view)),
+    );
     draw::lines(buffer, inner, &lines);
 }
 
 /// First row shown, such that the selection stands in the middle where it can.
 fn first_row(selected: usize, rows: usize, count: usize) -> usize {
-    selected.saturating_sub(rows / 2).min(count.saturating_sub(rows))
+    selected
+        .saturating_sub(rows / 2)
+        .min(count.saturating_sub(rows))
 }
 
 fn headings(columns: &Columns, app: &App) -> Line<'static> {
-    let modes = if columns.words { "mode → next" } else { "m→n" };
-    let ratio = if columns.ratio > 11 { "|F_t|/T_max" } else { "ratio" };
+    let modes = if columns.words {
+        "mode → next"
+    } else {
+        "m→n"
+    };
+    let ratio = if columns.ratio > 11 {
+        "|F_t|/T_max"
+    } else {
+        "ratio"
+    };
     let names = [" gap", " F_n", " F_t", " T_max", ratio, " slip"];
-    let mut text = format!("{:MARKS$}{:<name$} {:<mode$} ", "", "node", modes, name = columns.name, mode = columns.modes());
+    let mut text = format!(
+        "{:MARKS$}{:<name$} {:<mode$} ",
+        "",
+        "node",
+        modes,
+        name = columns.name,
+        mode = columns.modes()
+    );
     for (index, name) in names.iter().take(columns.shown).enumerate() {
-        let width = if index == 4 { columns.ratio } else { columns.number };
+        let width = if index == 4 {
+            columns.ratio
+        } else {
+            columns.number
+        };
         text += &format!("{name:<width$}");
     }
     Line::styled(text, app.theme.heading)
 }
 
-fn row<'a>(slave: usize, selected: bool, columns: &Columns, app: &App, view: &View<'a>) -> Line<'a> {
+fn row<'a>(
+    slave: usize,
+    selected: bool,
+    columns: &Columns,
+    app: &App,
+    view: &View<'a>,
+) -> Line<'a> {
     let theme = &app.theme;
     let record = view.record(slave);
     let changed = view.mode_before(slave) != view.mode(slave);
@@ -112,7 +174,7 @@ fn row<'a>(slave: usize, selected: bool, columns: &Columns, app: &App, view: &Vi
         Span::styled(if selected { "▸" } else { " " }, theme.focus),
         Span::styled(change_mark(changed, record), theme.strong),
         Span::styled(forced_mark(view.forced(slave)), theme.warning),
-        Span::styled(fitted(view.name(slave), columns.name), name_style),
+        Span::styled(fitted(view.slave(slave), columns.name), name_style),
         Span::raw(" "),
     ];
     spans.extend(modes(slave, changed, columns, app, view));
@@ -142,8 +204,18 @@ fn forced_mark(forced: Forced) -> &'static str {
 }
 
 /// Mode before and next, as words or letters, padded to the column.
-fn modes(slave: usize, changed: bool, columns: &Columns, app: &App, view: &View) -> Vec<Span<'static>> {
-    let spell = if columns.words { theme::word } else { theme::letter };
+fn modes(
+    slave: usize,
+    changed: bool,
+    columns: &Columns,
+    app: &App,
+    view: &View,
+) -> Vec<Span<'static>> {
+    let spell = if columns.words {
+        theme::word
+    } else {
+        theme::letter
+    };
     let style = |mode| match changed {
         true => app.theme.mode(mode).add_modifier(Modifier::BOLD),
         false => app.theme.mode(mode),
@@ -152,7 +224,11 @@ fn modes(slave: usize, changed: bool, columns: &Columns, app: &App, view: &View)
     let arrow = if columns.words { " → " } else { "→" };
     let (first, second) = (spell(before), spell(next));
     let used = first.len() + arrow.chars().count() + second.len();
-    let arrow_style = if changed { app.theme.strong } else { app.theme.faint };
+    let arrow_style = if changed {
+        app.theme.strong
+    } else {
+        app.theme.faint
+    };
     vec![
         Span::styled(first, style(before)),
         Span::styled(arrow, arrow_style),
@@ -163,7 +239,11 @@ fn modes(slave: usize, changed: bool, columns: &Columns, app: &App, view: &View)
 
 fn numbers(record: &NodeRecord, columns: &Columns, app: &App) -> Vec<Span<'static>> {
     let cell = |value| number::cell(value, columns.number);
-    let ratio = format!("{:<width$}", number::ratio(record.f_t, record.t_max), width = columns.ratio);
+    let ratio = format!(
+        "{:<width$}",
+        number::ratio(record.f_t, record.t_max),
+        width = columns.ratio
+    );
     let texts = [
         cell(record.gap),
         cell(record.f_n),
@@ -173,7 +253,12 @@ fn numbers(record: &NodeRecord, columns: &Columns, app: &App) -> Vec<Span<'stati
         cell(record.slip),
     ];
     let style = |index: usize| number_style(index, record, app);
-    texts.into_iter().take(columns.shown).enumerate().map(|(index, text)| Span::styled(text, style(index))).collect()
+    texts
+        .into_iter()
+        .take(columns.shown)
+        .enumerate()
+        .map(|(index, text)| Span::styled(text, style(index)))
+        .collect()
 }
 
 /// Tested numbers stand out where the test is a tie.
@@ -185,7 +270,13 @@ fn number_style(column: usize, record: &NodeRecord, app: &App) -> Style {
         5 => Tested::Slip,
         _ => return app.theme.text,
     };
-    match record.decision.tests.iter().flatten().any(|test| test.tested == tested && test.tie) {
+    match record
+        .decision
+        .tests
+        .iter()
+        .flatten()
+        .any(|test| test.tested == tested && test.tie)
+    {
         true => app.theme.warning,
         false => app.theme.text,
     }
@@ -195,7 +286,11 @@ fn number_style(column: usize, record: &NodeRecord, app: &App) -> Style {
 fn fitted(name: &str, width: usize) -> String {
     match name.chars().count() {
         count if count <= width => format!("{name:<width$}"),
-        _ => name.chars().take(width.saturating_sub(1)).chain(['…']).collect(),
+        _ => name
+            .chars()
+            .take(width.saturating_sub(1))
+            .chain(['…'])
+            .collect(),
     }
 }
 
@@ -205,7 +300,16 @@ mod tests {
 
     #[test]
     fn eighty_columns_keep_every_number() {
-        assert_eq!(Columns::fit(78, 6), Columns { name: 6, words: false, number: 11, ratio: 9, shown: 6 });
+        assert_eq!(
+            Columns::fit(78, 6),
+            Columns {
+                name: 6,
+                words: false,
+                number: 11,
+                ratio: 9,
+                shown: 6
+            }
+        );
         assert_eq!(Columns::fit(118, 8).number, 13);
         assert_eq!(Columns::fit(20, 8).shown, 0);
         assert_eq!(Columns::fit(0, 20).shown, 0);

@@ -3,7 +3,11 @@
 /// A number in a table cell: sign slot first, then as many of six significant digits as leave the last column
 /// empty, padded to the width. Decimal points stand in one column. An exact zero is `0` and nothing else is.
 pub fn cell(value: f64, width: usize) -> String {
-    let sign = if value.is_sign_negative() && value != 0.0 { "" } else { " " };
+    let sign = if value.is_sign_negative() && value != 0.0 {
+        ""
+    } else {
+        " "
+    };
     let text = match value {
         0.0 => " 0".into(),
         _ if !value.is_finite() => format!("{sign}{value}"),
@@ -55,7 +59,11 @@ pub fn plain(value: f64) -> String {
 /// `1` is a tie and `1-3e-9` is not. A dash where there is neither force nor friction.
 pub fn ratio(f_t: f64, t_max: f64) -> String {
     if t_max == 0.0 {
-        return if f_t == 0.0 { "–".into() } else { "∞".into() };
+        return if f_t == 0.0 {
+            "–".into()
+        } else {
+            "∞".into()
+        };
     }
     let ratio = (f_t / t_max).abs();
     // The difference of the magnitudes keeps the digits that the quotient loses.
@@ -63,7 +71,7 @@ pub fn ratio(f_t: f64, t_max: f64) -> String {
     match () {
         _ if off == 0.0 => "1".into(),
         _ if off.abs() < 5e-5 => format!("1{off:+.0e}"),
-        _ if ratio < 1e-3 || ratio >= 1e3 => format!("{ratio:.1e}"),
+        _ if !(1e-3..1e3).contains(&ratio) => format!("{ratio:.1e}"),
         _ => format!("{ratio:.4}"),
     }
 }

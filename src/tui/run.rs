@@ -1,7 +1,9 @@
 //! The event loop, and what it loops over: an app, a session, and commands that wait for the solver.
 
 use crate::debug::command::{Command, Unit};
-use crate::debug::session::Session;
+use crate::debug::report;
+use crate::debug::session::{Reply, Session};
+use crate::scene::{Scene, builtin};
 use crate::tui::app::{App, Effect, Offer};
 use crate::tui::draw;
 use crate::tui::keys;
@@ -33,7 +35,10 @@ pub fn run(scene: Option<String>, overrides: &[(String, String)]) -> Result<(), 
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let session = scene.map(|scene| load(&scene, overrides)).transpose().map_err(Error::Scene)?;
+    let session = scene
+        .map(|scene| load(&scene, overrides))
+        .transpose()
+        .map_err(Error::Scene)?;
     let mut debugger = Debugger::new(Theme::from_environment(), offers(), session);
     let signals = Signals::listen()?;
     let mut terminal = Terminal::enter()?;
@@ -91,13 +96,17 @@ fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
 
 /// Loads a scene.
 fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, String> {
-    let _ = (scene, overrides);
-    Err("not yet".into())
+    let scene = Scene::open(scene, overrides).map_err(|error| error.to_string())?;
+    Ok(Session::new(scene))
 }
 
 /// The built-in scenes.
-fn offers() -> Vec<Offer> {
-    Vec::new()
+pub fn offers() -> Vec<Offer> {
+    let offer = |scene: &builtin::Builtin| Offer {
+        name: scene.name.into(),
+        title: scene.title(),
+    };
+    builtin::list().iter().map(offer).collect()
 }
 
 /// What only the event loop can do.
@@ -131,7 +140,13 @@ impl Debugger {
             Some(_) => app.say("s is one minor iteration; ? lists the keys"),
             None => app.choose(),
         }
-        Debugger { app, session, queue: VecDeque::new(), endless: false, frames: 0 }
+        Debugger {
+            app,
+            session,
+            queue: VecDeque::new(),
+            endless: false,
+            frames: 0,
+        }
     }
 
     /// What the panes show.
@@ -191,7 +206,7 @@ impl Debugger {
     pub fn settle(&mut self) {
         while self.is_busy() || !self.queue.is_empty() {
             if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
-                self.app.say(reply.0);
+                self.tell(reply);
             }
             self.advance();
         }
@@ -216,14 +231,36 @@ impl Debugger {
         let Some(session) = &mut self.session else {
             return;
         };
-        self.endless = matches!(command, Command::Forward { unit: Unit::Run, .. });
+        self.endless = matches!(
+            command,
+            Command::Forward {
+                unit: Unit::Run,
+                ..
+            }
+        );
         match session.submit(command) {
-            Ok(reply) => self.app.say(reply.0),
+            Ok(reply) => self.tell(reply),
             Err(message) => {
                 self.queue.clear();
                 self.app.complain(message);
             }
         }
+    }
+
+    /// Says what a command led to, unless the status at the top says the same.
+    fn tell(&mut self, Reply(text): Reply) {
+        let known = self.session.as_ref().and_then(|session| {
+            match (session.is_running(), &session.frame().event) {
+                (true, _) => Some(text.clone()),
+                (false, Some(event)) => Some(report::outcome(session.model(), event)),
+                (false, None) => None,
+            }
+        });
+        self.app.say(if known.is_some_and(|known| known == text) {
+            String::new()
+        } else {
+            text
+        });
     }
 
     fn interrupt(&mut self) {
@@ -255,10 +292,12 @@ impl Debugger {
         let reply = session.poll();
         let said = reply.is_some();
         if let Some(reply) = reply {
-            self.app.say(reply.0);
+            self.tell(reply);
         }
-        let frames = session.frames().len();
-        let busy = session.is_running();
+        let Some(session) = &self.session else {
+            return said;
+        };
+        let (frames, busy) = (session.frames().len(), session.is_running());
         let grown = frames != std::mem::replace(&mut self.frames, frames);
         if busy && grown {
             self.app.tick += 1;
@@ -266,7 +305,9 @@ impl Debugger {
         let panicked = terminal::panic_elsewhere();
         let failed = panicked.is_some();
         if let Some(message) = panicked {
-            self.app.complain(format!("the solver broke down, please report this: {message}"));
+            self.app.complain(format!(
+                "the solver broke down, please report this: {message}"
+            ));
         }
         if !busy && let Some(command) = self.queue.pop_front() {
             self.start(command);

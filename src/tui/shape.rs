@@ -32,7 +32,10 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if inner.is_empty() {
         return;
     }
-    let field = Rect { height: inner.height.saturating_sub(1).max(1), ..inner };
+    let field = Rect {
+        height: inner.height.saturating_sub(1).max(1),
+        ..inner
+    };
     let mut canvas = Canvas::new(field);
     let window = Window::new(&canvas, &bounds(view), &app.camera);
     bodies(&mut canvas, &window, app, view);
@@ -53,14 +56,15 @@ struct Bounds {
 }
 
 impl Bounds {
-    const NOTHING: Bounds = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+    const NOTHING: Bounds = Bounds {
+        low: [f64::INFINITY; 2],
+        high: [f64::NEG_INFINITY; 2],
+    };
 
     fn add(&mut self, point: Point) {
-        for axis in 0..2 {
-            if point[axis].is_finite() {
-                self.low[axis] = self.low[axis].min(point[axis]);
-                self.high[axis] = self.high[axis].max(point[axis]);
-            }
+        for (axis, x) in point.into_iter().enumerate().filter(|(_, x)| x.is_finite()) {
+            self.low[axis] = self.low[axis].min(x);
+            self.high[axis] = self.high[axis].max(x);
         }
     }
 
@@ -87,22 +91,34 @@ fn bounds(view: &View) -> Bounds {
     }
     let reach = 0.4 * bodies.diagonal();
     let mut all = bodies;
-    for node in view.model.surfaces.iter().flat_map(|surface| surface.elements.iter().flatten()) {
+    for node in view
+        .model
+        .surfaces
+        .iter()
+        .flat_map(|surface| surface.elements.iter().flatten())
+    {
         let at = view.place(*node);
-        let clamped = |axis: usize| at[axis].clamp(bodies.low[axis] - reach, bodies.high[axis] + reach);
+        let clamped =
+            |axis: usize| at[axis].clamp(bodies.low[axis] - reach, bodies.high[axis] + reach);
         if bodies.diagonal().is_finite() {
             all.add([clamped(0), clamped(1)]);
         }
     }
     let step = all.diagonal() / 16.0;
     if !(step > 0.0 && step.is_finite()) {
-        return Bounds { low: [-1.0, -1.0], high: [1.0, 1.0] };
+        return Bounds {
+            low: [-1.0, -1.0],
+            high: [1.0, 1.0],
+        };
     }
     // A power of two is a step that itself seldom changes.
     let step = 2f64.powf(step.log2().ceil());
     let down = |x: f64| (x / step).floor() * step;
     let up = |x: f64| (x / step).ceil() * step;
-    Bounds { low: all.low.map(down), high: all.high.map(up) }
+    Bounds {
+        low: all.low.map(down),
+        high: all.high.map(up),
+    }
 }
 
 /// The map from the scene to the dots: equal in both directions, y upwards.
@@ -124,7 +140,12 @@ impl Window {
         let middle = [0, 1].map(|axis| {
             0.5 * (bounds.low[axis] + bounds.high[axis]) + camera.pan[axis] * size[axis] / whole
         });
-        Window { middle, scale, size, extent: size[0].min(size[1]) / scale }
+        Window {
+            middle,
+            scale,
+            size,
+            extent: size[0].min(size[1]) / scale,
+        }
     }
 
     fn dot(&self, point: Point) -> Dot {
@@ -143,13 +164,22 @@ fn curve(nodes: &[Point]) -> Vec<Point> {
     (0..=pieces)
         .map(|piece| {
             let shape = lagrange::shape(nodes.len(), -1.0 + 2.0 * piece as f64 / pieces as f64);
-            [0, 1].map(|axis| nodes.iter().zip(shape.n).map(|(node, n)| n * node[axis]).sum())
+            [0, 1].map(|axis| {
+                nodes
+                    .iter()
+                    .zip(shape.n)
+                    .map(|(node, n)| n * node[axis])
+                    .sum()
+            })
         })
         .collect()
 }
 
 fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: ratatui::style::Style) {
-    let dots: Vec<Dot> = curve(nodes).into_iter().map(|point| window.dot(point)).collect();
+    let dots: Vec<Dot> = curve(nodes)
+        .into_iter()
+        .map(|point| window.dot(point))
+        .collect();
     canvas.polyline(&dots, style);
 }
 
@@ -160,7 +190,10 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
         })
     };
     for element in elements() {
-        let reference: Vec<Point> = element.iter().map(|node| view.model.nodes[*node].at).collect();
+        let reference: Vec<Point> = element
+            .iter()
+            .map(|node| view.model.nodes[*node].at)
+            .collect();
         draw_curve(canvas, window, &reference, app.theme.faint);
     }
     for element in elements() {
@@ -172,7 +205,12 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
 /// Master surfaces, with a short line from the middle of each element to its outward side.
 fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     let style = app.theme.text;
-    for element in view.model.surfaces.iter().flat_map(|surface| &surface.elements) {
+    for element in view
+        .model
+        .surfaces
+        .iter()
+        .flat_map(|surface| &surface.elements)
+    {
         let nodes: Vec<Point> = element.iter().map(|node| view.place(*node)).collect();
         draw_curve(canvas, window, &nodes, style);
         for (from, to) in normals(&nodes, window) {
@@ -193,10 +231,22 @@ fn normals(nodes: &[Point], window: &Window) -> Vec<(Point, Point)> {
     let normal = |index: usize| {
         let xi = -1.0 + (2 * index + 1) as f64 / count as f64;
         let shape = lagrange::shape(nodes.len(), xi);
-        let sum = |n: &[f64], axis: usize| nodes.iter().zip(n).map(|(node, n)| n * node[axis]).sum::<f64>();
-        let (foot, walk) = ([0, 1].map(|axis| sum(&shape.n, axis)), [0, 1].map(|axis| sum(&shape.d, axis)));
+        let sum = |n: &[f64], axis: usize| {
+            nodes
+                .iter()
+                .zip(n)
+                .map(|(node, n)| n * node[axis])
+                .sum::<f64>()
+        };
+        let (foot, walk) = (
+            [0, 1].map(|axis| sum(&shape.n, axis)),
+            [0, 1].map(|axis| sum(&shape.d, axis)),
+        );
         let size = walk[0].hypot(walk[1]);
-        let tip = [foot[0] + length * walk[1] / size, foot[1] - length * walk[0] / size];
+        let tip = [
+            foot[0] + length * walk[1] / size,
+            foot[1] - length * walk[0] / size,
+        ];
         (size > 0.0).then_some((foot, tip))
     };
     match nodes.len() {
@@ -211,7 +261,12 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
         return 0.0;
     };
     let size = |f_n: f64, f_t: f64| f_n.hypot(f_t);
-    let largest = event.nodes.iter().map(|node| size(node.f_n, node.f_t)).filter(|f| f.is_finite()).fold(0.0, f64::max);
+    let largest = event
+        .nodes
+        .iter()
+        .map(|node| size(node.f_n, node.f_t))
+        .filter(|f| f.is_finite())
+        .fold(0.0, f64::max);
     if largest == 0.0 {
         return 0.0;
     }
@@ -220,7 +275,11 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
         let scale = FORCE * window.extent / largest;
         let tip = view.place(slave.node);
         let tail = [0, 1].map(|axis| tip[axis] - scale * (node.f_n * n[axis] + node.f_t * t[axis]));
-        canvas.line(window.dot(tail), window.dot(tip), app.theme.bad.remove_modifier(Modifier::REVERSED));
+        canvas.line(
+            window.dot(tail),
+            window.dot(tip),
+            app.theme.bad.remove_modifier(Modifier::REVERSED),
+        );
     }
     largest
 }
@@ -252,12 +311,25 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, app: &App) {
     let theme = &app.theme;
     let mut spans = vec![Span::styled(" faint: unloaded", theme.faint)];
     if longest > 0.0 {
-        spans.push(Span::styled(format!("   longest force {}", number::short(longest)), theme.faint));
+        spans.push(Span::styled(
+            format!("   longest force {}", number::short(longest)),
+            theme.faint,
+        ));
     }
     if app.camera != Camera::ALL {
-        spans.push(Span::styled(format!("   ×{:.2}  0: all of it", app.camera.zoom), theme.faint));
+        spans.push(Span::styled(
+            format!("   ×{:.2}  0: all of it", app.camera.zoom),
+            theme.faint,
+        ));
     }
-    Line::from(spans).render(Rect { y: inner.bottom() - 1, height: 1, ..inner }, buffer);
+    Line::from(spans).render(
+        Rect {
+            y: inner.bottom() - 1,
+            height: 1,
+            ..inner
+        },
+        buffer,
+    );
 }
 
 #[cfg(test)]
@@ -267,7 +339,10 @@ mod tests {
     #[test]
     fn scale_is_equal_in_both_directions_and_y_points_up() {
         let canvas = Canvas::new(Rect::new(0, 0, 50, 10));
-        let bounds = Bounds { low: [0.0, 0.0], high: [1.0, 1.0] };
+        let bounds = Bounds {
+            low: [0.0, 0.0],
+            high: [1.0, 1.0],
+        };
         let window = Window::new(&canvas, &bounds, &Camera::ALL);
         let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|p| window.dot(p));
         assert!((b[0] - a[0] - (a[1] - c[1])).abs() < 1e-9);
@@ -276,8 +351,16 @@ mod tests {
 
     #[test]
     fn the_normal_is_on_the_right_of_the_walk() {
-        let window = Window { middle: [0.0; 2], scale: 1.0, size: [1.0; 2], extent: 0.5 / NORMAL };
-        assert_eq!(normals(&[[0.0, 0.0], [-2.0, 0.0]], &window), [([-1.0, 0.0], [-1.0, 0.5])]);
+        let window = Window {
+            middle: [0.0; 2],
+            scale: 1.0,
+            size: [1.0; 2],
+            extent: 0.5 / NORMAL,
+        };
+        assert_eq!(
+            normals(&[[0.0, 0.0], [-2.0, 0.0]], &window),
+            [([-1.0, 0.0], [-1.0, 0.5])]
+        );
         assert!(normals(&[[0.0, 0.0], [0.0, 0.0]], &window).is_empty());
     }
 }

@@ -11,8 +11,8 @@ use crate::tui::view::View;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{
-    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode,
-    enable_raw_mode,
+    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
+    disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
@@ -100,7 +100,13 @@ fn take() -> io::Result<()> {
 /// Gives the terminal back, if it is ours. Errors are of no use here: there may be no terminal any more.
 fn give_back() {
     if TAKEN.swap(false, Ordering::SeqCst) {
-        let _ = execute!(stdout(), EndSynchronizedUpdate, DisableBracketedPaste, LeaveAlternateScreen, Show);
+        let _ = execute!(
+            stdout(),
+            EndSynchronizedUpdate,
+            DisableBracketedPaste,
+            LeaveAlternateScreen,
+            Show
+        );
         let _ = stdout().flush();
         let _ = disable_raw_mode();
     }
@@ -142,13 +148,25 @@ pub struct Signals {
 impl Signals {
     /// Listens from now on.
     pub fn listen() -> io::Result<Self> {
-        let mut signals =
-            Signals { end: Arc::default(), stop: Arc::default(), resumed: Arc::default(), registered: Vec::new() };
+        let mut signals = Signals {
+            end: Arc::default(),
+            stop: Arc::default(),
+            resumed: Arc::default(),
+            registered: Vec::new(),
+        };
         for signal in [SIGTERM, SIGINT, SIGHUP] {
-            signals.registered.push(flag::register_usize(signal, signals.end.clone(), signal as usize)?);
+            signals.registered.push(flag::register_usize(
+                signal,
+                signals.end.clone(),
+                signal as usize,
+            )?);
         }
-        signals.registered.push(flag::register(SIGTSTP, signals.stop.clone())?);
-        signals.registered.push(flag::register(SIGCONT, signals.resumed.clone())?);
+        signals
+            .registered
+            .push(flag::register(SIGTSTP, signals.stop.clone())?);
+        signals
+            .registered
+            .push(flag::register(SIGCONT, signals.resumed.clone())?);
         Ok(signals)
     }
 

@@ -92,7 +92,8 @@ impl Theme {
 
     /// The cell of Table 2 that fired.
     pub fn lit(&self, mode: Mode) -> Style {
-        self.mode(mode).add_modifier(Modifier::REVERSED | Modifier::BOLD)
+        self.mode(mode)
+            .add_modifier(Modifier::REVERSED | Modifier::BOLD)
     }
 }
 

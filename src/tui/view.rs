@@ -1,14 +1,16 @@
 //! What the panes show: a borrowed, read-only look at a session.
 
 use crate::debug::session::{Frame, Session};
-use crate::scene::{Mode, Model};
-use crate::solve::{Event, Forced, NodeRecord, Norms};
+use crate::scene::{Mode, Model, Scene};
+use crate::solve::{Event, Forced, Intervention, NodeRecord, Norms, Position};
 
 /// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
 #[derive(Debug, Clone)]
 pub struct View<'a> {
     /// File or built-in name of the scene.
-    pub scene: &'a str,
+    pub name: &'a str,
+    /// The scene as read, for the names that it gives its nodes; tests by hand have none.
+    pub scene: Option<&'a Scene>,
     pub model: &'a Model,
     /// The history, oldest first; never empty.
     pub frames: &'a [Frame],
@@ -24,7 +26,8 @@ impl<'a> View<'a> {
     /// The look of a session now.
     pub fn of(session: &'a Session) -> Self {
         View {
-            scene: session.scene_name(),
+            name: session.scene_name(),
+            scene: Some(session.scene()),
             model: session.model(),
             frames: session.frames(),
             cursor: session.cursor(),
@@ -38,9 +41,24 @@ impl<'a> View<'a> {
         &self.frames[self.cursor]
     }
 
-    /// The minor iteration that led to the shown frame; none at the start.
+    /// The minor iteration that led to the shown frame; none at the start, and none where the increment starts again,
+    /// since what was found before that is not about this state.
     pub fn event(&self) -> Option<&'a Event> {
-        self.frame().event.as_deref()
+        let (event, next) = (self.frame().event.as_deref()?, self.frame().state.next);
+        let again =
+            event.position.increment == next.increment && event.position.attempt != next.attempt;
+        (!again).then_some(event)
+    }
+
+    /// What the user changed in the shown frame, if it is due to that.
+    pub fn intervention(&self) -> Option<&'a Intervention> {
+        self.frame().intervention.as_ref()
+    }
+
+    /// Where the solver is: the minor iteration that is shown, or else the one to come.
+    pub fn position(&self) -> Position {
+        self.event()
+            .map_or(self.frame().state.next, |event| event.position)
     }
 
     /// What that minor iteration found at a slave node.
@@ -49,7 +67,7 @@ impl<'a> View<'a> {
     }
 
     /// Name of a slave node.
-    pub fn name(&self, slave: usize) -> &'a str {
+    pub fn slave(&self, slave: usize) -> &'a str {
         match self.model.slaves.get(slave) {
             Some(slave) => &self.model.nodes[slave.node].name,
             None => "",
@@ -63,7 +81,8 @@ impl<'a> View<'a> {
 
     /// The mode that it had in the shown minor iteration; at the start the one that it starts with.
     pub fn mode_before(&self, slave: usize) -> Mode {
-        self.record(slave).map_or(self.mode(slave), |record| record.decision.before)
+        self.record(slave)
+            .map_or(self.mode(slave), |record| record.decision.before)
     }
 
     /// How the user stands behind its next mode, or else behind the one that it had.
