@@ -10,14 +10,14 @@ use ratatui::style::{Color, Modifier};
 use std::sync::Arc;
 use stickslip::contact::decision::{Decision, Numbers, Rule, Ties, decide};
 use stickslip::debug::command::{Command, Unit};
-use stickslip::debug::session::Frame;
+use stickslip::debug::session::{Frame, Session};
 use stickslip::scene::model::{Beam, Body, BodyKind, Dofs, Node, Slave, Surface};
-use stickslip::scene::{Friction, Mode, Model, Settings};
+use stickslip::scene::{Friction, Mode, Model, Scene, Settings};
 use stickslip::solve::event::{Cycle, Position};
 use stickslip::solve::{Event, Failure, Forced, NodeRecord, Norms, Outcome, State};
 use stickslip::tui::app::{App, Effect, Offer};
 use stickslip::tui::theme::Theme;
-use stickslip::tui::{View, draw, keys};
+use stickslip::tui::{Debugger, View, draw, keys};
 
 /// A beam of five nodes over a floor; all of its nodes are slaves, or as many as asked for.
 fn model(slaves: usize) -> Model {
@@ -697,5 +697,106 @@ fn no_size_of_the_screen_breaks_it() {
                 }
             }
         }
+    }
+}
+
+/// A debugger on a built-in scene.
+fn debugger(scene: &str) -> Debugger {
+    let scene = Scene::open(scene, &[]).expect("a built-in scene");
+    Debugger::new(Theme::mono(), vec![], Some(Session::new(scene)))
+}
+
+#[test]
+fn the_first_scene_at_three_sizes() {
+    let mut debugger = debugger("01-pinned-beam-rough-floor");
+    debugger.type_keys("5 f s s");
+    for (width, height) in [(80, 24), (120, 40), (200, 60)] {
+        insta::assert_snapshot!(
+            format!("first-{width}x{height}"),
+            debugger.text(width, height)
+        );
+    }
+    debugger.type_keys("e");
+    insta::assert_snapshot!("first-explain-120x40", debugger.text(120, 40));
+}
+
+#[test]
+fn stepping_back_shows_the_same_screens() {
+    let mut debugger = debugger("01-pinned-beam-rough-floor");
+    let mut screens = vec![debugger.text(120, 40)];
+    for _ in 0..6 {
+        debugger.type_keys("s");
+        screens.push(debugger.text(120, 40));
+    }
+    let panes = |screen: &str| {
+        screen
+            .lines()
+            .skip(3)
+            .take(35)
+            .map(String::from)
+            .collect::<Vec<_>>()
+    };
+    for screen in screens.iter().rev().skip(1) {
+        debugger.type_keys("S");
+        assert_eq!(panes(&debugger.text(120, 40)), panes(screen));
+    }
+    debugger.type_keys("S");
+    assert!(debugger.text(120, 40).contains("this is the start"));
+}
+
+#[test]
+fn a_person_ends_the_oscillation() {
+    let mut debugger = debugger("osc-inclined-cantilever");
+    debugger.type_keys("c");
+    let cycle = debugger.text(120, 40);
+    assert!(
+        cycle.contains("✗ the modes 2-cycle since minor 1: beam.5 free > fixed"),
+        "{cycle}"
+    );
+    debugger.type_keys("m s");
+    assert!(debugger.text(120, 40).contains("▸*◇beam.5 fixed → sliding"));
+    debugger.type_keys("S m S c");
+    let end = debugger.text(120, 40);
+    assert!(
+        end.contains("✓ load 1 accepted") && end.contains("◆ 1 held"),
+        "{end}"
+    );
+    debugger.type_keys("S M");
+    let released = debugger.text(120, 40);
+    assert!(!released.contains("◆"), "{released}");
+}
+
+#[test]
+fn another_increment_starts_the_increment_again() {
+    let mut debugger = debugger("osc-inclined-cantilever");
+    debugger.type_keys("s s i 0 . 0 1 Enter");
+    let again = debugger.text(120, 40);
+    assert!(
+        again.contains("increment 1   attempt 2   major 1   minor 1   load 0.01"),
+        "{again}"
+    );
+    assert!(again.contains("increment 0.01 (scene: 0.05)"), "{again}");
+    debugger.type_keys("i - 1 Enter");
+    assert!(debugger.text(120, 40).contains("'-1' is no increment"));
+}
+
+#[test]
+fn commands_by_name_reach_the_solver_and_its_refusals_the_screen() {
+    let mut debugger = debugger("01-pinned-beam-rough-floor");
+    // Among them an alias of beam.5, a value out of range, and a file that is not there.
+    for (line, shown) in [
+        ("force beam.end fixed", "◇beam.5 fixed"),
+        ("friction 20", "friction changed"),
+        ("friction 95", "90"),
+        ("step 3", "minor 3"),
+        ("reverse-step 3", "2 of 5 steps"),
+        ("open nowhere.ron", "nowhere.ron"),
+        ("open osc-inclined-cantilever", "Inclined cantilever"),
+    ] {
+        debugger.type_keys(":");
+        debugger.type_text(line);
+        debugger.type_keys("Enter");
+        let screen = debugger.text(120, 40);
+        assert!(screen.contains(shown), "after '{line}':\n{screen}");
     }
 }

@@ -7,7 +7,7 @@ use crate::solve::{Forced, NodeRecord};
 use crate::tui::app::App;
 use crate::tui::draw;
 use crate::tui::layout::Pane;
-use crate::tui::number::long;
+use crate::tui::number::{self, long};
 use crate::tui::theme::{self, Theme};
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
@@ -72,7 +72,95 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     all.extend(tests);
     all.extend(air(spare >= 5 || (2..4).contains(&spare)));
     all.extend(words);
+    if let Some(record) = record
+        && (inner.height as usize) > all.len() + MEASURED
+    {
+        all.push(Line::default());
+        all.extend(measured(record, view, theme));
+    }
     draw::lines(buffer, inner, &all);
+}
+
+/// Lines that [`measured`] takes.
+const MEASURED: usize = 12;
+
+/// All that the minor iteration found at the node, with a word on each, for the screen that has room for it.
+fn measured(record: &NodeRecord, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+    let signed = |value: f64| {
+        if value < 0.0 {
+            long(value)
+        } else {
+            format!(" {}", long(value))
+        }
+    };
+    let pair = |[x, y]: [f64; 2]| format!(" ({}, {})", long(x), long(y));
+    let place = match record.spot {
+        None => " past the ends of every surface".into(),
+        Some(spot) => {
+            let surface = view
+                .model
+                .surfaces
+                .get(spot.surface)
+                .map_or("?", |surface| &surface.name);
+            format!(
+                " {surface}, element {}, ξ = {}",
+                spot.element + 1,
+                long(spot.xi)
+            )
+        }
+    };
+    let rows = [
+        (
+            "gap",
+            signed(record.gap),
+            "negative: penetration; on the geometry that this major iteration froze",
+        ),
+        (
+            "F_n",
+            signed(record.f_n),
+            "total normal force on the slave node; compression is positive",
+        ),
+        (
+            "F_t",
+            signed(record.f_t),
+            "total tangential force, along t (n turned anticlockwise)",
+        ),
+        (
+            "T_max",
+            signed(record.t_max),
+            "what friction can carry, with its sign: |F_n| tan φ + cohesion",
+        ),
+        (
+            "T_max used",
+            signed(record.t_max_used),
+            "the one that this minor iteration was solved with",
+        ),
+        (
+            "|F_t|/T_max",
+            format!(" {}", number::ratio(record.f_t, record.t_max)),
+            "how much of the friction is used",
+        ),
+        (
+            "slip",
+            signed(record.slip),
+            "u_tS* − u_tS, as the settings count it",
+        ),
+        ("S*", place, ""),
+        ("at", pair(record.foot), ""),
+        ("normal", pair(record.normal), ""),
+    ];
+    let heading = Line::styled(" What this minor iteration found", theme.heading);
+    let row = |(name, value, meaning): (&str, String, &'static str)| {
+        Line::from(vec![
+            Span::styled(format!("   {name:<13}"), theme.key),
+            Span::raw(format!("{value:<20}")),
+            Span::styled(meaning, theme.faint),
+        ])
+    };
+    [heading]
+        .into_iter()
+        .chain(rows.into_iter().map(row))
+        .collect()
 }
 
 /// Table 2 as lines, with the row of the mode before and the cell that fired lit.
@@ -120,6 +208,12 @@ fn grid(
                 let (mark, style) = cell_look(decision, *mode, *next, theme);
                 let mark = if part == 0 { mark } else { " " };
                 let text = TABLE_2[row][column][part];
+                // The last column takes what the division left over.
+                let cell = if column == 2 {
+                    width.saturating_sub(LABEL + 6 + 2 * cell)
+                } else {
+                    cell
+                };
                 let room = cell.saturating_sub(1);
                 spans.extend([
                     bar.clone(),
@@ -232,12 +326,8 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
             Ties::Printed => " An exact tie, read as the table is printed.",
         };
     }
-    let sliding = decision.next == Mode::Sliding && record.t_max != record.t_max_used;
-    if sliding && !decision.changes() {
-        text += &format!(
-            " T_max is not settled: {} was used.",
-            long(record.t_max_used)
-        );
+    if view.t_max_moves(slave) {
+        text += &format!(" T_max still moves: {} was used.", long(record.t_max_used));
     }
     if record.carried.contains(&true) {
         text += " A support carries a part of the force.";
@@ -249,8 +339,11 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
                 theme::word(mode)
             );
         }
-        Forced::Held(mode) if decision.rule != Rule::Held => {
+        Forced::Held(mode) if record.forced != Forced::Held(mode) => {
             text += &format!(" You hold it {} from here on.", theme::word(mode));
+        }
+        Forced::Held(_) if decision.rule != Rule::Held => {
+            text += " You hold it, and Table 2 agrees."
         }
         _ => {}
     }

@@ -28,5 +28,5 @@ pub mod view;
 
 pub use app::{App, Effect};
 pub use draw::picture;
-pub use run::run;
+pub use run::{Debugger, Error, run, screen};
 pub use view::View;

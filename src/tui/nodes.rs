@@ -172,7 +172,7 @@ fn row<'a>(
     };
     let mut spans = vec![
         Span::styled(if selected { "▸" } else { " " }, theme.focus),
-        Span::styled(change_mark(changed, record), theme.strong),
+        Span::styled(change_mark(changed, view.t_max_moves(slave)), theme.strong),
         Span::styled(forced_mark(view.forced(slave)), theme.warning),
         Span::styled(fitted(view.slave(slave), columns.name), name_style),
         Span::raw(" "),
@@ -186,10 +186,10 @@ fn row<'a>(
 }
 
 /// `*` where the mode changes, `~` where T_max has not settled.
-fn change_mark(changed: bool, record: Option<&NodeRecord>) -> &'static str {
-    match record {
-        _ if changed => "*",
-        Some(record) if record.t_max != record.t_max_used => "~",
+fn change_mark(changed: bool, t_max_moves: bool) -> &'static str {
+    match (changed, t_max_moves) {
+        (true, _) => "*",
+        (_, true) => "~",
         _ => " ",
     }
 }

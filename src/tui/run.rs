@@ -30,7 +30,10 @@ pub enum Error {
 }
 
 /// Runs the debugger on a scene (a file or a built-in one), with settings of the scene overridden; without a scene it
-/// offers the built-in ones.
+/// offers the built-in ones. A signal that ends the process ends it here, with the terminal restored.
+///
+/// # Errors
+/// If there is no terminal, the scene cannot be loaded, or the terminal fails.
 pub fn run(scene: Option<String>, overrides: &[(String, String)]) -> Result<(), Error> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
@@ -48,6 +51,18 @@ pub fn run(scene: Option<String>, overrides: &[(String, String)]) -> Result<(), 
         terminal::obey(signal)?;
     }
     ended.map_err(Error::from)
+}
+
+/// The screen after some keys, as plain text: the program's own picture of itself. Keys are named as in the table and
+/// parted by blanks; the solver is waited for after each.
+///
+/// # Errors
+/// If the scene cannot be loaded.
+pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
+    let session = load(scene, &[]).map_err(Error::Scene)?;
+    let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
+    debugger.type_keys(keys);
+    Ok(debugger.text(width, height))
 }
 
 /// How long to wait for a key: while the solver is at work the screen follows it.

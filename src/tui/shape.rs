@@ -89,7 +89,7 @@ fn bounds(view: &View) -> Bounds {
     if bodies.diagonal() <= 0.0 || !bodies.diagonal().is_finite() {
         view.model.nodes.iter().for_each(|node| bodies.add(node.at));
     }
-    let reach = 0.4 * bodies.diagonal();
+    let reach = 0.2 * bodies.diagonal();
     let mut all = bodies;
     for node in view
         .model

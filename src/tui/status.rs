@@ -140,7 +140,7 @@ fn interventions(view: &View) -> Option<String> {
     let controls = &view.frame().state.controls;
     let increment = (controls.increment != view.model.increment).then(|| {
         format!(
-            "increment {} for {}",
+            "increment {} (scene: {})",
             number::plain(controls.increment),
             number::plain(view.model.increment)
         )

@@ -1,8 +1,7 @@
 //! The real terminal: taken over, and given back whatever happens.
 //!
 //! It is given back when [`Terminal`] is dropped (the end, or an error on its way up), by the panic hook (before the
-//! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP, which only
-//! raise a flag that the event loop looks at. Ctrl-Z and SIGTSTP give it back, stop the process as the shell
+//! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP give it back, stop the process as the shell
 //! expects, and take it again with a full redraw when the process goes on.
 
 use crate::tui::app::App;
@@ -17,11 +16,13 @@ use crossterm::terminal::{
 use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
+use signal_hook::iterator::Handle;
 use signal_hook::{SigId, flag, low_level};
 use std::io::{self, Stdout, Write, stdout};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::thread;
+use std::time::Duration;
 
 /// Whether the terminal is ours at this moment.
 static TAKEN: AtomicBool = AtomicBool::new(false);
@@ -135,39 +136,36 @@ pub fn panic_elsewhere() -> Option<String> {
     PANIC.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
-/// Signals as flags for the event loop.
+/// Signals, as flags for the event loop.
 #[derive(Debug)]
 pub struct Signals {
     /// Number of the signal that asks for the end, or 0.
     end: Arc<AtomicUsize>,
+    watch: Handle,
     stop: Arc<AtomicBool>,
     resumed: Arc<AtomicBool>,
-    registered: Vec<SigId>,
+    registered: [SigId; 2],
 }
+
+/// How long the event loop has to end by itself once a signal asks for it.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 impl Signals {
     /// Listens from now on.
     pub fn listen() -> io::Result<Self> {
-        let mut signals = Signals {
-            end: Arc::default(),
-            stop: Arc::default(),
-            resumed: Arc::default(),
-            registered: Vec::new(),
-        };
-        for signal in [SIGTERM, SIGINT, SIGHUP] {
-            signals.registered.push(flag::register_usize(
-                signal,
-                signals.end.clone(),
-                signal as usize,
-            )?);
-        }
-        signals
-            .registered
-            .push(flag::register(SIGTSTP, signals.stop.clone())?);
-        signals
-            .registered
-            .push(flag::register(SIGCONT, signals.resumed.clone())?);
-        Ok(signals)
+        let (end, stop, resumed) = (Arc::default(), Arc::default(), Arc::default());
+        let watch = watch(&end)?;
+        let registered = [
+            flag::register(SIGTSTP, Arc::clone(&stop))?,
+            flag::register(SIGCONT, Arc::clone(&resumed))?,
+        ];
+        Ok(Signals {
+            end,
+            watch,
+            stop,
+            resumed,
+            registered,
+        })
     }
 
     /// The signal that asks for the end, if one came.
@@ -191,10 +189,28 @@ impl Signals {
 
 impl Drop for Signals {
     fn drop(&mut self) {
-        self.registered.drain(..).for_each(|id| {
+        self.watch.close();
+        for id in self.registered {
             low_level::unregister(id);
-        });
+        }
     }
+}
+
+/// Waits on a thread of its own for the signals that end the process. The event loop is told and given a moment;
+/// it may be stuck, since the terminal library reads for ever from a terminal that is gone.
+fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
+    let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
+    let handle = signals.handle();
+    let end = Arc::clone(end);
+    thread::spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            end.store(signal as usize, Ordering::SeqCst);
+            thread::sleep(PATIENCE);
+            give_back();
+            let _ = obey(signal);
+        }
+    });
+    Ok(handle)
 }
 
 /// Ends the process as the signal would have without us, so that whoever sent it sees that.

@@ -2,7 +2,7 @@
 
 use crate::debug::session::{Frame, Session};
 use crate::scene::{Mode, Model, Scene};
-use crate::solve::{Event, Forced, Intervention, NodeRecord, Norms, Position};
+use crate::solve::{Event, Forced, Intervention, NodeRecord, Norms, Outcome, Position};
 
 /// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
 #[derive(Debug, Clone)]
@@ -25,7 +25,7 @@ pub struct View<'a> {
 impl<'a> View<'a> {
     /// The look of a session now.
     pub fn of(session: &'a Session) -> Self {
-        View {
+        let mut view = View {
             name: session.scene_name(),
             scene: Some(session.scene()),
             model: session.model(),
@@ -33,7 +33,11 @@ impl<'a> View<'a> {
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.residual_history(),
+        };
+        if view.event().is_none() {
+            view.residuals.clear();
         }
+        view
     }
 
     /// The frame that is shown.
@@ -85,12 +89,27 @@ impl<'a> View<'a> {
             .map_or(self.mode(slave), |record| record.decision.before)
     }
 
-    /// How the user stands behind its next mode, or else behind the one that it had.
+    /// How the user stands behind its next mode, or else behind the one that it had in the shown minor iteration.
     pub fn forced(&self, slave: usize) -> Forced {
         match (self.frame().state.nodes[slave].forced, self.record(slave)) {
-            (Forced::No, Some(record)) => record.forced,
+            (Forced::No, Some(record)) if self.intervention().is_none() => record.forced,
             (forced, _) => forced,
         }
+    }
+
+    /// Whether a sliding node's T_max still moves by more than the tolerance, so that it is solved for again.
+    pub fn t_max_moves(&self, slave: usize) -> bool {
+        let (Some(event), Some(record)) = (self.event(), self.record(slave)) else {
+            return false;
+        };
+        let settled = matches!(
+            event.outcome,
+            Outcome::Major { settled: true, .. } | Outcome::Increment { .. }
+        );
+        let slides =
+            record.decision.before == Mode::Sliding && record.decision.next == Mode::Sliding;
+        let least = self.frame().state.controls.settings.tolerance * event.before.scale;
+        slides && !settled && (record.t_max - record.t_max_used).abs() > least
     }
 
     /// Where a node is: its place in the reference shape, displaced.
