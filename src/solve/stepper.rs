@@ -493,6 +493,9 @@ impl Stepper {
     /// Residual method 2: the total interaction force at a slave node is the nodal force of the current stresses
     /// less the applied load. Where a support shares the node's force, or the node is itself part of a master
     /// surface, the stresses cannot tell it apart and it stays accumulated.
+    ///
+    /// T_max stays that of the last minor iteration: the stresses carry the whole error of the linearisation, which
+    /// can exceed F_n itself, and a first trial with such a T_max opens contacts that are closed.
     fn take_forces_from_stresses(&mut self) {
         let mut changed = false;
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
@@ -516,9 +519,6 @@ impl Stepper {
             changed = true;
         }
         if changed {
-            for (s, node) in self.state.nodes.iter_mut().enumerate() {
-                node.t_max = t_max(&self.state.controls.friction[s], node.f_n, node.sign);
-            }
             self.system.rebalance(&self.model, &self.state);
         }
     }
@@ -537,7 +537,7 @@ impl Stepper {
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         start.leg = leg;
-        start.u = self.state.u.clone();
+        Arc::make_mut(&mut start.u).copy_from_slice(&self.state.u);
         start.nodes.clone_from(&self.state.nodes);
         let last = leg + 1 == self.model.path.len();
         if last {

@@ -1,0 +1,54 @@
+//! The iteration loops do not allocate once they are warm. A program of its own, since it counts for all threads.
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stickslip::solve::Stepper;
+
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call goes to the system's allocator unchanged; counting touches no memory of the caller.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn minor_major_and_increment_loops_do_not_allocate_after_warm_up() {
+    for name in [
+        "01-pinned-beam-rough-floor",
+        "02-two-cantilevers-smooth",
+        "02-two-cantilevers-rough",
+    ] {
+        let scene = common::scene(name, &[]);
+        let mut stepper = Stepper::new(Arc::new(scene.model));
+        let warm = 200.min(if name.ends_with("rough") { 60 } else { 200 });
+        for _ in 0..warm {
+            stepper.step();
+        }
+        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        let mut increments = 0;
+        for _ in 0..100 {
+            let position = stepper.step().map(|e| e.position);
+            increments = position.map_or(increments, |p| p.increment);
+        }
+        let made = ALLOCATIONS.load(Ordering::Relaxed) - before;
+        assert_eq!(made, 0, "{name}, up to increment {increments}");
+    }
+}
