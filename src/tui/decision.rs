@@ -319,8 +319,9 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
         );
     };
     let decision = &record.decision;
-    let mut text = reason(decision);
-    if decision.tests.iter().flatten().any(|test| test.tie) {
+    let mut text = reason(decision, record.t_max != 0.0);
+    let frictionless = decision.rule == Rule::SlidingStays && record.t_max == 0.0;
+    if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {
         text += match view.frame().state.controls.settings.ties {
             Ties::Keep => " A tie keeps the mode.",
             Ties::Printed => " An exact tie, read as the table is printed.",
@@ -350,13 +351,14 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
     text
 }
 
-/// Why Table 2 decided as it did.
-fn reason(decision: &Decision) -> String {
+/// Why Table 2 decided as it did; `friction` says whether there is any.
+fn reason(decision: &Decision, friction: bool) -> String {
     let text = match decision.rule {
         Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
         Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
         Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
         Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
+        Rule::SlidingStays if !friction => "Stays sliding: there is no friction that could hold it.",
         Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
         Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
         Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",

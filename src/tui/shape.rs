@@ -205,6 +205,7 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
 /// Master surfaces, with a short line from the middle of each element to its outward side.
 fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     let style = app.theme.text;
+    let mut walked = SPACING;
     for element in view
         .model
         .surfaces
@@ -213,6 +214,15 @@ fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     {
         let nodes: Vec<Point> = element.iter().map(|node| view.place(*node)).collect();
         draw_curve(canvas, window, &nodes, style);
+        // Short elements share a normal among several of them.
+        let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
+            continue;
+        };
+        walked += (last[0] - first[0]).hypot(last[1] - first[1]) * window.scale;
+        if walked < SPACING {
+            continue;
+        }
+        walked = 0.0;
         for (from, to) in normals(&nodes, window) {
             canvas.line(window.dot(from), window.dot(to), style);
         }
