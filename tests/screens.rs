@@ -706,6 +706,34 @@ fn debugger(scene: &str) -> Debugger {
     Debugger::new(Theme::mono(), vec![], Some(Session::new(scene)))
 }
 
+/// A screen without the digits that another order of rounding could change: those after the fifth, and all of
+/// numbers that are round-off themselves.
+fn masked(screen: &str) -> String {
+    let mut letters: Vec<char> = screen.chars().collect();
+    let mut start = 0;
+    while start < letters.len() {
+        let number = |c: &char| c.is_ascii_digit() || matches!(c, '.' | 'e' | '-');
+        let length = letters[start..].iter().take_while(|c| number(c)).count();
+        let text: String = letters[start..start + length].iter().collect();
+        let exponent = text
+            .rsplit_once('e')
+            .and_then(|(_, e)| e.parse::<i32>().ok());
+        if let (Some(exponent), Some(point)) = (exponent, text.find('.')) {
+            let kept = if exponent < -9 { 0 } else { point + 5 };
+            let digits = text.find('e').unwrap_or(length);
+            let masked = (start..start + digits)
+                .skip(kept)
+                .filter(|at| letters[*at].is_ascii_digit());
+            masked
+                .collect::<Vec<_>>()
+                .into_iter()
+                .for_each(|at| letters[at] = '#');
+        }
+        start += length.max(1);
+    }
+    letters.into_iter().collect()
+}
+
 #[test]
 fn the_first_scene_at_three_sizes() {
     let mut debugger = debugger("01-pinned-beam-rough-floor");
@@ -713,11 +741,11 @@ fn the_first_scene_at_three_sizes() {
     for (width, height) in [(80, 24), (120, 40), (200, 60)] {
         insta::assert_snapshot!(
             format!("first-{width}x{height}"),
-            debugger.text(width, height)
+            masked(&debugger.text(width, height))
         );
     }
     debugger.type_keys("e");
-    insta::assert_snapshot!("first-explain-120x40", debugger.text(120, 40));
+    insta::assert_snapshot!("first-explain-120x40", masked(&debugger.text(120, 40)));
 }
 
 #[test]
@@ -799,4 +827,47 @@ fn commands_by_name_reach_the_solver_and_its_refusals_the_screen() {
         let screen = debugger.text(120, 40);
         assert!(screen.contains(shown), "after '{line}':\n{screen}");
     }
+}
+
+#[test]
+fn a_long_outcome_goes_on_in_further_lines() {
+    let model = model(5);
+    let members = (0..5)
+        .map(|slave| (slave, vec![Mode::Free, Mode::Fixed]))
+        .collect();
+    let cycle = Cycle {
+        start: 2,
+        period: 2,
+        members,
+    };
+    let outcome = Outcome::Failed(Failure::Cycle(cycle));
+    let frames = frames(&model, event((3, 2, 4), records(), outcome));
+    let screen = draw::text(&app(), Some(&view(&model, &frames)), 80, 24);
+    let told: String = screen.lines().skip(2).take(2).collect();
+    assert!(
+        told.contains("beam.1 free > fixed") && told.contains("beam.5 free > fixed"),
+        "{screen}"
+    );
+    assert!(
+        screen.contains(" Decision ") && screen.contains("? help"),
+        "{screen}"
+    );
+}
+
+#[test]
+fn a_narrow_screen_shows_the_cell_that_fired_alone() {
+    let model = model(5);
+    let frames = frames(&model, minor());
+    let view = view(&model, &frames);
+    let mut app = app();
+    press(&mut app, &view, "Down e");
+    let screen = draw::text(&app, Some(&view), 50, 14);
+    assert!(
+        screen.contains("fixed → sliding   F_n > 0, |F_t| > |T_max|"),
+        "{screen}"
+    );
+    assert!(
+        screen.contains("F_t is more than friction can"),
+        "{screen}"
+    );
 }

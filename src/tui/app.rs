@@ -181,12 +181,13 @@ impl App {
     }
 
     /// The user's part in the arrangement of the screen.
-    pub fn choice(&self, slaves: usize) -> Choice {
+    pub fn choice(&self, slaves: usize, outcome: u16) -> Choice {
         Choice {
             focus: self.focus,
             page: self.page,
             zoomed: self.zoomed,
             slaves,
+            outcome,
         }
     }
 

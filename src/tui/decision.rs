@@ -30,11 +30,15 @@ const TABLE_2: [[[&str; 2]; 3]; 3] = [
         ["F_n > 0", "T_max·slip > 0"],
         ["F_n ≤ 0", ""],
     ],
-    [["g < 0", "(rough)"], ["g < 0", "(smooth)"], ["g > 0", ""]],
+    [["g < 0, rough", ""], ["g < 0, smooth", ""], ["g > 0", ""]],
 ];
 
 /// Width of the rows' headings.
 const LABEL: usize = 9;
+/// Width that the widest cell needs.
+const CELL: usize = 15;
+/// Lines of the table without rules: headings, and a second line in all rows but the last.
+const GRID: usize = 6;
 
 /// Draws the decision.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -64,10 +68,14 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect();
-    let needed = 7 + tests.len() + words.len();
+    let needed = GRID + tests.len() + words.len();
     let spare = (inner.height as usize).saturating_sub(needed);
     let air = |enough: bool| enough.then(Line::default);
-    let mut all = grid(decision.as_ref(), inner.width as usize, spare >= 4, theme);
+    let crowded = (inner.width as usize) < LABEL + 6 + 3 * CELL || inner.height < 9;
+    let mut all = match decision {
+        Some(decision) if crowded => vec![fired(&decision, theme)],
+        _ => grid(decision.as_ref(), inner.width as usize, spare >= 4, theme),
+    };
     all.extend(air(spare >= 1));
     all.extend(tests);
     all.extend(air(spare >= 5 || (2..4).contains(&spare)));
@@ -192,7 +200,8 @@ fn grid(
             lines.push(Line::styled(rule, theme.faint));
         }
         let here = decision.is_some_and(|decision| decision.before == *mode);
-        for part in [0, 1] {
+        let parts: &[usize] = if *mode == Mode::Free { &[0] } else { &[0, 1] };
+        for &part in parts {
             let label = match (part, here) {
                 (0, true) => format!("▸{}", theme::word(*mode)),
                 (0, false) => format!(" {}", theme::word(*mode)),
@@ -224,6 +233,28 @@ fn grid(
         }
     }
     lines
+}
+
+/// The cell that fired, alone, where there is no room for the table.
+fn fired(decision: &Decision, theme: &Theme) -> Line<'static> {
+    let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
+    let [first, second] = TABLE_2[place(decision.before)][place(decision.next)];
+    let cell = match decision.rule {
+        Rule::OffSurface | Rule::Held => String::new(),
+        _ if second.is_empty() => format!(" {first} "),
+        _ => format!(" {first}, {second} "),
+    };
+    Line::from(vec![
+        Span::styled(
+            format!(
+                " {} → {}  ",
+                theme::word(decision.before),
+                theme::word(decision.next)
+            ),
+            theme.heading,
+        ),
+        Span::styled(cell, theme.lit(decision.next)),
+    ])
 }
 
 /// Mark and style of a cell: fired, wanted by Table 2 but overruled, in the row of the mode before, or none of these.
@@ -358,7 +389,9 @@ fn reason(decision: &Decision, friction: bool) -> String {
         Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
         Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
         Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
-        Rule::SlidingStays if !friction => "Stays sliding: there is no friction that could hold it.",
+        Rule::SlidingStays if !friction => {
+            "Stays sliding: there is no friction that could hold it."
+        }
         Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
         Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
         Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",

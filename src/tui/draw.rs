@@ -14,7 +14,8 @@ use ratatui::widgets::{Block, BorderType, Widget};
 /// Draws everything. Without a view (no scene yet) there is only the chooser.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     let slaves = view.map_or(0, |view| view.model.slaves.len());
-    let places = layout::places(area, &app.choice(slaves));
+    let outcome = view.map_or(1, |view| status::outcome_lines(app, view, area.width));
+    let places = layout::places(area, &app.choice(slaves, outcome));
     status::draw(buffer, places.status, app, view);
     let body = places
         .panes

@@ -37,6 +37,8 @@ pub struct Choice {
     pub zoomed: bool,
     /// Number of slave nodes, hence of the table's rows.
     pub slaves: usize,
+    /// Lines that the last outcome takes in the status, at least one.
+    pub outcome: u16,
 }
 
 /// Where everything stands.
@@ -61,7 +63,8 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
     let status = match area.height {
         0..=5 => 1.min(area.height),
         6..=15 => 2,
-        _ => 3,
+        16..=23 => 3,
+        _ => 2 + choice.outcome.max(1),
     };
     let footer = u16::from(area.height > 6);
     let message = u16::from(area.height > 2);
@@ -157,6 +160,7 @@ mod tests {
             page: Pane::Decision,
             zoomed: false,
             slaves,
+            outcome: 1,
         };
         places(Rect::new(0, 0, width, height), &choice)
     }

@@ -37,7 +37,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         ..inner
     };
     let mut canvas = Canvas::new(field);
-    let window = Window::new(&canvas, &bounds(view), &app.camera);
+    let window = Window::new(
+        &canvas,
+        &bounds(view),
+        &app.camera,
+        selected_place(app, view),
+    );
     bodies(&mut canvas, &window, app, view);
     surfaces(&mut canvas, &window, app, view);
     let longest = forces(&mut canvas, &window, app, view);
@@ -132,13 +137,17 @@ struct Window {
 }
 
 impl Window {
-    fn new(canvas: &Canvas, bounds: &Bounds, camera: &Camera) -> Self {
+    /// Enlarging goes towards a place, the selected node's; all of the shape stands in the middle.
+    fn new(canvas: &Canvas, bounds: &Bounds, camera: &Camera, towards: Option<Point>) -> Self {
         let size = canvas.size();
         let [width, height] = bounds.size().map(|side| side.max(1e-300));
         let whole = (size[0] / width).min(size[1] / height) * 0.94;
         let scale = whole * camera.zoom;
         let middle = [0, 1].map(|axis| {
-            0.5 * (bounds.low[axis] + bounds.high[axis]) + camera.pan[axis] * size[axis] / whole
+            let middle = 0.5 * (bounds.low[axis] + bounds.high[axis]);
+            let towards = towards.map_or(middle, |place| place[axis]);
+            let part = (1.0 - 1.0 / camera.zoom).max(0.0);
+            middle + part * (towards - middle) + camera.pan[axis] * size[axis] / whole
         });
         Window {
             middle,
@@ -153,6 +162,13 @@ impl Window {
         let y = 0.5 * self.size[1] - (point[1] - self.middle[1]) * self.scale;
         [x, y]
     }
+}
+
+/// Where the selected node is, if there is one and it is anywhere.
+fn selected_place(app: &App, view: &View) -> Option<Point> {
+    let slaves = &view.model.slaves;
+    let slave = slaves.get(app.selected.min(slaves.len().saturating_sub(1)))?;
+    Some(view.place(slave.node)).filter(|place| place.iter().all(|x| x.is_finite()))
 }
 
 /// The Lagrange curve through the nodes of an element.
@@ -353,7 +369,7 @@ mod tests {
             low: [0.0, 0.0],
             high: [1.0, 1.0],
         };
-        let window = Window::new(&canvas, &bounds, &Camera::ALL);
+        let window = Window::new(&canvas, &bounds, &Camera::ALL, None);
         let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|p| window.dot(p));
         assert!((b[0] - a[0] - (a[1] - c[1])).abs() < 1e-9);
         assert!(c[1] < a[1]);

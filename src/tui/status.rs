@@ -23,15 +23,20 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
         return;
     };
     // The position is what a screen of one line must show.
-    match area.height {
-        0 | 1 => draw::lines(buffer, area, &[position(app, view)]),
-        2 => draw::lines(buffer, area, &[position(app, view), outcome(app, view)]),
-        _ => draw::lines(
-            buffer,
-            area,
-            &[scene(app, view), position(app, view), outcome(app, view)],
-        ),
+    let mut lines = vec![position(app, view)];
+    if area.height > 2 {
+        lines.insert(0, scene(app, view));
     }
+    lines.extend(outcome(app, view, area.width));
+    draw::lines(buffer, area, &lines);
+}
+
+/// Most lines that the last iteration's outcome takes.
+const OUTCOME: usize = 3;
+
+/// Lines that the outcome needs.
+pub fn outcome_lines(app: &App, view: &View, width: u16) -> u16 {
+    outcome(app, view, width).len().min(OUTCOME) as u16
 }
 
 fn scene<'a>(app: &App, view: &View<'a>) -> Line<'a> {
@@ -73,7 +78,7 @@ fn position(app: &App, view: &View) -> Line<'static> {
 }
 
 /// What the shown minor iteration led to, and what the user has done to the solve.
-fn outcome(app: &App, view: &View) -> Line<'static> {
+fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
     let theme = &app.theme;
     if view.running {
         const SPINNER: [&str; 4] = ["◐", "◓", "◑", "◒"];
@@ -90,7 +95,7 @@ fn outcome(app: &App, view: &View) -> Line<'static> {
             at.minor,
             view.frames.len() - 1
         );
-        return Line::styled(text, theme.warning);
+        return vec![Line::styled(text, theme.warning)];
     }
     let (text, style) = match (view.intervention(), view.event()) {
         (Some(intervention), _) => (
@@ -100,11 +105,21 @@ fn outcome(app: &App, view: &View) -> Line<'static> {
         (None, None) => ("▸ at the start; nothing is solved yet".into(), theme.text),
         (None, Some(event)) => sentence(event, view.model, app),
     };
-    let mut spans = vec![Span::styled(format!(" {text}"), style)];
+    // Further lines stand under the words, not under the glyph.
+    let words = draw::wrap(&text, (width as usize).saturating_sub(4));
+    let indent = |index: usize| if index == 0 { " " } else { "   " };
+    let line =
+        |(index, words): (usize, String)| Line::styled(format!("{}{words}", indent(index)), style);
+    let mut lines: Vec<Line> = words.into_iter().enumerate().map(line).collect();
     if let Some(text) = interventions(view) {
-        spans.push(Span::styled(format!("   {text}"), theme.warning));
+        match lines.last_mut() {
+            Some(last) if last.width() + 3 + text.chars().count() <= width as usize => {
+                last.push_span(Span::styled(format!("   {text}"), theme.warning));
+            }
+            _ => lines.push(Line::styled(format!("   {text}"), theme.warning)),
+        }
     }
-    Line::from(spans)
+    lines
 }
 
 /// What follows from a minor iteration, in a sentence with a glyph before it.
