@@ -136,30 +136,37 @@ pub(crate) fn did_you_mean<'a>(
     }
 }
 
-/// The candidate with the smallest edit distance, if that is at most a third of the length.
+/// The candidate with the smallest edit distance, if that is at most a third of what differs.
+///
+/// Only what follows the common beginning counts: `settings.foo` is not near to `settings.slip`, long as they are.
 pub(crate) fn nearest<'a>(
     wrong: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
     // Longer words are no slips, and the distance costs the square of the length.
     const LONGEST: usize = 64;
-    let length = wrong.chars().count();
-    if length > LONGEST {
-        return None;
-    }
-    let most = (length / 3).max(1);
+    let wrong: Vec<char> = wrong.chars().take(LONGEST + 1).collect();
+    let far = |right: &str| {
+        let right: Vec<char> = right.chars().take(LONGEST + 1).collect();
+        let same = wrong.iter().zip(&right).take_while(|(a, b)| a == b).count();
+        let (a, b) = (&wrong[same..], &right[same..]);
+        let most = a
+            .len()
+            .div_ceil(3)
+            .max(1)
+            .min(wrong.len().saturating_sub(1));
+        let possible = wrong.len().max(right.len()) <= LONGEST && a.len().abs_diff(b.len()) <= most;
+        possible.then(|| distance(a, b)).filter(|far| *far <= most)
+    };
     candidates
         .into_iter()
-        .filter(|right| right.len() <= LONGEST && right.chars().count().abs_diff(length) <= most)
-        .map(|right| (distance(wrong, right), right))
-        .filter(|(far, _)| *far <= most)
+        .filter_map(|right| far(right).map(|far| (far, right)))
         .min_by_key(|(far, _)| *far)
         .map(|(_, right)| right)
 }
 
 /// Edit distance in which swapping two neighbours counts as one change.
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+fn distance(a: &[char], b: &[char]) -> usize {
     let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
     for i in 1..=a.len() {
         let mut row = vec![i];
@@ -234,7 +241,11 @@ mod tests {
         );
         assert_eq!(nearest("refin", ["refine"]), Some("refine"));
         assert_eq!(nearest("wall", ["beam.end", "floor"]), None);
-        assert_eq!(distance("abcd", "abdc"), 1);
-        assert_eq!(distance("", "abc"), 3);
+        assert_eq!(nearest("settings.foo", ["settings.slip"]), None);
+        assert_eq!(nearest("z", ["x"]), None);
+        assert_eq!(nearest("", ["x"]), None);
+        let chars = |text: &str| text.chars().collect::<Vec<_>>();
+        assert_eq!(distance(&chars("abcd"), &chars("abdc")), 1);
+        assert_eq!(distance(&[], &chars("abc")), 3);
     }
 }

@@ -9,6 +9,10 @@ use super::error::{Fault, Path};
 pub const FILE_BYTES: usize = 8 << 20;
 /// Most nodes of a scene, after refinement.
 pub const NODES: usize = 200_000;
+/// Most nodes of all elements of all bodies together, and of all surfaces; a node counts once for each element.
+pub const ELEMENT_NODES: usize = 4 * NODES;
+/// Most entries of a list of named things (materials, surfaces, monitors, ...).
+pub const ENTRIES: usize = 1_000;
 /// Most slave nodes.
 pub const SLAVES: usize = 10_000;
 /// Most increments of a history.
@@ -17,6 +21,8 @@ pub const INCREMENTS: f64 = 1e6;
 pub const ITERATIONS: u32 = 1_000_000;
 /// Most characters of a name.
 pub const NAME: usize = 64;
+/// Most characters of a title.
+pub const TITLE: usize = 120;
 /// Largest coordinate, load or prescribed value.
 pub const MAGNITUDE: f64 = 1e12;
 /// Smallest and largest stiffness: their squares are still far from the ends of floating-point range.
@@ -61,6 +67,24 @@ pub(crate) fn count(
         path.clone(),
         format!("{what} is {value}; it must be {least} to {most}"),
     ))
+}
+
+/// Refuses a list that is too long to be meant.
+pub(crate) fn entries(list: &str, length: usize) -> Result<(), Fault> {
+    if length <= ENTRIES {
+        return Ok(());
+    }
+    let message = format!("the list has {length} entries; at most {ENTRIES} can be had");
+    Err(Fault::new(super::error::at![list], message))
+}
+
+/// Refuses more element nodes in all, so that a chain that is used over and over does not fill the memory.
+pub(crate) fn element_nodes(path: &Path, total: usize) -> Result<(), Fault> {
+    if total <= ELEMENT_NODES {
+        return Ok(());
+    }
+    let message = format!("with this, the elements have more than {ELEMENT_NODES} nodes together");
+    Err(Fault::new(path.clone(), message))
 }
 
 /// Refuses names that could not be told apart in a command line, a CSV column or a message.

@@ -2,11 +2,12 @@
 //!
 //! - [`spec`]: the file as its author writes it; [`read`]: from text to that, [`locate`]: from that back to a line.
 //! - [`paths`]: every scalar of a scene by its path, to list and to set.
-//! - `compile`, with `nodes`, `geometry` and `limits`: from a [`Spec`] to a [`Model`], or to what is wrong.
+//! - `compile`, with [`nodes`], `curves`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
 //! - [`cost`]: what a scene costs, and what it does without.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod builtin;
+pub mod cost;
 pub mod error;
 pub mod limits;
 pub mod locate;
@@ -17,9 +18,11 @@ pub mod read;
 pub mod spec;
 
 mod compile;
+mod curves;
 mod geometry;
 
 pub use builtin::Builtin;
+pub use cost::Cost;
 pub use error::SceneError;
 pub use model::Model;
 pub use spec::{Friction, Mode, Settings, Spec};

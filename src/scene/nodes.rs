@@ -1,9 +1,10 @@
 //! Nodes and their names: chains laid out, aliases resolved.
 
-use super::error::{Fault, Path, at, did_you_mean, quoted};
+use super::curves::{arc, check_chain_count, check_per_element, intervals, line, point, through};
+use super::error::{Fault, at, did_you_mean, quoted};
 use super::limits;
 use super::model::Node;
-use super::spec::{Nodes, Point, Spec};
+use super::spec::{Nodes, Spec};
 use std::collections::HashMap;
 
 /// All nodes of a scene, and every name by which they can be called.
@@ -271,14 +272,15 @@ impl Names {
     ) -> Result<(), Fault> {
         let here = at!["nodes", at];
         check_per_element(&here, per_element)?;
+        let before: usize = self.entries.iter().map(|entry| entry.nodes.len()).sum();
         let mut shared: Vec<usize> = Vec::new();
         for (k, name) in of.iter().enumerate() {
             let fault = |message: String| Fault::new(here.then("of").then(k), message);
             let found = self.nodes(name).map_err(fault)?;
-            if shared.len() + found.len() > limits::NODES {
+            if before + shared.len() + found.len() > 2 * limits::NODES {
                 return Err(fault(format!(
-                    "the chain has more than {} nodes",
-                    limits::NODES
+                    "with this, all chains have more than {} nodes together",
+                    2 * limits::NODES
                 )));
             }
             if shared.last().is_some() && shared.last() == found.first() {
@@ -389,154 +391,4 @@ fn check_total(spec: &Spec) -> Result<(), Fault> {
         }
     }
     Ok(())
-}
-
-fn point(path: &Path, (x, y): Point) -> Result<(), Fault> {
-    limits::finite(&path.then(0), x, "x")?;
-    limits::finite(&path.then(1), y, "y")
-}
-
-fn check_per_element(here: &Path, per_element: usize) -> Result<(), Fault> {
-    limits::count(
-        &here.then("per_element"),
-        per_element,
-        2..=9,
-        "the number of nodes per element",
-    )
-}
-
-fn check_chain_count(path: &Path, count: usize, per_element: usize) -> Result<(), Fault> {
-    let step = per_element - 1;
-    if count > step && (count - 1) % step == 0 {
-        return Ok(());
-    }
-    let below = (count.saturating_sub(1) / step).max(1) * step + 1;
-    let fits = if below < count {
-        format!("{below} or {}", below + step)
-    } else {
-        below.to_string()
-    };
-    Err(Fault::new(
-        path.clone(),
-        format!(
-            "{count} nodes do not make whole elements of {per_element} nodes, which share their ends; {fits} would"
-        ),
-    ))
-}
-
-/// Number of intervals between nodes along a generated chain.
-fn intervals(
-    here: &Path,
-    elements: usize,
-    per_element: usize,
-    refine: usize,
-) -> Result<usize, Fault> {
-    limits::count(
-        &here.then("elements"),
-        elements,
-        1..=limits::NODES,
-        "the number of elements",
-    )?;
-    check_per_element(here, per_element)?;
-    // Bounded by `check_total`.
-    Ok(elements * (per_element - 1) * refine)
-}
-
-fn line(here: &Path, from: Point, to: Point, n: usize) -> Result<Vec<Point>, Fault> {
-    point(&here.then("from"), from)?;
-    point(&here.then("to"), to)?;
-    if from == to {
-        return Err(Fault::new(
-            here.then("to"),
-            format!("the line has no length: it ends at {to:?}, where it starts"),
-        ));
-    }
-    let between = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
-    let at = |t| (between(from.0, to.0, t), between(from.1, to.1, t));
-    Ok((0..=n).map(|k| at(k as f64 / n as f64)).collect())
-}
-
-fn arc(
-    here: &Path,
-    center: Point,
-    radius: f64,
-    (from, to): (f64, f64),
-    n: usize,
-) -> Result<Vec<Point>, Fault> {
-    point(&here.then("center"), center)?;
-    limits::finite(&here.then("radius"), radius, "the radius")?;
-    if radius <= 0.0 {
-        return Err(Fault::new(
-            here.then("radius"),
-            format!("the radius is {radius:?}; it must be positive"),
-        ));
-    }
-    limits::finite(&here.then("from"), from, "the angle")?;
-    limits::finite(&here.then("to"), to, "the angle")?;
-    if from == to || (to - from).abs() > 360.0 {
-        return Err(Fault::new(
-            here.then("to"),
-            format!(
-                "the arc goes from {from:?} to {to:?} degrees; it must turn by more than 0 and at most 360"
-            ),
-        ));
-    }
-    let at = |t: f64| {
-        let (sin, cos) = sin_cos_degrees(from * (1.0 - t) + to * t);
-        (center.0 + radius * cos, center.1 + radius * sin)
-    };
-    Ok((0..=n).map(|k| at(k as f64 / n as f64)).collect())
-}
-
-/// Sine and cosine of an angle in degrees, exact at right angles.
-fn sin_cos_degrees(angle: f64) -> (f64, f64) {
-    let quarter = (angle / 90.0).round();
-    let (sin, cos) = (angle - 90.0 * quarter).to_radians().sin_cos();
-    match quarter.rem_euclid(4.0) as u8 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
-}
-
-/// The nodes along Lagrange curves through points, each curve divided into `refine` elements.
-fn through(here: &Path, points: &[Point], m: usize, refine: usize) -> Result<Vec<Point>, Fault> {
-    check_per_element(here, m)?;
-    let list = here.then("points");
-    for (k, at) in points.iter().enumerate() {
-        point(&list.then(k), *at)?;
-        if k > 0 && points[k - 1] == *at {
-            return Err(Fault::new(
-                list.then(k),
-                format!("the point {at:?} stands twice in a row"),
-            ));
-        }
-    }
-    check_chain_count(&list, points.len(), m)?;
-    let mut made = vec![points[0]];
-    for start in (0..points.len() - 1).step_by(m - 1) {
-        let curve = &points[start..start + m];
-        let steps = (m - 1) * refine;
-        made.extend((1..=steps).map(|k| on_curve(curve, k, refine)));
-    }
-    Ok(made)
-}
-
-/// The point of the Lagrange curve through equally spaced nodes, at `k / refine` intervals between nodes.
-fn on_curve(curve: &[Point], k: usize, refine: usize) -> Point {
-    if k % refine == 0 {
-        // A node itself: its very bits.
-        return curve[k / refine];
-    }
-    let t = k as f64 / refine as f64;
-    let mut at = (0.0, 0.0);
-    for (i, node) in curve.iter().enumerate() {
-        let others = (0..curve.len()).filter(|j| *j != i);
-        let shape: f64 = others
-            .map(|j| (t - j as f64) / (i as f64 - j as f64))
-            .product();
-        at = (at.0 + shape * node.0, at.1 + shape * node.1);
-    }
-    at
 }

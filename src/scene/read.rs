@@ -1,8 +1,10 @@
 //! From the text of a file to a [`Spec`]: syntax and types, with the place of what is wrong.
 
-use super::error::{Path, SceneError, Step, did_you_mean, some_of};
+use super::error::{Path, SceneError, Step, did_you_mean, shortened};
 use super::limits;
+use super::locate::{line_and_column, locate};
 use super::spec::Spec;
+use ron::error::SpannedError;
 use ron::extensions::Extensions;
 use serde_path_to_error::Segment;
 use std::io::Read;
@@ -17,25 +19,62 @@ pub fn options() -> ron::Options {
 
 /// Reads a scene's text.
 pub(crate) fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
-    let error = |spanned: ron::error::SpannedError, path: String| SceneError {
-        file: file.to_owned(),
-        at: Some(place(&spanned)),
-        set: None,
-        path,
-        message: message(&spanned.code),
-    };
     let options = options();
+    let unread = |error: SpannedError, path: &Path| unreadable(file, text, &error, path);
     let mut reader = ron::Deserializer::from_str_with_options(text, &options)
-        .map_err(|e| error(e, String::new()))?;
-    let read = serde_path_to_error::deserialize::<_, Spec>(&mut reader);
-    let spec = read.map_err(|e| {
+        .map_err(|e| unread(e, &Path::default()))?;
+    let spec = serde_path_to_error::deserialize::<_, Spec>(&mut reader).map_err(|e| {
         let path = plain(e.path());
-        error(reader.span_error(e.into_inner()), path)
+        unread(reader.span_error(e.into_inner()), &path)
     })?;
     reader
         .end()
-        .map_err(|e| error(reader.span_error(e), String::new()))?;
+        .map_err(|e| unread(reader.span_error(e), &Path::default()))?;
     Ok(spec)
+}
+
+/// ron's error in our form.
+fn unreadable(file: &str, text: &str, error: &SpannedError, path: &Path) -> SceneError {
+    let value = locate(text, path);
+    let of_value = line_and_column(text, value.start);
+    // Where a whole value is wrong, its start is the place. Else it is ron's cursor, of which the start of the span is
+    // nearer to the fault than the end.
+    let (at, message) = match (wanted(&error.code), &error.code) {
+        (Some(wanted), _) if !path.0.is_empty() => {
+            let shown = shortened(text.get(value).unwrap_or_default());
+            (
+                of_value,
+                format!("{shown} will not do; it must be {wanted}"),
+            )
+        }
+        (_, code @ ron::Error::MissingStructField { .. }) => (of_value, message(code)),
+        (_, code) => ((error.span.start.line, error.span.start.col), message(code)),
+    };
+    SceneError {
+        file: file.to_owned(),
+        at: Some(at),
+        set: None,
+        path: path.to_string(),
+        message,
+    }
+}
+
+/// What a value should be that is something else.
+fn wanted(error: &ron::Error) -> Option<&'static str> {
+    use ron::Error as E;
+    match error {
+        E::ExpectedFloat => Some("a number"),
+        E::ExpectedInteger => Some("a whole number"),
+        E::IntegerOutOfBounds => Some("a whole number that is neither negative nor huge"),
+        E::ExpectedBoolean => Some("true or false"),
+        E::ExpectedString => Some("a text in quotes"),
+        E::ExpectedArray => Some("a list in square brackets, [ ]"),
+        E::ExpectedDifferentLength { .. } => Some("two numbers, (x, y)"),
+        E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
+            Some("something in round brackets, ( )")
+        }
+        _ => None,
+    }
 }
 
 /// The text of a scene file.
@@ -62,7 +101,7 @@ pub(crate) fn from_bytes(file: &str, bytes: Vec<u8>) -> Result<String, SceneErro
         let good =
             String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).into_owned();
         SceneError {
-            at: Some(super::locate::line_and_column(&good, good.len())),
+            at: Some(line_and_column(&good, good.len())),
             ..SceneError::whole(
                 file,
                 "the file is not text in UTF-8; a scene is written in RON",
@@ -77,18 +116,13 @@ pub(crate) fn from_bytes(file: &str, bytes: Vec<u8>) -> Result<String, SceneErro
 }
 
 /// The path without names of variants.
-fn plain(path: &serde_path_to_error::Path) -> String {
+fn plain(path: &serde_path_to_error::Path) -> Path {
     let step = |segment: &Segment| match segment {
         Segment::Seq { index } => Some(Step::Index(*index)),
         Segment::Map { key } => Some(Step::Key(key.clone())),
         Segment::Enum { .. } | Segment::Unknown => None,
     };
-    Path(path.iter().filter_map(step).collect()).to_string()
-}
-
-/// ron's cursor stands behind what it has read; the start of the span is nearer to the fault.
-fn place(error: &ron::error::SpannedError) -> (usize, usize) {
-    (error.span.start.line, error.span.start.col)
+    Path(path.iter().filter_map(step).collect())
 }
 
 /// ron's message, in words for an author who is no programmer where that helps.
@@ -107,12 +141,23 @@ fn message(error: &ron::Error) -> String {
         } => format!(
             "{found:?} is none of the choices{} (choices: {})",
             did_you_mean(found, expected.iter().copied()),
-            some_of(expected.iter().copied()).replace('"', "")
+            expected.join(", ")
         ),
         E::MissingStructField { field, .. } => {
             format!("the field {field:?} is missing; it has no default")
         }
         E::DuplicateStructField { field, .. } => format!("the field {field:?} stands here twice"),
+        E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
+            "a scene is a list of fields in round brackets, (title: \"...\", nodes: [...], ...)"
+                .to_owned()
+        }
+        E::SuggestRawIdentifier(found) | E::InvalidIdentifier(found)
+            if found.starts_with(|c: char| c.is_ascii_digit()) =>
+        {
+            format!(
+                "{found:?} stands where a field's name should; decimals have a point, not a comma"
+            )
+        }
         E::ExceededRecursionLimit => "brackets are nested far too deep for a scene".to_owned(),
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
         E::TrailingCharacters => {

@@ -27,6 +27,9 @@ use std::sync::Arc;
 const DIVERGED: f64 = 1e4;
 /// Two states of a minor loop whose numbers differ by less than this, relatively, are the same.
 const SAME: f64 = 1e-12;
+/// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
+/// the length instead.
+const STILL: f64 = 1e-8;
 /// A major iteration is not damped below this part of its load.
 const SMALLEST_PART: f64 = 1e-6;
 /// Inequalities closer than this times the tolerance, relatively, tie.
@@ -387,8 +390,9 @@ impl Stepper {
         };
         let size = self.state.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
+        let exact = after.relative <= settings.tolerance;
         let balanced = self.state.reached == self.state.load_factor
-            && after.relative <= after.limit
+            && (exact || (after.relative <= after.limit && after.correction <= STILL))
             && after.interface <= after.limit.max(settings.tolerance);
         let at_limit = self.state.next.major % settings.majors == 0;
         if settled && balanced {

@@ -1,0 +1,81 @@
+//! The path of the load factor, and the settings of the method.
+
+use super::super::error::{Fault, at};
+use super::super::limits;
+use super::super::spec::{History, Settings};
+
+/// Refuses a path that goes nowhere, or that has no end.
+pub(super) fn history(history: &History) -> Result<(), Fault> {
+    let History { path, increment } = history;
+    let here = at!["history", "path"];
+    if path.len() < 2 {
+        let message = format!(
+            "the path has {} corners; it needs two at least, as [0, 1]",
+            path.len()
+        );
+        return Err(Fault::new(here, message));
+    }
+    for (k, corner) in path.iter().enumerate() {
+        limits::finite(&here.then(k), *corner, "the load factor")?;
+        if k > 0 && path[k - 1] == *corner {
+            return Err(Fault::new(
+                here.then(k),
+                format!("the corner {corner:?} stands twice in a row"),
+            ));
+        }
+    }
+    let size = at!["history", "increment"];
+    limits::finite(&size, *increment, "the increment")?;
+    if *increment <= 0.0 {
+        return Err(Fault::new(
+            size,
+            format!(
+                "the increment is {increment:?}; it must be positive, also where the path falls"
+            ),
+        ));
+    }
+    let count = increments(path, *increment);
+    if count > limits::INCREMENTS {
+        return Err(Fault::new(
+            size,
+            format!(
+                "the history would have {count:e} increments of {increment:?}; at most a million can be had"
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// Number of increments along a path: each leg is cut into whole ones, and what is left.
+pub(crate) fn increments(path: &[f64], increment: f64) -> f64 {
+    // A leg of ten tenths has ten increments, whatever the last bit of the sum says.
+    const ROUNDING: f64 = 1e-9;
+    let leg = |pair: &[f64]| {
+        ((pair[1] - pair[0]).abs() / increment * (1.0 - ROUNDING))
+            .ceil()
+            .max(1.0)
+    };
+    path.windows(2).map(leg).sum()
+}
+
+/// Refuses settings with which no solve could end.
+pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
+    let here = at!["settings"];
+    for (field, value) in [("minors", settings.minors), ("majors", settings.majors)] {
+        let what = format!("the limit of {field}");
+        limits::count(
+            &here.then(field),
+            value as usize,
+            1..=limits::ITERATIONS as usize,
+            &what,
+        )?;
+    }
+    let tolerance = settings.tolerance;
+    if tolerance > 0.0 && tolerance <= 1e-2 {
+        return Ok(());
+    }
+    Err(Fault::new(
+        here.then("tolerance"),
+        format!("the tolerance is {tolerance:?}; it must be above 0 and at most 0.01"),
+    ))
+}

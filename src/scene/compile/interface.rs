@@ -1,0 +1,260 @@
+//! Surfaces, slave nodes and friction.
+
+use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
+use super::super::geometry;
+use super::super::limits;
+use super::super::model::{Dofs, Slave, Surface};
+use super::super::nodes::{Names, unique};
+use super::super::spec::{Component, Friction, Nodes, SlaveSpec, Spec};
+use super::bodies::{check_chain, elements};
+use std::collections::HashSet;
+
+/// The surfaces, walked so that the outward side is on the right.
+pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Surface>, Fault> {
+    unique("surfaces", spec.surfaces.iter().map(|s| s.id.as_str()))?;
+    let mut made = Vec::with_capacity(spec.surfaces.len());
+    let mut total = 0;
+    for (k, surface) in spec.surfaces.iter().enumerate() {
+        let here = at!["surfaces", k, "along"];
+        let mut elements = elements(&here, names, &surface.along, &mut total)?;
+        check_chain(names, &surface.along, &elements, length)?;
+        if surface.reverse {
+            elements.reverse();
+            elements.iter_mut().for_each(|element| element.reverse());
+        }
+        made.push(Surface {
+            name: surface.id.clone(),
+            elements,
+            rigid: false,
+        });
+    }
+    Ok(made)
+}
+
+/// The slave nodes, in the order in which the file names them.
+pub(super) fn slaves(
+    spec: &Spec,
+    names: &Names,
+    surfaces: &[Surface],
+    length: f64,
+) -> Result<Vec<Slave>, Fault> {
+    friction(&at!["friction"], &spec.friction)?;
+    let members: Vec<HashSet<usize>> = surfaces
+        .iter()
+        .map(|surface| surface.elements.iter().flatten().copied().collect())
+        .collect();
+    let mut made = Vec::new();
+    let mut taken = HashSet::new();
+    for (k, group) in spec.slaves.iter().enumerate() {
+        let here = at!["slaves", k];
+        if let Some(own) = &group.friction {
+            friction(&here.then("friction"), own)?;
+        }
+        let on = candidates(&here, group, surfaces)?;
+        if group.nodes.is_empty() {
+            return Err(Fault::new(
+                here.then("nodes"),
+                "the list is empty; name at least one slave node",
+            ));
+        }
+        for (j, name) in group.nodes.iter().enumerate() {
+            let fault = |message: String| Fault::new(here.then("nodes").then(j), message);
+            for node in names.nodes(name).map_err(fault)? {
+                let slave = Slave {
+                    node,
+                    surfaces: on.clone(),
+                    friction: group.friction.unwrap_or(spec.friction),
+                    start: group.start,
+                };
+                let fresh = taken.insert(node);
+                check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;
+                made.push(slave);
+                if made.len() > limits::SLAVES {
+                    return Err(fault(format!("more than {} slave nodes", limits::SLAVES)));
+                }
+            }
+        }
+    }
+    Ok(made)
+}
+
+/// Numbers of the surfaces that a group of slaves may touch.
+fn candidates(here: &Path, group: &SlaveSpec, surfaces: &[Surface]) -> Result<Vec<usize>, Fault> {
+    if group.on.is_empty() {
+        return Err(Fault::new(
+            here.then("on"),
+            "the list is empty; name at least one surface",
+        ));
+    }
+    let ids = || surfaces.iter().map(|s| s.name.as_str());
+    let mut on = Vec::with_capacity(group.on.len());
+    for (k, name) in group.on.iter().enumerate() {
+        let fault = |message| Err(Fault::new(here.then("on").then(k), message));
+        match surfaces.iter().position(|surface| surface.name == *name) {
+            Some(surface) if on.contains(&surface) => {
+                return fault(format!("surface {name:?} is named twice"));
+            }
+            Some(surface) => on.push(surface),
+            None => {
+                return fault(format!(
+                    "no surface called {}{} (surfaces: {})",
+                    quoted(name),
+                    did_you_mean(name, ids()),
+                    some_of(ids())
+                ));
+            }
+        }
+    }
+    Ok(on)
+}
+
+/// Refuses a slave node that is named twice, lies on its own master, or is out of reach of it.
+fn check_slave(
+    slave: &Slave,
+    fresh: bool,
+    names: &Names,
+    surfaces: &[Surface],
+    members: &[HashSet<usize>],
+    length: f64,
+) -> Result<(), String> {
+    let node = &names.nodes[slave.node];
+    if !fresh {
+        return Err(format!("node {:?} is a slave node already", node.name));
+    }
+    let mut least = f64::INFINITY;
+    for &s in &slave.surfaces {
+        if members[s].contains(&slave.node) {
+            return Err(format!(
+                "node {:?} is a node of the surface {:?} that it is to touch; a node cannot touch itself",
+                node.name, surfaces[s].name
+            ));
+        }
+        if least > length {
+            let elements = &surfaces[s].elements;
+            least = least.min(geometry::distance_up_to(
+                length,
+                node.at,
+                &names.nodes,
+                elements,
+            ));
+        }
+    }
+    if least <= length {
+        return Ok(());
+    }
+    let on: Vec<&str> = slave
+        .surfaces
+        .iter()
+        .map(|&s| surfaces[s].name.as_str())
+        .collect();
+    Err(format!(
+        "node {:?} at ({:?}, {:?}) is {least:.4} away from {}, farther than all bodies measure together ({length:.4}); \
+         is it the right node, or the right surface?",
+        node.name,
+        node.at[0],
+        node.at[1],
+        on.join(" and ")
+    ))
+}
+
+/// Refuses friction that no surface has.
+fn friction(here: &Path, friction: &Friction) -> Result<(), Fault> {
+    let Friction { angle, cohesion } = *friction;
+    if !(0.0..90.0).contains(&angle) {
+        return Err(Fault::new(
+            here.then("angle"),
+            format!("the friction angle is {angle:?}; it must be at least 0 and below 90 degrees"),
+        ));
+    }
+    limits::finite(&here.then("cohesion"), cohesion, "the cohesion")?;
+    if cohesion < 0.0 {
+        return Err(Fault::new(
+            here.then("cohesion"),
+            format!(
+                "the cohesion is {cohesion:?}; it is a force per slave node and must not be negative"
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses nodes that nothing uses.
+pub(super) fn check_use(
+    spec: &Spec,
+    names: &Names,
+    on_body: &[bool],
+    surfaces: &[Surface],
+    slaves: &[Slave],
+) -> Result<(), Fault> {
+    let mut used = on_body.to_vec();
+    surfaces
+        .iter()
+        .flat_map(|s| s.elements.iter().flatten())
+        .for_each(|&n| used[n] = true);
+    slaves.iter().for_each(|s| used[s.node] = true);
+    for entry in names.entries() {
+        let shares = matches!(spec.nodes[entry.at], Nodes::Chain { .. });
+        let idle = entry.nodes.iter().find(|&&n| !used[n]);
+        if let (Some(&node), false) = (idle, shares) {
+            let message = format!(
+                "node {:?} is used by no body, no surface and no slaves; remove it or use it",
+                names.nodes[node].name
+            );
+            return Err(Fault::new(at!["nodes", entry.at, "id"], message));
+        }
+    }
+    Ok(())
+}
+
+/// Marks the surfaces that no unknown can move.
+pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut [Surface]) {
+    for surface in surfaces {
+        surface.rigid = surface
+            .elements
+            .iter()
+            .flatten()
+            .all(|&n| !can_move(dofs, n));
+    }
+}
+
+/// Whether x or y of a node is an unknown.
+fn can_move(dofs: &Dofs, node: usize) -> bool {
+    [Component::X, Component::Y].iter().any(|c| {
+        dofs.dof(node, *c)
+            .is_some_and(|d| dofs.equation[d].is_some())
+    })
+}
+
+/// Refuses slave nodes whose constraint would have no unknown at all.
+pub(super) fn check_held_slaves(
+    spec: &Spec,
+    names: &Names,
+    dofs: &Dofs,
+    surfaces: &[Surface],
+    slaves: &[Slave],
+) -> Result<(), Fault> {
+    for slave in slaves.iter().filter(|slave| !can_move(dofs, slave.node)) {
+        let Some(&rigid) = slave.surfaces.iter().find(|&&s| surfaces[s].rigid) else {
+            continue;
+        };
+        let message = format!(
+            "node {:?} cannot move, nor can the surface {:?}: its contact would have no unknown; \
+             free one of them, or take the node off the list",
+            names.nodes[slave.node].name, surfaces[rigid].name
+        );
+        return Err(Fault::new(slave_path(spec, names, slave.node), message));
+    }
+    Ok(())
+}
+
+/// The name in the file that made a node a slave.
+fn slave_path(spec: &Spec, names: &Names, node: usize) -> Path {
+    for (k, group) in spec.slaves.iter().enumerate() {
+        for (j, name) in group.nodes.iter().enumerate() {
+            if names.nodes(name).is_ok_and(|nodes| nodes.contains(&node)) {
+                return at!["slaves", k, "nodes", j];
+            }
+        }
+    }
+    at!["slaves"]
+}

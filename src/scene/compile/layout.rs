@@ -1,0 +1,243 @@
+//! Degrees of freedom: which there are, what holds them, what loads them, and the numbers of the rest.
+
+use super::super::error::{Fault, Path, at};
+use super::super::limits;
+use super::super::model::{Body, BodyKind, Dofs, Factor, Load, Prescribed};
+use super::super::nodes::Names;
+use super::super::spec::{Component, LoadSpec, Point, Spec};
+use std::collections::HashMap;
+
+/// The degrees of freedom while it is found out which are held, and by what.
+pub(super) struct Layout {
+    dofs: Dofs,
+    /// Node and component of each degree of freedom.
+    of: Vec<(usize, Component)>,
+    on_body: Vec<bool>,
+    held: HashMap<usize, Path>,
+}
+
+const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Rotation];
+
+impl Layout {
+    /// Three degrees of freedom for each node on a beam, two for the others; nothing held yet.
+    pub(super) fn new(on_body: &[bool]) -> Self {
+        let mut dofs = Dofs::default();
+        let mut of = Vec::new();
+        for (node, &on) in on_body.iter().enumerate() {
+            let count = if on { 3 } else { 2 };
+            dofs.first.push(of.len());
+            dofs.count.push(count);
+            of.extend(COMPONENTS.iter().take(count.into()).map(|c| (node, *c)));
+        }
+        Layout {
+            dofs,
+            of,
+            on_body: on_body.to_vec(),
+            held: HashMap::new(),
+        }
+    }
+
+    fn dof(&self, names: &Names, node: usize, component: Component) -> Result<usize, String> {
+        self.dofs
+            .dof(node, component)
+            .ok_or_else(|| no_rotation(names, node))
+    }
+
+    /// Holds what the supports name.
+    pub(super) fn supports(&mut self, spec: &Spec, names: &Names) -> Result<(), Fault> {
+        for (k, support) in spec.supports.iter().enumerate() {
+            let here = at!["supports", k];
+            let nodes = names
+                .nodes(&support.node)
+                .map_err(|m| Fault::new(here.then("node"), m))?;
+            if support.fix.is_empty() {
+                let message = "the list is empty; it must hold some of x, y, rotation";
+                return Err(Fault::new(here.then("fix"), message));
+            }
+            for (j, component) in support.fix.iter().enumerate() {
+                let fault = |message| Fault::new(here.then("fix").then(j), message);
+                if support.fix[..j].contains(component) {
+                    return Err(fault(format!("{component} is named twice")));
+                }
+                for &node in &nodes {
+                    let dof = self.dof(names, node, *component).map_err(fault)?;
+                    self.held.insert(dof, here.clone());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Loads and prescribed displacements.
+    pub(super) fn loads(
+        &mut self,
+        spec: &Spec,
+        names: &Names,
+    ) -> Result<(Vec<Load>, Vec<Prescribed>), Fault> {
+        // Prescribed displacements first: a force on one of them acts on nothing.
+        let prescribed = self.prescribed(spec, names)?;
+        Ok((self.forces(spec, names)?, prescribed))
+    }
+
+    fn prescribed(&mut self, spec: &Spec, names: &Names) -> Result<Vec<Prescribed>, Fault> {
+        let mut made = Vec::new();
+        for (k, load) in spec.loads.iter().enumerate() {
+            let LoadSpec::Displacement {
+                node,
+                component,
+                value,
+                scale,
+            } = load
+            else {
+                continue;
+            };
+            let here = at!["loads", k];
+            let scale = factor(&here.then("scale"), scale)?;
+            limits::finite(&here.then("value"), *value, "the prescribed value")?;
+            for node in names
+                .nodes(node)
+                .map_err(|m| Fault::new(here.then("node"), m))?
+            {
+                let dof = self.prescribe(&here, names, node, *component)?;
+                // What is held at zero is simply restrained.
+                if *value != 0.0 {
+                    made.push(Prescribed {
+                        dof,
+                        value: *value,
+                        scale: scale.clone(),
+                    });
+                }
+            }
+        }
+        Ok(made)
+    }
+
+    fn forces(&self, spec: &Spec, names: &Names) -> Result<Vec<Load>, Fault> {
+        let mut made = Vec::new();
+        for (k, load) in spec.loads.iter().enumerate() {
+            let (node, parts, scale) = match load {
+                LoadSpec::Force { node, x, y, scale } => (
+                    node,
+                    vec![(Component::X, "x", *x), (Component::Y, "y", *y)],
+                    scale,
+                ),
+                LoadSpec::Moment { node, value, scale } => {
+                    (node, vec![(Component::Rotation, "value", *value)], scale)
+                }
+                LoadSpec::Displacement { .. } => continue,
+            };
+            let here = at!["loads", k];
+            let node = names
+                .node(node)
+                .map_err(|m| Fault::new(here.then("node"), m))?;
+            let scale = factor(&here.then("scale"), scale)?;
+            for (component, field, value) in parts {
+                limits::finite(&here.then(field), value, "the load")?;
+                let dof = self.loaded(&here, names, (node, component), (field, value))?;
+                if value != 0.0 {
+                    made.push(Load {
+                        dof,
+                        value,
+                        scale: scale.clone(),
+                    });
+                }
+            }
+        }
+        Ok(made)
+    }
+
+    fn prescribe(
+        &mut self,
+        here: &Path,
+        names: &Names,
+        node: usize,
+        component: Component,
+    ) -> Result<usize, Fault> {
+        let fault = |message| Fault::new(here.then("component"), message);
+        let dof = self.dof(names, node, component).map_err(fault)?;
+        if let Some(other) = self.held.insert(dof, here.clone()) {
+            let name = &names.nodes[node].name;
+            return Err(fault(format!(
+                "{component} of node {name:?} is held by {other} already"
+            )));
+        }
+        Ok(dof)
+    }
+
+    /// The degree of freedom on which a load acts, if it can act there.
+    fn loaded(
+        &self,
+        here: &Path,
+        names: &Names,
+        (node, component): (usize, Component),
+        (field, value): (&str, f64),
+    ) -> Result<usize, Fault> {
+        let name = &names.nodes[node].name;
+        if !self.on_body[node] {
+            let message = format!("node {name:?} is on no body; a load there would act on nothing");
+            return Err(Fault::new(here.then("node"), message));
+        }
+        let dof = self
+            .dof(names, node, component)
+            .map_err(|m| Fault::new(here.then("node"), m))?;
+        match self.held.get(&dof) {
+            Some(holder) if value != 0.0 => {
+                let message = format!(
+                    "{component} of node {name:?} is held by {holder}; a load there does nothing"
+                );
+                Err(Fault::new(here.then(field), message))
+            }
+            _ => Ok(dof),
+        }
+    }
+
+    /// Numbers the equations node by node, then the shear forces of shear-rigid beams.
+    pub(super) fn number(mut self, bodies: &mut [Body]) -> Dofs {
+        let dofs = &mut self.dofs;
+        for (dof, (node, _)) in self.of.iter().enumerate() {
+            let free = self.on_body[*node] && !self.held.contains_key(&dof);
+            dofs.equation.push(free.then_some(dofs.equations));
+            dofs.equations += usize::from(free);
+        }
+        for body in bodies {
+            let BodyKind::Beam(beam) = &mut body.kind;
+            if beam.ga.is_some() {
+                continue;
+            }
+            beam.first_shear = Some(dofs.equation.len());
+            let count: usize = beam.elements.iter().map(|element| element.len() - 1).sum();
+            dofs.equation
+                .extend((0..count).map(|k| Some(dofs.equations + k)));
+            dofs.equations += count;
+            dofs.shear += count;
+        }
+        self.dofs
+    }
+}
+
+/// What to say of a node that is asked for its rotation and has none.
+pub(super) fn no_rotation(names: &Names, node: usize) -> String {
+    format!(
+        "node {:?} is on no beam and has no rotation, only x and y",
+        names.nodes[node].name
+    )
+}
+
+/// A scale of a load, its load factors rising.
+fn factor(here: &Path, scale: &[Point]) -> Result<Factor, Fault> {
+    for (k, (x, y)) in scale.iter().enumerate() {
+        let point = here.then(k);
+        limits::finite(&point.then(0), *x, "the load factor")?;
+        limits::finite(&point.then(1), *y, "the own factor")?;
+        if k > 0 && *x <= scale[k - 1].0 {
+            return Err(Fault::new(
+                point.then(0),
+                format!(
+                    "the load factors of a scale must rise; {x:?} follows {:?}",
+                    scale[k - 1].0
+                ),
+            ));
+        }
+    }
+    Ok(Factor(scale.to_vec()))
+}

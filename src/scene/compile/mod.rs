@@ -1,0 +1,101 @@
+//! From what the author wrote to what the solver uses: every reference resolved, every number checked.
+//!
+//! One file per part of the scene; each refuses what makes no sense with a [`Fault`] that has the path of the offending
+//! value.
+
+mod bodies;
+mod history;
+mod interface;
+mod layout;
+mod monitors;
+
+use super::error::{Fault, at};
+use super::geometry;
+use super::limits;
+use super::model::Model;
+use super::nodes::Names;
+use super::spec::Spec;
+pub(crate) use history::increments;
+use layout::Layout;
+
+/// Checks a scene.
+pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
+    check_texts(spec)?;
+    check_lengths(spec)?;
+    let names = Names::of(spec)?;
+    bodies::materials(spec)?;
+    let mut bodies = bodies::bodies(spec, &names)?;
+    let mut on_body = vec![false; names.nodes.len()];
+    bodies
+        .iter()
+        .flat_map(|body| &body.nodes)
+        .for_each(|&n| on_body[n] = true);
+    let of_bodies = names.nodes.iter().zip(&on_body).filter(|(_, on)| **on);
+    let length = geometry::diagonal(of_bodies.map(|(node, _)| node));
+    bodies::check_bodies(spec, &names, &bodies, length)?;
+    let mut surfaces = interface::surfaces(spec, &names, length)?;
+    let slaves = interface::slaves(spec, &names, &surfaces, length)?;
+    interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
+    let mut layout = Layout::new(&on_body);
+    layout.supports(spec, &names)?;
+    let (loads, prescribed) = layout.loads(spec, &names)?;
+    let dofs = layout.number(&mut bodies);
+    interface::find_rigid(&dofs, &mut surfaces);
+    interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
+    history::history(&spec.history)?;
+    history::settings(&spec.settings)?;
+    let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
+    let model = Model {
+        title: spec.title.clone(),
+        about: spec.about.clone(),
+        nodes: names.nodes.clone(),
+        bodies,
+        surfaces,
+        slaves,
+        dofs,
+        loads,
+        prescribed,
+        path: spec.history.path.clone(),
+        increment: spec.history.increment,
+        settings: spec.settings,
+        monitors,
+        length,
+    };
+    Ok((model, names))
+}
+
+/// Refuses texts that would spoil a terminal.
+fn check_texts(spec: &Spec) -> Result<(), Fault> {
+    if spec.title.trim().is_empty() || spec.title.chars().count() > limits::TITLE {
+        let message = format!("the title must have 1 to {} characters", limits::TITLE);
+        return Err(Fault::new(at!["title"], message));
+    }
+    if spec.title.chars().any(char::is_control) {
+        let message = "the title must be one line without control characters";
+        return Err(Fault::new(at!["title"], message));
+    }
+    if spec
+        .about
+        .chars()
+        .any(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
+    {
+        let message = "the text must have no control characters but line breaks";
+        return Err(Fault::new(at!["about"], message));
+    }
+    Ok(())
+}
+
+/// Refuses lists that are too long to be meant.
+fn check_lengths(spec: &Spec) -> Result<(), Fault> {
+    let lengths = [
+        ("materials", spec.materials.len()),
+        ("bodies", spec.bodies.len()),
+        ("surfaces", spec.surfaces.len()),
+        ("supports", spec.supports.len()),
+        ("loads", spec.loads.len()),
+        ("monitors", spec.monitors.len()),
+    ];
+    lengths
+        .iter()
+        .try_for_each(|(list, length)| limits::entries(list, *length))
+}

@@ -1,0 +1,142 @@
+//! What is to be reported.
+
+use super::super::error::{Fault, Path, at, quoted, some_of};
+use super::super::limits;
+use super::super::model::{Dofs, Monitor, Slave, Watched};
+use super::super::nodes::Names;
+use super::super::spec::{Quantity, Spec};
+use super::layout::no_rotation;
+use std::collections::HashMap;
+
+/// Columns that every CSV has.
+const RESERVED: [&str; 4] = ["increment", "load", "majors", "minors"];
+
+/// The monitors, with the degrees of freedom and slaves that they watch.
+pub(super) fn monitors(
+    spec: &Spec,
+    names: &Names,
+    on_body: &[bool],
+    dofs: &Dofs,
+    slaves: &[Slave],
+) -> Result<Vec<Monitor>, Fault> {
+    let mut seen = HashMap::new();
+    let mut made = Vec::with_capacity(spec.monitors.len());
+    for (k, monitor) in spec.monitors.iter().enumerate() {
+        let here = at!["monitors", k];
+        let name = &monitor.name;
+        monitor_name(name).map_err(|message| Fault::new(here.then("name"), message))?;
+        if let Some(first) = seen.insert(name.as_str(), k) {
+            let message = format!("the name {name:?} is taken already by monitors[{first}]");
+            return Err(Fault::new(here.then("name"), message));
+        }
+        let of = watched(&here.then("of"), &monitor.of, names, on_body, dofs, slaves)?;
+        made.push(Monitor {
+            name: name.clone(),
+            of,
+        });
+    }
+    Ok(made)
+}
+
+fn monitor_name(name: &str) -> Result<(), String> {
+    let shown = quoted(name);
+    if name.is_empty() || name.chars().count() > limits::NAME {
+        Err(format!(
+            "the name {shown} must have 1 to {} characters",
+            limits::NAME
+        ))
+    } else if name.contains([',', '"', '\''])
+        || name.chars().any(char::is_control)
+        || name.trim() != name
+    {
+        Err(format!(
+            "the name {shown} heads a CSV column; it must be without commas, quotes, line breaks and outer blanks"
+        ))
+    } else if RESERVED.contains(&name) {
+        Err(format!(
+            "the name {shown} is a CSV column already, as are {}; take another",
+            RESERVED.join(", ")
+        ))
+    } else {
+        Ok(())
+    }
+}
+
+fn watched(
+    here: &Path,
+    quantity: &Quantity,
+    names: &Names,
+    on_body: &[bool],
+    dofs: &Dofs,
+    slaves: &[Slave],
+) -> Result<Watched, Fault> {
+    let node_of = |name: &str| {
+        names
+            .node(name)
+            .map_err(|message| Fault::new(here.then("node"), message))
+    };
+    let dof_of = |node, component| {
+        let fault = || Fault::new(here.then("component"), no_rotation(names, node));
+        dofs.dof(node, component).ok_or_else(fault)
+    };
+    match quantity {
+        Quantity::Displacement { node, component } => Ok(Watched::Displacement {
+            dof: dof_of(node_of(node)?, *component)?,
+        }),
+        Quantity::Reaction { node, component } => {
+            let node = node_of(node)?;
+            let dof = dof_of(node, *component)?;
+            let name = &names.nodes[node].name;
+            if !on_body[node] {
+                let message = format!(
+                    "node {name:?} is on no body and has no support force; a Contact monitor tells what acts on slaves"
+                );
+                return Err(Fault::new(here.then("node"), message));
+            }
+            if dofs.equation[dof].is_some() {
+                let message = format!(
+                    "{component} of node {name:?} is free and has no reaction; fix it in supports, or watch a Displacement"
+                );
+                return Err(Fault::new(here.then("component"), message));
+            }
+            Ok(Watched::Reaction { dof })
+        }
+        Quantity::Contact { node, component } => {
+            let slaves = match node {
+                Some(name) => vec![slave_number(here, name, node_of(name)?, names, slaves)?],
+                None if slaves.is_empty() => {
+                    return Err(Fault::new(
+                        here.clone(),
+                        "the scene has no slave nodes, and so no contact force",
+                    ));
+                }
+                None => (0..slaves.len()).collect(),
+            };
+            Ok(Watched::Contact {
+                slaves,
+                axis: *component,
+            })
+        }
+    }
+}
+
+fn slave_number(
+    here: &Path,
+    name: &str,
+    node: usize,
+    names: &Names,
+    slaves: &[Slave],
+) -> Result<usize, Fault> {
+    slaves
+        .iter()
+        .position(|slave| slave.node == node)
+        .ok_or_else(|| {
+            let all = slaves
+                .iter()
+                .map(|slave| names.nodes[slave.node].name.as_str());
+            Fault::new(
+                here.then("node"),
+                format!("node {name:?} is no slave node (slaves: {})", some_of(all)),
+            )
+        })
+}

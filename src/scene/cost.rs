@@ -1,0 +1,236 @@
+//! What a scene costs and what it does without, for `stickslip check`.
+
+use super::Scene;
+use super::compile::increments;
+use super::model::{BodyKind, Model, Surface};
+use std::fmt;
+
+/// What a scene costs. It prints as a table for a person who is to decide whether that is what was meant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cost {
+    /// Nodes, and those of them that are on bodies.
+    pub nodes: (usize, usize),
+    /// Unknown displacements in x and y.
+    pub translations: usize,
+    /// Unknown rotations.
+    pub rotations: usize,
+    /// Unknown shear forces of shear-rigid beams, one per Gauss point.
+    pub shears: usize,
+    /// Unknown interface forces, a normal and a tangential one per slave node.
+    pub interface: usize,
+    /// Degrees of freedom that supports or prescribed displacements hold.
+    pub held: usize,
+    /// One line per body.
+    pub bodies: Vec<String>,
+    /// One line per surface.
+    pub surfaces: Vec<String>,
+    /// Slave nodes, and how many of them start in each mode, as text.
+    pub slaves: String,
+    /// Increments, with the path that they follow.
+    pub history: String,
+    /// What the scene does not have, and hence does not pay for.
+    pub without: Vec<String>,
+}
+
+impl Cost {
+    /// Counts what a scene costs.
+    pub fn of(scene: &Scene) -> Cost {
+        let model = &scene.model;
+        let counted = |component: usize| {
+            let dofs = &model.dofs;
+            let of_node =
+                |n: usize| (component < dofs.count[n] as usize).then(|| dofs.first[n] + component);
+            (0..model.nodes.len())
+                .filter_map(of_node)
+                .filter(|&d| dofs.equation[d].is_some())
+                .count()
+        };
+        let mut on_body = vec![false; model.nodes.len()];
+        model
+            .bodies
+            .iter()
+            .flat_map(|b| &b.nodes)
+            .for_each(|&n| on_body[n] = true);
+        let on_bodies = on_body.iter().filter(|on| **on).count();
+        let (translations, rotations) = (counted(0) + counted(1), counted(2));
+        Cost {
+            nodes: (model.nodes.len(), on_bodies),
+            translations,
+            rotations,
+            shears: model.dofs.shear,
+            interface: 2 * model.slaves.len(),
+            held: 3 * on_bodies - translations - rotations,
+            bodies: model.bodies.iter().map(body_line).collect(),
+            surfaces: model.surfaces.iter().map(surface_line).collect(),
+            slaves: slaves_line(model),
+            history: history_line(model),
+            without: without(model),
+        }
+    }
+
+    /// All unknowns of a minor iteration, interface forces included.
+    pub fn unknowns(&self) -> usize {
+        self.translations + self.rotations + self.shears + self.interface
+    }
+}
+
+fn plural(count: usize, one: &str) -> String {
+    let end = if count == 1 { "" } else { "s" };
+    format!("{count} {one}{end}")
+}
+
+fn body_line(body: &super::model::Body) -> String {
+    let BodyKind::Beam(beam) = &body.kind;
+    let per = beam.elements.first().map_or(0, Vec::len);
+    let shear = match beam.ga {
+        Some(ga) => format!("GA {ga}"),
+        None => "shear-rigid".to_owned(),
+    };
+    let elements = plural(beam.elements.len(), "element");
+    format!(
+        "{}: beam, {elements} of {per} nodes, EA {}, EI {}, {shear}",
+        body.name, beam.ea, beam.ei
+    )
+}
+
+fn surface_line(surface: &Surface) -> String {
+    let per = surface.elements.first().map_or(0, Vec::len);
+    let elements = plural(surface.elements.len(), "interface element");
+    let kind = if surface.rigid {
+        "rigid, no unknowns"
+    } else {
+        "deformable, moves with its body"
+    };
+    format!("{}: {elements} of {per} nodes, {kind}", surface.name)
+}
+
+fn slaves_line(model: &Model) -> String {
+    use super::spec::Mode;
+    let starts = |mode| {
+        model
+            .slaves
+            .iter()
+            .filter(|slave| slave.start == mode)
+            .count()
+    };
+    let modes = [
+        (Mode::Free, "free"),
+        (Mode::Sliding, "sliding"),
+        (Mode::Fixed, "fixed"),
+    ];
+    let parts: Vec<String> = modes
+        .iter()
+        .map(|(mode, word)| (starts(*mode), word))
+        .filter(|(n, _)| *n > 0)
+        .map(|(n, w)| format!("{n} {w}"))
+        .collect();
+    if parts.is_empty() {
+        return plural(0, "node");
+    }
+    format!(
+        "{}; they start {}",
+        plural(model.slaves.len(), "node"),
+        parts.join(", ")
+    )
+}
+
+fn history_line(model: &Model) -> String {
+    let corners: Vec<String> = model.path.iter().map(f64::to_string).collect();
+    let count = increments(&model.path, model.increment);
+    format!(
+        "{count} increments of at most {}, load factor {}",
+        model.increment,
+        corners.join(" -> ")
+    )
+}
+
+/// What a scene does without, each with what would bring it in.
+fn without(model: &Model) -> Vec<String> {
+    let mut lines = Vec::new();
+    for body in &model.bodies {
+        let BodyKind::Beam(beam) = &body.kind;
+        if beam.ga.is_none() {
+            lines.push(format!(
+                "no shear deformation of {}: GA is not named",
+                body.name
+            ));
+        }
+    }
+    for surface in model.surfaces.iter().filter(|surface| surface.rigid) {
+        lines.push(format!("no unknowns on surface {}: rigid", surface.name));
+    }
+    for (k, surface) in model.surfaces.iter().enumerate() {
+        if !model.slaves.iter().any(|slave| slave.surfaces.contains(&k)) {
+            lines.push(format!(
+                "no slave nodes on surface {}: nothing can touch it",
+                surface.name
+            ));
+        }
+    }
+    let scene_wide = [
+        (
+            model.slaves.is_empty(),
+            "no contact: no slave nodes are named",
+        ),
+        (
+            !model.slaves.is_empty() && model.slaves.iter().all(|slave| slave.friction.is_smooth()),
+            "no friction: angle and cohesion are 0",
+        ),
+        (
+            model.slaves.iter().all(|s| s.friction.cohesion == 0.0)
+                && !model.slaves.iter().all(|s| s.friction.is_smooth()),
+            "no cohesion: it is 0",
+        ),
+        (
+            model.loads.is_empty(),
+            "no loads: no force and no moment is named",
+        ),
+        (
+            model.prescribed.is_empty(),
+            "no prescribed displacements: none is named",
+        ),
+        (
+            model.monitors.is_empty(),
+            "no monitors: --csv has only increment, load, majors and minors",
+        ),
+    ];
+    lines.extend(
+        scene_wide
+            .into_iter()
+            .filter(|(lacks, _)| *lacks)
+            .map(|(_, line)| line.to_owned()),
+    );
+    lines
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "nodes              {:>8}   {} on bodies",
+            self.nodes.0, self.nodes.1
+        )?;
+        writeln!(
+            f,
+            "unknowns           {:>8}   {} degrees of freedom are held",
+            self.unknowns(),
+            self.held
+        )?;
+        writeln!(f, "  translations     {:>8}", self.translations)?;
+        writeln!(f, "  rotations        {:>8}", self.rotations)?;
+        writeln!(f, "  shear forces     {:>8}", self.shears)?;
+        writeln!(f, "  interface forces {:>8}", self.interface)?;
+        section(f, "bodies", &self.bodies)?;
+        section(f, "surfaces", &self.surfaces)?;
+        section(f, "slaves", std::slice::from_ref(&self.slaves))?;
+        section(f, "history", std::slice::from_ref(&self.history))?;
+        section(f, "without", &self.without)
+    }
+}
+
+fn section(f: &mut fmt::Formatter<'_>, title: &str, lines: &[String]) -> fmt::Result {
+    for (k, line) in lines.iter().enumerate() {
+        writeln!(f, "{:<9} {line}", if k == 0 { title } else { "" })?;
+    }
+    Ok(())
+}
