@@ -328,7 +328,11 @@ fn the_fired_cell_is_lit_and_nothing_else_is() {
     let dark = find(&screen, "|F_t| < |T_max|");
     assert!(!dark.modifier.contains(Modifier::REVERSED));
     // A row that the node is not in stands back.
-    assert_eq!(find(&screen, "T_max·slip < 0").fg, Color::DarkGray);
+    assert!(
+        find(&screen, "T_max·slip < 0")
+            .modifier
+            .contains(Modifier::DIM)
+    );
 }
 
 #[test]
@@ -866,8 +870,5 @@ fn a_narrow_screen_shows_the_cell_that_fired_alone() {
         screen.contains("fixed → sliding   F_n > 0, |F_t| > |T_max|"),
         "{screen}"
     );
-    assert!(
-        screen.contains("F_t is more than friction can"),
-        "{screen}"
-    );
+    assert!(screen.contains("F_t is more than friction can"), "{screen}");
 }

@@ -260,6 +260,7 @@ pub const ACTIONS: &[Entry] = &[
 
 /// What `set` can change during a run.
 pub const PATHS: &[&str] = &[
+    "history.increment",
     "friction.angle",
     "friction.cohesion",
     "settings.residual",

@@ -1,7 +1,8 @@
 //! Colours and weights. Colour never carries meaning alone: letters, words and glyphs come first.
 //!
-//! Only the terminal's own sixteen colours are used, so that light and dark terminals and a lecture hall's
-//! projector all keep the contrast that their owner chose. Cyan, yellow and magenta tell the modes apart for
+//! Only the terminal's own colours are used, and few of them, so that light and dark terminals and a lecture hall's
+//! projector all keep the contrast that their owner chose; what stands back is dim, not grey, since some palettes
+//! hide their grey in the background. Cyan, yellow and magenta tell the modes apart for
 //! colour-blind eyes too; red and green are left to failure and success.
 
 use crate::scene::Mode;
@@ -39,9 +40,6 @@ impl Theme {
         let colour = |colour| Style::new().fg(colour);
         let mono = Theme::mono();
         Theme {
-            faint: colour(Color::DarkGray),
-            focus: colour(Color::Blue).add_modifier(Modifier::BOLD),
-            key: colour(Color::Blue).add_modifier(Modifier::BOLD),
             good: colour(Color::Green),
             bad: colour(Color::Red).add_modifier(Modifier::BOLD),
             warning: colour(Color::Yellow).add_modifier(Modifier::BOLD),
