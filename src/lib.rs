@@ -17,3 +17,4 @@ pub mod fem;
 pub mod linalg;
 pub mod scene;
 pub mod solve;
+pub mod tui;
