@@ -232,14 +232,15 @@ impl Factors {
     fn backward_error(&mut self, b: &[f64], x: &[f64]) -> f64 {
         self.pattern.multiply(&self.values, x, &mut self.residual);
         self.pattern.multiply_abs(&self.values, x, &mut self.sizes);
-        let mut worst = 0.0_f64;
-        for i in 0..b.len() {
-            let size = self.sizes[i] + b[i].abs();
+        let rows = b.iter().zip(self.residual.iter().zip(&self.sizes));
+        rows.fold(0.0_f64, |worst, (b, (product, size))| {
+            let size = size + b.abs();
             if size > 0.0 {
-                worst = worst.max((b[i] - self.residual[i]).abs() / size);
+                worst.max((b - product).abs() / size)
+            } else {
+                worst
             }
-        }
-        worst
+        })
     }
 
     fn apply_inverse(&mut self, x: &mut [f64]) {

@@ -263,8 +263,8 @@ impl System {
                     interface.prescribed[link.axis] += link.weight * self.step[link.dof];
                     continue;
                 }
-                for k in 0..2 {
-                    interface.moves[k] |= (link.weight * frame[k][link.axis]).abs() > EMPTY;
+                for (moves, direction) in interface.moves.iter_mut().zip(frame) {
+                    *moves |= (link.weight * direction[link.axis]).abs() > EMPTY;
                 }
             }
         }
