@@ -859,6 +859,19 @@ fn a_long_outcome_goes_on_in_further_lines() {
 }
 
 #[test]
+fn a_long_message_is_not_cut() {
+    let model = model(5);
+    let frames = frames(&model, minor());
+    let mut app = app();
+    app.complain("one two three four five six seven eight nine ten eleven twelve thirteen fourteen\nfifteen sixteen");
+    let screen = draw::text(&app, Some(&view(&model, &frames)), 80, 24);
+    assert!(
+        screen.contains("fifteen sixteen") && screen.contains("? help"),
+        "{screen}"
+    );
+}
+
+#[test]
 fn a_narrow_screen_shows_the_cell_that_fired_alone() {
     let model = model(5);
     let frames = frames(&model, minor());
