@@ -10,6 +10,7 @@
 //! - [`debug`]: the debugger without a terminal: session, commands, snapshots.
 //! - [`cli`] and [`tui`]: the two front ends.
 
+pub mod cli;
 pub mod contact;
 pub mod debug;
 pub mod fem;
