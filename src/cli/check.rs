@@ -1,6 +1,7 @@
 //! `stickslip check`: is the scene sound, and what does it cost.
 
 use super::{Error, Exit, SceneArgs, say};
+use crate::scene::cost::Cost;
 use crate::scene::{Scene, paths};
 
 #[derive(Debug, clap::Args)]
@@ -17,7 +18,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let text = if args.paths {
         all_paths(&scene)
     } else {
-        format!("{}: sound\n{}", scene.name, cost(&scene))
+        format!("{}: sound\n{}", scene.name, Cost::of(&scene))
     };
     say(&text)?;
     Ok(Exit::Good)
@@ -28,14 +29,4 @@ fn all_paths(scene: &Scene) -> String {
         .iter()
         .map(|l| format!("{}\t{}\t{}\n", l.path, l.value, l.kind))
         .collect()
-}
-
-/// MERGE: `crate::scene::cost::Cost::of(scene).to_string()` takes its place.
-fn cost(scene: &Scene) -> String {
-    let model = &scene.model;
-    format!(
-        "unknowns  {} (interface forces not counted: {} slave nodes)\n",
-        model.dofs.equations,
-        model.slaves.len()
-    )
 }

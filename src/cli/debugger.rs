@@ -1,6 +1,7 @@
 //! `stickslip [SCENE]`: the debugger.
 
 use super::{Error, Exit, SetArgs};
+use crate::tui;
 use std::io::IsTerminal;
 
 #[derive(Debug, clap::Args)]
@@ -21,12 +22,6 @@ pub fn main(args: Args) -> Result<Exit, Error> {
             "the debugger needs a terminal, and standard input or output is none; `stickslip run {scene} --csv -` solves without one"
         )));
     }
-    debug(args.scene, &args.set.set)
-}
-
-/// The one place where the command line calls the terminal front end.
-///
-/// MERGE: `crate::tui::run(scene, overrides)` takes the place of the error.
-fn debug(_scene: Option<String>, _overrides: &[(String, String)]) -> Result<Exit, Error> {
-    Err(Error::Usage("the debugger is not built in yet".into()))
+    tui::run(args.scene, &args.set.set).map_err(|error| Error::Usage(error.to_string()))?;
+    Ok(Exit::Good)
 }
