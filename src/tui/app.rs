@@ -152,18 +152,17 @@ impl App {
 
     /// Says something.
     pub fn say(&mut self, text: impl Into<String>) {
-        self.message = Message {
-            text: text.into(),
-            tone: Tone::Plain,
-        };
+        self.tell(text.into(), Tone::Plain);
     }
 
     /// Says what went wrong.
     pub fn complain(&mut self, text: impl Into<String>) {
-        self.message = Message {
-            text: text.into(),
-            tone: Tone::Error,
-        };
+        self.tell(text.into(), Tone::Error);
+    }
+
+    fn tell(&mut self, text: String, tone: Tone) {
+        let text = text.replace(char::is_control, " ");
+        self.message = Message { text, tone };
     }
 
     /// Shows a scene that was just opened.
@@ -181,13 +180,14 @@ impl App {
     }
 
     /// The user's part in the arrangement of the screen.
-    pub fn choice(&self, slaves: usize, outcome: u16) -> Choice {
+    pub fn choice(&self, slaves: usize, outcome: u16, message: u16) -> Choice {
         Choice {
             focus: self.focus,
             page: self.page,
             zoomed: self.zoomed,
             slaves,
             outcome,
+            message,
         }
     }
 

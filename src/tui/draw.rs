@@ -15,7 +15,8 @@ use ratatui::widgets::{Block, BorderType, Widget};
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     let slaves = view.map_or(0, |view| view.model.slaves.len());
     let outcome = view.map_or(1, |view| status::outcome_lines(app, view, area.width));
-    let places = layout::places(area, &app.choice(slaves, outcome));
+    let message = footer::message_lines(app, view, area.width);
+    let places = layout::places(area, &app.choice(slaves, outcome, message));
     status::draw(buffer, places.status, app, view);
     let body = places
         .panes

@@ -12,17 +12,22 @@ use unicode_width::UnicodeWidthStr;
 /// Actions that the footer never leaves out, however narrow the screen.
 const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
+/// Most lines that a message takes.
+const MESSAGE: usize = 3;
+
 /// Draws message and keys.
 pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
-    draw::lines(
-        buffer,
-        places.message,
-        &[message(app, view, places.message.width as usize)],
-    );
+    let message = message(app, view, places.message.width as usize);
+    draw::lines(buffer, places.message, &message);
     draw::lines(buffer, places.footer, &[keys(app, view, places)]);
 }
 
-fn message<'a>(app: &'a App, view: Option<&View>, width: usize) -> Line<'a> {
+/// Lines that the message needs.
+pub fn message_lines(app: &App, view: Option<&View>, width: u16) -> u16 {
+    message(app, view, width as usize).len().min(MESSAGE) as u16
+}
+
+fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
         use crate::tui::commandline::Purpose;
@@ -31,19 +36,22 @@ fn message<'a>(app: &'a App, view: Option<&View>, width: usize) -> Line<'a> {
             Purpose::Node => "/".into(),
             Purpose::Increment => app.question(view).unwrap_or_else(|| "increment: ".into()),
         };
-        return line.line(&prompt, width, theme);
+        return vec![line.line(&prompt, width, theme)];
     }
     if let Some(question) = app.question(view) {
-        return Line::styled(format!(" {question}"), theme.key);
+        return vec![Line::styled(format!(" {question}"), theme.key)];
     }
     if let Some(count) = app.count {
-        return Line::styled(format!(" {count} ×"), theme.key);
+        return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
     let style = match app.message.tone {
         Tone::Plain => theme.text,
         Tone::Error => theme.bad,
     };
-    Line::styled(format!(" {}", app.message.text), style)
+    draw::wrap(&app.message.text, width.saturating_sub(2))
+        .into_iter()
+        .map(|line| Line::styled(format!(" {line}"), style))
+        .collect()
 }
 
 fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {

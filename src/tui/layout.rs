@@ -39,6 +39,8 @@ pub struct Choice {
     pub slaves: usize,
     /// Lines that the last outcome takes in the status, at least one.
     pub outcome: u16,
+    /// Lines that the message takes, at least one.
+    pub message: u16,
 }
 
 /// Where everything stands.
@@ -67,7 +69,11 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         _ => 2 + choice.outcome.max(1),
     };
     let footer = u16::from(area.height > 6);
-    let message = u16::from(area.height > 2);
+    let message = match area.height {
+        0..=2 => 0,
+        3..=11 => 1,
+        _ => choice.message.max(1),
+    };
     let rows = [
         status,
         area.height - status - footer - message,
@@ -161,6 +167,7 @@ mod tests {
             zoomed: false,
             slaves,
             outcome: 1,
+            message: 1,
         };
         places(Rect::new(0, 0, width, height), &choice)
     }
