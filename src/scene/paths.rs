@@ -5,8 +5,9 @@
 
 use super::error::{Path, at, nearest, quoted};
 use super::spec::{
-    AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, LoadSpec, Material, Mode,
-    MonitorSpec, Nodes, Point, Quantity, ResidualMethod, Scale, Settings, SlipCount, Spec, Ties,
+    AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, LoadSpec,
+    Material, Mode, MonitorSpec, Nodes, Point, Quantity, ResidualMethod, Scale, Settings,
+    SlipCount, Spec, Ties,
 };
 
 /// A value set from outside.
@@ -264,6 +265,7 @@ choices! {
     Component { "x" => Component::X, "y" => Component::Y, "rotation" => Component::Rotation }
     Axis { "x" => Axis::X, "y" => Axis::Y }
     ResidualMethod { "accumulate" => ResidualMethod::Accumulate, "stress" => ResidualMethod::Stress }
+    Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
     FrictionLimit { "lagged" => FrictionLimit::Lagged, "consistent" => FrictionLimit::Consistent }
     SlipCount { "increment" => SlipCount::Increment, "major" => SlipCount::Major }
     Ties { "keep" => Ties::Keep, "printed" => Ties::Printed }
@@ -470,6 +472,10 @@ fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
     visit(
         &place.field("residual"),
         Scalar::Choice(&mut settings.residual),
+    );
+    visit(
+        &place.field("geometry"),
+        Scalar::Choice(&mut settings.geometry),
     );
     visit(&place.field("t_max"), Scalar::Choice(&mut settings.t_max));
     visit(&place.field("slip"), Scalar::Choice(&mut settings.slip));
