@@ -177,7 +177,8 @@ pub struct SurfaceSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlaveSpec {
-    /// Names of nodes; `ID.all` stands for every node of a chain.
+    /// Names of nodes; `ID.all` stands for every node of a chain, less those that cannot move over surfaces that
+    /// cannot move either.
     pub nodes: Vec<String>,
     /// Surfaces among which each node finds its own element.
     pub on: Vec<String>,
