@@ -69,6 +69,7 @@ pub fn ratio(f_t: f64, t_max: f64) -> String {
     // The difference of the magnitudes keeps the digits that the quotient loses.
     let off = (f_t.abs() - t_max.abs()) / t_max.abs();
     match () {
+        _ if f_t == 0.0 => "0".into(),
         _ if off == 0.0 => "1".into(),
         _ if off.abs() < 5e-5 => format!("1{off:+.0e}"),
         _ if !(1e-3..1e3).contains(&ratio) => format!("{ratio:.1e}"),

@@ -106,6 +106,8 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
 fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     terminal.suspend()?;
     signals.resumed();
+    // What the process group was told comes back here too.
+    signals.stop();
     Ok(())
 }
 

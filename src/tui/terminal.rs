@@ -71,8 +71,12 @@ impl Terminal {
     }
 
     /// Gives the terminal back, stops the process until it is continued, and takes the terminal again.
+    ///
+    /// The whole process group is told, as the terminal itself would by Ctrl-Z: a parent such as cargo would go on
+    /// waiting otherwise, and the shell never get its prompt back.
     pub fn suspend(&mut self) -> io::Result<()> {
         give_back();
+        rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
         low_level::emulate_default_handler(SIGTSTP)?;
         take()?;
         self.forget()
