@@ -188,3 +188,46 @@ fn the_lifted_cantilever_cycles_and_reaches_the_reference_once_its_tip_is_forced
         assert!(e < 1e-6, "{ours}: {e}");
     }
 }
+
+#[test]
+fn problem_03_meets_its_reference_with_one_and_with_two_contacts() {
+    // Stage 0: free; 1: the short tip on the long beam; 2: also the long tip on the short one's flank.
+    for (refine, limits) in [("1", [1e-12, 1e-3, 5e-4]), ("2", [1e-12, 3e-4, 3e-5])] {
+        let run = run(&scene("03-distant-cantilevers", &[("refine", refine)]));
+        finished(&run);
+        assert_eq!(run.accepted.len(), 100);
+        for (stage, limit) in limits.iter().enumerate() {
+            let rows: Vec<Row> = table("03-distant-cantilevers.csv")
+                .into_iter()
+                .filter(|r| r["stage"] == stage.to_string())
+                .collect();
+            for (ours, theirs) in [("u_x", "u_tip"), ("u_y", "v_tip")] {
+                let e = error(&run, &rows, "M", ours, theirs);
+                assert!(e < *limit, "refine {refine} stage {stage} {ours}: {e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn problem_04_converges_to_the_elastica_on_the_circle() {
+    // Increments do not matter here (smooth, elastic); larger ones save time.
+    let errors: Vec<f64> = ["1", "2", "4"]
+        .iter()
+        .map(|refine| {
+            let set = [("refine", *refine), ("history.increment", "0.05")];
+            let run = run(&scene("04-cantilever-rigid-circle", &set));
+            finished(&run);
+            let rows: Vec<Row> = table("04-rigid-circle.csv")
+                .into_iter()
+                .filter(|r| r["L"] == "1" && r["R"] == "1")
+                .collect();
+            error(&run, &rows, "P", "u_x", "u_ext").max(error(&run, &rows, "P", "u_y", "v_ext"))
+        })
+        .collect();
+    println!("{errors:?}");
+    assert!(
+        errors[0] < 1e-3 && errors[1] < 3e-4 && errors[2] < 3e-5,
+        "{errors:?}"
+    );
+}

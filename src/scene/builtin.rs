@@ -20,6 +20,8 @@ const SCENES: &[Builtin] = scenes![
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
     "02-two-cantilevers-rough",
+    "03-distant-cantilevers",
+    "04-cantilever-rigid-circle",
     "osc-inclined-cantilever",
 ];
 
