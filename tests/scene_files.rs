@@ -1,6 +1,7 @@
 //! Scene files: the built-in ones are sound, damaged ones get one message with a place, and nothing panics.
 
 use proptest::prelude::*;
+use std::collections::HashSet;
 use stickslip::scene::model::{BodyKind, Watched};
 use stickslip::scene::spec::{Component, FrictionLimit};
 use stickslip::scene::{Cost, Model, Scene, SceneError, Spec, builtin, paths, read};
@@ -79,7 +80,9 @@ fn a_file_is_found_by_its_path_and_wins_over_a_built_in_scene() {
     let file = folder.path().join("x.ron");
     std::fs::write(&file, pinned().replacen("EA: 100.0", "EA: 7.0", 1)).unwrap();
     let scene = Scene::open(file.to_str().unwrap(), &[]).unwrap();
-    let BodyKind::Beam(beam) = &scene.model.bodies[0].kind;
+    let BodyKind::Beam(beam) = &scene.model.bodies[0].kind else {
+        panic!("no beam")
+    };
     assert_eq!(beam.ea, 7.0);
     assert_eq!(scene.name, file.to_str().unwrap());
 }
@@ -99,7 +102,9 @@ fn the_pinned_beam_is_numbered_node_by_node_with_shear_last() {
         [Some(13), Some(14), Some(15), Some(16)]
     );
     assert_eq!((model.dofs.equations, model.dofs.shear), (17, 4));
-    let BodyKind::Beam(beam) = &model.bodies[0].kind;
+    let BodyKind::Beam(beam) = &model.bodies[0].kind else {
+        panic!("no beam")
+    };
     assert_eq!(beam.first_shear, Some(25));
     assert!(model.surfaces[0].rigid);
     assert!((model.length - 4.0).abs() < 1e-14);
@@ -110,7 +115,9 @@ fn the_pinned_beam_is_numbered_node_by_node_with_shear_last() {
 #[test]
 fn shear_stiffness_replaces_the_shear_unknowns() {
     let model = with("materials.rod.GA", "5").unwrap().model;
-    let BodyKind::Beam(beam) = &model.bodies[0].kind;
+    let BodyKind::Beam(beam) = &model.bodies[0].kind else {
+        panic!("no beam")
+    };
     assert_eq!((beam.ga, beam.first_shear), (Some(5.0), None));
     assert_eq!(
         (model.dofs.equations, model.dofs.shear, model.dofs.len()),
@@ -315,8 +322,8 @@ fn each_fault_has_one_message_with_its_place() {
         ),
         (
             "Beam(",
-            "Solid(",
-            ":35:14: bodies[0]: \"Solid\" is none of the choices (choices: Beam)",
+            "Plate(",
+            ":35:14: bodies[0]: \"Plate\" is none of the choices (choices: Beam, Solid)",
         ),
         (
             "sliding)",
@@ -779,15 +786,22 @@ fn assert_usable(model: &Model) {
     );
     let numbers: Vec<usize> = model.dofs.equation.iter().flatten().copied().collect();
     assert!(numbers.iter().enumerate().all(|(k, number)| k == *number));
-    for node in model.bodies.iter().flat_map(|body| &body.nodes) {
-        assert!(model.dofs.dof(*node, Component::Rotation).is_some());
+    for body in &model.bodies {
+        match &body.kind {
+            BodyKind::Beam(_) => {
+                for node in &body.nodes {
+                    assert!(model.dofs.dof(*node, Component::Rotation).is_some());
+                }
+            }
+            BodyKind::Solid(solid) => {
+                assert_eq!(solid.elements.len(), solid.material_of.len());
+                assert!(solid.material_of.iter().all(|&k| k < solid.materials.len()));
+                let nodes: HashSet<usize> = solid.elements.iter().flatten().copied().collect();
+                assert_eq!(nodes, body.nodes.iter().copied().collect());
+            }
+        }
     }
-    assert!(
-        model
-            .loads
-            .iter()
-            .all(|load| load.value.is_finite() && model.dofs.equation[load.dof].is_some())
-    );
+    assert!(model.loads.iter().all(|load| load.value.is_finite()));
     assert!(
         model
             .prescribed
@@ -919,20 +933,30 @@ const EVERYTHING: &str = r#"(
         Arc(id: "a", center: (2, -2), radius: 2, from: 135, to: 45, elements: 2, per_element: 3),
         Through(id: "t", points: [(0, 2), (1, 2.1), (2, 2)], per_element: 3),
         Chain(id: "c", of: ["b.1", "p"], per_element: 2),
+        Block(id: "k", corners: [(5, 0), (6, 0), (6, 2), (5, 1.5)], elements: (2, 3)),
+        Block(id: "r", corners: [(5, -3), (6, -2)], elements: (1, 2)),
     ],
-    materials: [Section(id: "m", EA: 10, EI: 1, GA: 3), Section(id: "n", EA: 10, EI: 1)],
+    materials: [
+        Section(id: "m", EA: 10, EI: 1, GA: 3), Section(id: "n", EA: 10, EI: 1),
+        Elastic(id: "e", E: 100, nu: 0.3),
+        Elastic(id: "f", E: 50, nu: 0.2, law: neohookean, plane: stress, thickness: 0.1, update: total),
+        Elastic(id: "g", E: 50, nu: 0, update: updated),
+    ],
     bodies: [
         Beam(id: "b", along: "b", material: "m"), Beam(id: "c", along: "c", material: "n"),
-        Beam(id: "t", along: "t", material: "n"),
+        Beam(id: "t", along: "t", material: "n"), Beam(id: "skin", along: "r.top", material: "m"),
+        Solid(id: "k", mesh: "k", material: "e", regions: [(from: (5, 1), to: (6, 2), material: "f")]),
+        Solid(id: "r", mesh: "r", material: "g"),
     ],
-    surfaces: [(id: "s", along: "a"), (id: "u", along: "t", reverse: true)],
+    surfaces: [(id: "s", along: "a"), (id: "u", along: "t", reverse: true), (id: "v", along: "k.left")],
     slaves: [
         (nodes: ["b.all"], on: ["s"], start: fixed, friction: (angle: 10, cohesion: 0.1)),
-        (nodes: ["p"], on: ["s", "u"]),
+        (nodes: ["p"], on: ["s", "u"]), (nodes: ["r.left", "r.bottom.2"], on: ["v"]),
     ],
     friction: (angle: 5),
-    supports: [(node: "t.start", fix: [x, y, rotation])],
+    supports: [(node: "t.start", fix: [x, y, rotation]), (node: "k.right", fix: [x])],
     loads: [
+        Traction(along: "k.top", normal: -1, x: 0.5, y: 1, scale: [(0, 1)]), Force(node: "r.3", x: 1),
         Force(node: "b.end", x: 1, y: 2, scale: [(0, 0), (1, 2)]), Moment(node: "t.end", value: 3),
         Displacement(node: "a.all", component: y, value: 0.1), Displacement(node: "t.end", component: x, value: 0.1),
     ],

@@ -20,6 +20,8 @@ const SCENES: &[Builtin] = scenes![
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
     "02-two-cantilevers-rough",
+    "05-cantilever-elastic-block",
+    "05-cantilever-elastic-block-swapped",
     "osc-inclined-cantilever",
 ];
 
