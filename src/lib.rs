@@ -10,9 +10,11 @@
 //! - [`debug`]: the debugger without a terminal: session, commands, snapshots.
 //! - [`cli`] and [`tui`]: the two front ends.
 
+pub mod cli;
 pub mod contact;
 pub mod debug;
 pub mod fem;
 pub mod linalg;
 pub mod scene;
 pub mod solve;
+pub mod tui;

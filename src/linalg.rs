@@ -228,18 +228,17 @@ impl Factors {
         size
     }
 
-    /// Componentwise backward error of x as a solution of A x = b, against the largest row.
+    /// Backward error of x as a solution of A x = b, in the scaled system, where all entries are at most one.
     fn backward_error(&mut self, b: &[f64], x: &[f64]) -> f64 {
         self.pattern.multiply(&self.values, x, &mut self.residual);
-        self.pattern.multiply_abs(&self.values, x, &mut self.sizes);
-        let mut worst = 0.0_f64;
-        for i in 0..b.len() {
-            let size = self.sizes[i] + b[i].abs();
-            if size > 0.0 {
-                worst = worst.max((b[i] - self.residual[i]).abs() / size);
-            }
-        }
-        worst
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |m, v| m.max(v.abs()));
+        let scales = || b.iter().zip(&self.residual).zip(&self.row_scale);
+        let error = largest(&mut scales().map(|((b, product), scale)| (b - product) * scale));
+        let size = largest(&mut scales().map(|((b, _), scale)| b * scale)).max(largest(
+            &mut x.iter().zip(&self.col_scale).map(|(x, scale)| x / scale),
+        ));
+        if error > 0.0 { error / size } else { 0.0 }
     }
 
     fn apply_inverse(&mut self, x: &mut [f64]) {

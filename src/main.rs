@@ -1,1 +1,5 @@
-fn main() {}
+//! The program: see [`stickslip::cli`].
+
+fn main() -> std::process::ExitCode {
+    stickslip::cli::main()
+}

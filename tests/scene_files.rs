@@ -13,9 +13,13 @@ fn pinned() -> &'static str {
 }
 
 /// The pinned beam with a piece of its file replaced.
+/// The pinned beam with a piece replaced; without its settings, so that they can be given.
 fn changed(from: &str, to: &str) -> Result<Scene, SceneError> {
-    assert!(pinned().contains(from), "the scene has no {from:?}");
-    Scene::from_text("x.ron", &pinned().replacen(from, to, 1), &[])
+    let (start, rest) = pinned().split_once("    // The last increment").unwrap();
+    let (_, end) = rest.split_once("settings: (at_cycle: damp),\n").unwrap();
+    let text = format!("{start}{end}");
+    assert!(text.contains(from), "the scene has no {from:?}");
+    Scene::from_text("x.ron", &text.replacen(from, to, 1), &[])
 }
 
 fn with(path: &str, value: &str) -> Result<Scene, SceneError> {

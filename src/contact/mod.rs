@@ -1,9 +1,11 @@
 //! The interface between slave nodes and master surfaces.
 //!
 //! - [`projection`]: where a slave node stands over its surface: S*, gap, normal, shape functions.
+//! - [`turning`]: how the force turns and travels with the surface, for the tangent.
 //! - [`table1`]: the equations that a node adds in each of the three modes, and T_max (eqn 20).
 //! - [`decision`]: Table 2, the mode that a node takes next, with the reason.
 
 pub mod decision;
 pub mod projection;
 pub mod table1;
+pub mod turning;

@@ -5,6 +5,7 @@
 //! lies to the right of the walk along the chain, t is n turned 90 degrees anticlockwise, that is, t points along
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
+use crate::contact::turning::Curve;
 use crate::fem::lagrange::{MAX_NODES, node, shape};
 use crate::scene::model::Surface;
 
@@ -37,6 +38,10 @@ pub struct Footing {
     pub gap: f64,
     /// Shape functions N_i of the master element at S*; entries beyond its nodes are zero.
     pub shape: [f64; MAX_NODES],
+    /// dN_i/dξ there.
+    pub shape_slope: [f64; MAX_NODES],
+    /// Derivatives of the element's curve; none where S* lies on an end of the element.
+    pub curve: Option<Curve>,
 }
 
 /// n turned 90 degrees anticlockwise.
@@ -99,11 +104,17 @@ pub fn footing(
     let foot = blend(nodes, positions, &s.n);
     let normal = normal_at(surface, spot, positions);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
+    let inside = spot.xi.abs() < 1.0;
     Footing {
         foot,
         normal,
         gap,
         shape: s.n,
+        shape_slope: s.d,
+        curve: inside.then(|| Curve {
+            slope: blend(nodes, positions, &s.d),
+            bend: blend(nodes, positions, &s.dd),
+        }),
     }
 }
 

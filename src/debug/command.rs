@@ -1,6 +1,11 @@
 //! Every action by name: the one table behind keys, footer, help, completion and the README's list.
+//!
+//! An action is either a [`Command`] for the solver's session or a [`Ui`] action of the terminal around it. A key
+//! press and a typed line both end in [`Entry::act`], so whatever has a key has a name and the other way round. An
+//! action that lacks an argument it needs asks for it ([`Ui::Ask`]). Keys are plain strings here (`"s"`, `"F10"`,
+//! `"Ctrl-c"`); no terminal library is known to this file.
 
-use crate::scene::Mode;
+use crate::scene::{Mode, Model, Scene};
 use std::path::PathBuf;
 
 /// What the debugger can be told to do to the solver.
@@ -39,4 +44,755 @@ pub enum Unit {
     Increment,
     /// To the end of the history, a failure, or (back) the start.
     Run,
+}
+
+/// What a key or a typed line means.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    Session(Command),
+    Ui(Ui),
+}
+
+/// What concerns the terminal alone.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ui {
+    /// The last motion once more.
+    Repeat,
+    /// Stop a run; never the program.
+    Interrupt,
+    /// Move the selection, scroll or pan, whatever the pane with the focus does with it.
+    Move(Step),
+    /// Select a slave node, by slave number.
+    Select(usize),
+    NextPane,
+    PreviousPane,
+    /// Give the pane with the focus the whole screen, or take it back.
+    Zoom,
+    /// Zoom the decision.
+    Explain,
+    /// The shape larger, smaller, and all of it.
+    Enlarge,
+    Shrink,
+    Fit,
+    /// Ask for what an action still needs.
+    Ask(Question),
+    CommandLine,
+    /// Load another scene, by file or built-in name.
+    Open(String),
+    Help,
+    Redraw,
+    Suspend,
+    /// Leave whatever is open: a count, a prompt, a zoomed pane.
+    Cancel,
+    Quit,
+}
+
+/// A step inside a pane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    Up,
+    Down,
+    Left,
+    Right,
+    PageUp,
+    PageDown,
+    First,
+    Last,
+}
+
+/// What an action can ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Question {
+    /// The mode to force the selected node into.
+    Mode,
+    /// The increment's new size.
+    Increment,
+    /// Which node to select.
+    Node,
+    /// Which scene to open.
+    Scene,
+}
+
+/// What an action needs to know to understand its arguments.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Context<'a> {
+    /// The model, if a scene is open.
+    pub model: Option<&'a Model>,
+    /// The scene itself, which knows more names of its nodes than the model does (`beam.end` for `beam.5`).
+    pub scene: Option<&'a Scene>,
+    /// The selected slave node, by slave number.
+    pub selected: usize,
+    /// Names of the built-in scenes.
+    pub scenes: &'a [String],
+}
+
+/// Heading under which help lists an action.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    Go,
+    Change,
+    Look,
+    Program,
+}
+
+impl Group {
+    /// All, in the order of the help page.
+    pub const ALL: [Group; 4] = [Group::Go, Group::Change, Group::Look, Group::Program];
+
+    /// The heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Group::Go => "Go through the iterations",
+            Group::Change => "Interfere",
+            Group::Look => "Look around",
+            Group::Program => "The program",
+        }
+    }
+}
+
+/// One action: how it is called, which keys do it, what it does.
+#[derive(Debug)]
+pub struct Entry {
+    pub name: &'static str,
+    /// Arguments as help shows them; those in brackets may be left out.
+    pub arguments: &'static str,
+    pub keys: &'static [&'static str],
+    pub group: Group,
+    /// Word in the footer; empty where the footer leaves it out.
+    pub label: &'static str,
+    pub help: &'static str,
+    verb: Verb,
+}
+
+/// How an entry reads its arguments.
+#[derive(Debug, Clone, PartialEq)]
+enum Verb {
+    Forward(Unit),
+    Back(Unit),
+    Force {
+        hold: bool,
+    },
+    Release,
+    Increment,
+    Set,
+    /// A short name for one path of `set`.
+    SetPath(&'static str),
+    Snapshot {
+        overwrite: bool,
+    },
+    Node,
+    Open,
+    Do(Ui),
+}
+
+/// Shorthand that keeps the table one line an action.
+const fn entry(
+    group: Group,
+    name: &'static str,
+    arguments: &'static str,
+    keys: &'static [&'static str],
+    label: &'static str,
+    help: &'static str,
+    verb: Verb,
+) -> Entry {
+    Entry {
+        name,
+        arguments,
+        keys,
+        group,
+        label,
+        help,
+        verb,
+    }
+}
+
+/// The one table.
+#[rustfmt::skip]
+pub const ACTIONS: &[Entry] = &[
+    entry(Group::Go, "step", "[COUNT]", &["s", "F11"], "step", "One minor iteration forward", Verb::Forward(Unit::Minor)),
+    entry(Group::Go, "next", "[COUNT]", &["n", "F10"], "next", "To the end of this major iteration", Verb::Forward(Unit::Major)),
+    entry(Group::Go, "finish", "[COUNT]", &["f", "Shift-F11"], "finish", "To the end of this increment", Verb::Forward(Unit::Increment)),
+    entry(Group::Go, "continue", "", &["c", "F5"], "continue", "On to the end of the history, or to a failure", Verb::Forward(Unit::Run)),
+    entry(Group::Go, "reverse-step", "[COUNT]", &["S"], "", "One minor iteration back", Verb::Back(Unit::Minor)),
+    entry(Group::Go, "reverse-next", "[COUNT]", &["N"], "", "Back by a major iteration", Verb::Back(Unit::Major)),
+    entry(Group::Go, "reverse-finish", "[COUNT]", &["F"], "", "Back by an increment", Verb::Back(Unit::Increment)),
+    entry(Group::Go, "reverse-continue", "", &["C"], "", "Back to the start", Verb::Back(Unit::Run)),
+    entry(Group::Go, "repeat", "", &["Enter"], "", "The last motion again (digits before a motion are its count)", Verb::Do(Ui::Repeat)),
+    entry(Group::Go, "interrupt", "", &["Ctrl-c"], "", "Stop a run after the present minor iteration", Verb::Do(Ui::Interrupt)),
+
+    entry(Group::Change, "force", "[NODE] MODE", &["m"], "mode", "Force a mode for one minor iteration (then f, s, x; capital: hold)", Verb::Force { hold: false }),
+    entry(Group::Change, "hold", "[NODE] MODE", &[], "", "Force a mode until released", Verb::Force { hold: true }),
+    entry(Group::Change, "release", "[NODE]", &["M"], "", "Give the node back to Table 2", Verb::Release),
+    entry(Group::Change, "increment", "SIZE", &["i"], "increment", "Start this increment again with another size", Verb::Increment),
+    entry(Group::Change, "friction", "DEGREES", &[], "", "Change the friction angle of every slave node", Verb::SetPath("friction.angle")),
+    entry(Group::Change, "cohesion", "FORCE", &[], "", "Change the cohesion of every slave node", Verb::SetPath("friction.cohesion")),
+    entry(Group::Change, "minors", "LIMIT", &[], "", "Change the limit of minor iterations", Verb::SetPath("settings.minors")),
+    entry(Group::Change, "majors", "LIMIT", &[], "", "Change the limit of major iterations", Verb::SetPath("settings.majors")),
+    entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*", Verb::Set),
+
+    entry(Group::Look, "up", "", &["Up", "k"], "", "Node above; scroll or pan in other panes", Verb::Do(Ui::Move(Step::Up))),
+    entry(Group::Look, "down", "", &["Down", "j"], "", "Node below", Verb::Do(Ui::Move(Step::Down))),
+    entry(Group::Look, "left", "", &["Left", "h"], "", "Pan the shape", Verb::Do(Ui::Move(Step::Left))),
+    entry(Group::Look, "right", "", &["Right", "l"], "", "Pan the shape", Verb::Do(Ui::Move(Step::Right))),
+    entry(Group::Look, "page-up", "", &["PageUp"], "", "A page of nodes up", Verb::Do(Ui::Move(Step::PageUp))),
+    entry(Group::Look, "page-down", "", &["PageDown"], "", "A page of nodes down", Verb::Do(Ui::Move(Step::PageDown))),
+    entry(Group::Look, "first", "", &["Home", "g"], "", "First node", Verb::Do(Ui::Move(Step::First))),
+    entry(Group::Look, "last", "", &["End", "G"], "", "Last node", Verb::Do(Ui::Move(Step::Last))),
+    entry(Group::Look, "node", "NAME", &["/"], "", "Select a slave node by its name or a part of it", Verb::Node),
+    entry(Group::Look, "explain", "", &["e"], "explain", "The decision on the selected node in full", Verb::Do(Ui::Explain)),
+    entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
+    entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
+    entry(Group::Look, "zoom", "", &["z"], "zoom", "This pane alone, and back", Verb::Do(Ui::Zoom)),
+    entry(Group::Look, "enlarge", "", &["+", "="], "", "The shape larger", Verb::Do(Ui::Enlarge)),
+    entry(Group::Look, "shrink", "", &["-"], "", "The shape smaller", Verb::Do(Ui::Shrink)),
+    entry(Group::Look, "fit", "", &["0"], "", "The whole shape", Verb::Do(Ui::Fit)),
+
+    entry(Group::Program, "command", "", &[":"], "command", "Any action by its name; Tab completes, Up and Down recall", Verb::Do(Ui::CommandLine)),
+    entry(Group::Program, "snapshot", "[FILE]", &["w"], "", "Write a snapshot of the shown state", Verb::Snapshot { overwrite: false }),
+    entry(Group::Program, "snapshot!", "FILE", &[], "", "The same, over a file that is there already", Verb::Snapshot { overwrite: true }),
+    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one", Verb::Open),
+    entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
+    entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
+    entry(Group::Program, "cancel", "", &["Esc"], "", "Drop a count, close a prompt, unzoom", Verb::Do(Ui::Cancel)),
+    entry(Group::Program, "help", "", &["?", "F1"], "help", "This list", Verb::Do(Ui::Help)),
+    entry(Group::Program, "quit", "", &["q"], "quit", "Leave", Verb::Do(Ui::Quit)),
+];
+
+/// What `set` can change during a run.
+pub const PATHS: &[&str] = &[
+    "history.increment",
+    "friction.angle",
+    "friction.cohesion",
+    "settings.residual",
+    "settings.t_max",
+    "settings.slip",
+    "settings.ties",
+    "settings.minors",
+    "settings.majors",
+    "settings.at_minor_limit",
+    "settings.at_cycle",
+    "settings.at_major_limit",
+    "settings.tolerance",
+];
+
+/// The entry that a key does.
+pub fn by_key(key: &str) -> Option<&'static Entry> {
+    ACTIONS.iter().find(|entry| entry.keys.contains(&key))
+}
+
+/// The entry that a word names: its name, its one-letter key, or the beginning of one name only.
+pub fn by_name(word: &str) -> Result<&'static Entry, String> {
+    if let Some(entry) = ACTIONS.iter().find(|entry| entry.name == word) {
+        return Ok(entry);
+    }
+    if word.chars().count() == 1
+        && let Some(entry) = by_key(word)
+    {
+        return Ok(entry);
+    }
+    let found: Vec<_> = ACTIONS
+        .iter()
+        .filter(|entry| begins(entry.name, word))
+        .collect();
+    match found[..] {
+        [entry] => Ok(entry),
+        [] => Err(format!("no action is called '{word}'; ? lists them all")),
+        _ => {
+            let names: Vec<_> = found.iter().map(|entry| entry.name).collect();
+            Err(format!("'{word}' could be {}", names.join(", ")))
+        }
+    }
+}
+
+/// Whether a word is the beginning of a name; a `!` at the end stands for itself, so that `snap!` is `snapshot!`.
+fn begins(name: &str, word: &str) -> bool {
+    match (name.strip_suffix('!'), word.strip_suffix('!')) {
+        (Some(name), Some(word)) => name.starts_with(word),
+        (None, None) => name.starts_with(word),
+        _ => false,
+    }
+}
+
+/// Reads a line: an action's name and its arguments.
+pub fn parse(line: &str, context: &Context) -> Result<Action, String> {
+    let line = line.trim();
+    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    if word.is_empty() {
+        return Err("type an action's name; ? lists them all".into());
+    }
+    by_name(word)?.act(rest.trim(), context)
+}
+
+impl Entry {
+    /// The action that this entry is with these arguments.
+    pub fn act(&self, rest: &str, context: &Context) -> Result<Action, String> {
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        if words.len() > self.most_words() {
+            return Err(self.usage());
+        }
+        let command = match &self.verb {
+            Verb::Forward(unit) => Command::Forward {
+                unit: *unit,
+                count: self.count(&words)?,
+            },
+            Verb::Back(unit) => Command::Back {
+                unit: *unit,
+                count: self.count(&words)?,
+            },
+            Verb::Force { hold } => return self.force(&words, *hold, context),
+            Verb::Release => Command::Release {
+                slave: chosen(words.first().copied(), context)?,
+            },
+            Verb::Increment if words.is_empty() => {
+                return Ok(Action::Ui(Ui::Ask(Question::Increment)));
+            }
+            Verb::Increment => Command::Increment(increment(rest)?),
+            Verb::Set => self.set(&words)?,
+            Verb::SetPath(path) => match words[..] {
+                [value] => Command::Set {
+                    path: path.to_string(),
+                    value: value.into(),
+                },
+                _ => return Err(self.usage()),
+            },
+            Verb::Snapshot { overwrite: true } if rest.is_empty() => return Err(self.usage()),
+            Verb::Snapshot { overwrite } => {
+                let file = (!rest.is_empty()).then(|| PathBuf::from(rest));
+                Command::Snapshot {
+                    file,
+                    overwrite: *overwrite,
+                }
+            }
+            Verb::Node if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Node))),
+            Verb::Node => return Ok(Action::Ui(Ui::Select(find(rest, context)?))),
+            Verb::Open if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Scene))),
+            Verb::Open => return Ok(Action::Ui(Ui::Open(rest.into()))),
+            Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),
+        };
+        Ok(Action::Session(command))
+    }
+
+    /// Whether digits typed before its key are its count.
+    pub fn takes_count(&self) -> bool {
+        self.arguments == "[COUNT]"
+    }
+
+    /// How it is written.
+    pub fn usage(&self) -> String {
+        format!("usage: {} {}", self.name, self.arguments)
+            .trim_end()
+            .to_string()
+    }
+
+    /// File and scene names may hold blanks; elsewhere a word too many is a mistake.
+    fn most_words(&self) -> usize {
+        match self.verb {
+            Verb::Snapshot { .. } | Verb::Open => usize::MAX,
+            _ => self.arguments.split_whitespace().count(),
+        }
+    }
+
+    fn count(&self, words: &[&str]) -> Result<u32, String> {
+        let Some(word) = words.first() else {
+            return Ok(1);
+        };
+        match word.parse() {
+            Ok(count) if count > 0 => Ok(count),
+            _ => Err(format!("'{word}' is no count; {}", self.usage())),
+        }
+    }
+
+    fn force(&self, words: &[&str], hold: bool, context: &Context) -> Result<Action, String> {
+        let (node, word) = match words[..] {
+            [] if !hold => return Ok(Action::Ui(Ui::Ask(Question::Mode))),
+            [word] => (None, word),
+            [node, word] => (Some(node), word),
+            _ => return Err(self.usage()),
+        };
+        let mode = mode(word)
+            .ok_or_else(|| format!("'{word}' is no mode; free, sliding or fixed would be"))?;
+        Ok(Action::Session(Command::Force {
+            slave: chosen(node, context)?,
+            mode,
+            hold,
+        }))
+    }
+
+    fn set(&self, words: &[&str]) -> Result<Command, String> {
+        let [path, value] = words[..] else {
+            return Err(format!("{}; paths: {}", self.usage(), PATHS.join(", ")));
+        };
+        Ok(Command::Set {
+            path: path.into(),
+            value: value.into(),
+        })
+    }
+}
+
+/// A mode by its letter (f, s, x) or the beginning of its name.
+pub fn mode(word: &str) -> Option<Mode> {
+    let word = word.to_lowercase();
+    match word.as_str() {
+        "f" => Some(Mode::Free),
+        "s" => Some(Mode::Sliding),
+        "x" => Some(Mode::Fixed),
+        _ if word.len() < 2 => None,
+        _ if "free".starts_with(&word) => Some(Mode::Free),
+        _ if "sliding".starts_with(&word) => Some(Mode::Sliding),
+        _ if "fixed".starts_with(&word) => Some(Mode::Fixed),
+        _ => None,
+    }
+}
+
+/// An increment's size.
+pub fn increment(word: &str) -> Result<f64, String> {
+    match word.trim().parse::<f64>() {
+        Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
+        _ => Err(format!(
+            "'{}' is no increment; a positive number such as 0.005 would be",
+            word.trim()
+        )),
+    }
+}
+
+/// The slave node that a word names, or the selected one where there is no word.
+fn chosen(word: Option<&str>, context: &Context) -> Result<usize, String> {
+    match word {
+        Some(word) => exact(word, context),
+        None if context.selected < slaves(context)?.slaves.len() => Ok(context.selected),
+        None => Err("this scene has no slave nodes".into()),
+    }
+}
+
+fn slaves<'a>(context: &Context<'a>) -> Result<&'a Model, String> {
+    context.model.ok_or_else(|| "open a scene first".into())
+}
+
+/// The slave node of exactly this name. No guesses here: what follows changes the solve.
+fn exact(word: &str, context: &Context) -> Result<usize, String> {
+    let model = slaves(context)?;
+    let alias = context.scene.and_then(|scene| scene.node(word).ok());
+    let node = model
+        .nodes
+        .iter()
+        .position(|node| node.name == word)
+        .or(alias);
+    if let Some(slave) = model
+        .slaves
+        .iter()
+        .position(|slave| Some(slave.node) == node)
+    {
+        return Ok(slave);
+    }
+    let known = some_names(model);
+    match node.is_some() {
+        true => Err(format!("{word} is not a slave node; those are {known}")),
+        false => Err(format!(
+            "no node is called '{word}'; slave nodes are {known}"
+        )),
+    }
+}
+
+/// The next slave node after the selected one whose name is, or else contains, the word.
+fn find(word: &str, context: &Context) -> Result<usize, String> {
+    if let Ok(slave) = exact(word, context) {
+        return Ok(slave);
+    }
+    let model = slaves(context)?;
+    let count = model.slaves.len();
+    let hit = |slave: &usize| model.nodes[model.slaves[*slave].node].name.contains(word);
+    (1..=count)
+        .map(|step| (context.selected + step) % count)
+        .find(hit)
+        .ok_or_else(|| {
+            format!(
+                "no slave node's name contains '{word}'; there are {}",
+                some_names(model)
+            )
+        })
+}
+
+/// Names of the slave nodes, by slave number.
+fn names(model: &Model) -> impl Iterator<Item = &str> {
+    model
+        .slaves
+        .iter()
+        .map(|slave| model.nodes[slave.node].name.as_str())
+}
+
+/// The first few slave nodes' names, for messages.
+fn some_names(model: &Model) -> String {
+    const SHOWN: usize = 4;
+    let mut list = names(model).take(SHOWN).collect::<Vec<_>>().join(", ");
+    if model.slaves.len() > SHOWN {
+        list += ", …";
+    }
+    list
+}
+
+/// What a line could go on as: whole lines, of which the first is the likeliest.
+pub fn complete(line: &str, context: &Context) -> Vec<String> {
+    let start = line.rfind(char::is_whitespace).map_or(0, |at| at + 1);
+    let (before, word) = line.split_at(start);
+    let candidates: Vec<String> = match before.split_whitespace().next() {
+        None => ACTIONS.iter().map(|entry| entry.name.to_string()).collect(),
+        Some(name) => by_name(name).map_or(Vec::new(), |entry| entry.candidates(before, context)),
+    };
+    candidates
+        .iter()
+        .filter(|c| c.starts_with(word))
+        .map(|c| format!("{before}{c}"))
+        .collect()
+}
+
+impl Entry {
+    /// What can stand as the next argument after the text before it.
+    fn candidates(&self, before: &str, context: &Context) -> Vec<String> {
+        let given = before.split_whitespace().count() - 1;
+        let nodes = || context.model.into_iter().flat_map(names).map(String::from);
+        let modes = ["free", "sliding", "fixed"].map(String::from);
+        match (&self.verb, given) {
+            (Verb::Force { .. }, 0) => modes.into_iter().chain(nodes()).collect(),
+            (Verb::Force { .. }, 1) => modes.into(),
+            (Verb::Release | Verb::Node, 0) => nodes().collect(),
+            (Verb::Set, 0) => PATHS.iter().map(|path| path.to_string()).collect(),
+            (Verb::Set, 1) => values(before)
+                .iter()
+                .map(|value| value.to_string())
+                .collect(),
+            (Verb::Open, 0) => context.scenes.to_vec(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Values that a setting can take, where they are words.
+fn values(before: &str) -> &'static [&'static str] {
+    match before.split_whitespace().nth(1) {
+        Some("settings.residual") => &["stress", "accumulate"],
+        Some("settings.t_max") => &["lagged", "consistent"],
+        Some("settings.slip") => &["increment", "major"],
+        Some("settings.ties") => &["keep", "printed"],
+        Some("settings.at_cycle") => &["stop", "damp"],
+        Some("settings.at_minor_limit" | "settings.at_major_limit") => &["stop", "accept"],
+        _ => &[],
+    }
+}
+
+/// The table as the README shows it.
+pub fn markdown() -> String {
+    let mut text = String::new();
+    for group in Group::ALL {
+        text += &format!("| {} | by name | |\n|---|---|---|\n", group.title());
+        for entry in ACTIONS.iter().filter(|entry| entry.group == group) {
+            let keys: Vec<_> = entry.keys.iter().map(|key| format!("`{key}`")).collect();
+            let name = format!("{} {}", entry.name, entry.arguments);
+            text += &format!(
+                "| {} | `{}` | {} |\n",
+                keys.join(" "),
+                name.trim_end(),
+                entry.help
+            );
+        }
+        text.push('\n');
+    }
+    text.pop();
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::model::{Node, Slave};
+    use crate::scene::{Friction, Settings};
+
+    fn model() -> Model {
+        let names = ["beam.1", "beam.4", "beam.5"];
+        let nodes = names
+            .map(|name| Node {
+                name: name.into(),
+                at: [0.0; 2],
+            })
+            .into();
+        let slave = |node| Slave {
+            node,
+            surfaces: vec![],
+            friction: Friction::default(),
+            start: Mode::Free,
+        };
+        Model {
+            title: String::new(),
+            about: String::new(),
+            nodes,
+            bodies: vec![],
+            surfaces: vec![],
+            slaves: vec![slave(1), slave(2)],
+            dofs: Default::default(),
+            loads: vec![],
+            prescribed: vec![],
+            path: vec![0.0, 1.0],
+            increment: 0.1,
+            settings: Settings::default(),
+            monitors: vec![],
+            length: 1.0,
+        }
+    }
+
+    fn read(line: &str) -> Result<Action, String> {
+        let model = model();
+        parse(
+            line,
+            &Context {
+                model: Some(&model),
+                selected: 1,
+                ..Context::default()
+            },
+        )
+    }
+
+    fn forward(unit: Unit, count: u32) -> Result<Action, String> {
+        Ok(Action::Session(Command::Forward { unit, count }))
+    }
+
+    #[test]
+    fn no_key_and_no_name_means_two_things() {
+        let mut keys: Vec<_> = ACTIONS.iter().flat_map(|entry| entry.keys).collect();
+        let mut names: Vec<_> = ACTIONS.iter().map(|entry| entry.name).collect();
+        let (all_keys, all_names) = (keys.len(), names.len());
+        keys.sort();
+        keys.dedup();
+        names.sort();
+        names.dedup();
+        assert_eq!((keys.len(), names.len()), (all_keys, all_names));
+    }
+
+    #[test]
+    fn motions_take_counts_prefixes_and_key_letters() {
+        assert_eq!(read("step 3"), forward(Unit::Minor, 3));
+        assert_eq!(read("s 3"), forward(Unit::Minor, 3));
+        assert_eq!(read("ne"), forward(Unit::Major, 1));
+        assert_eq!(read("  fin  "), forward(Unit::Increment, 1));
+        assert_eq!(
+            read("F 2"),
+            Ok(Action::Session(Command::Back {
+                unit: Unit::Increment,
+                count: 2
+            }))
+        );
+        assert_eq!(
+            read("step 0"),
+            Err("'0' is no count; usage: step [COUNT]".into())
+        );
+        assert_eq!(read("step 1 2"), Err("usage: step [COUNT]".into()));
+    }
+
+    #[test]
+    fn unknown_and_ambiguous_names_are_told() {
+        assert_eq!(
+            read("jump"),
+            Err("no action is called 'jump'; ? lists them all".into())
+        );
+        assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
+        assert_eq!(read("re"), Err(
+            "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, redraw".into()
+        ));
+    }
+
+    #[test]
+    fn modes_are_forced_on_the_named_or_the_selected_node() {
+        let force = |slave, mode, hold| Ok(Action::Session(Command::Force { slave, mode, hold }));
+        assert_eq!(read("force beam.4 sliding"), force(0, Mode::Sliding, false));
+        assert_eq!(read("force x"), force(1, Mode::Fixed, false));
+        assert_eq!(read("hold fr"), force(1, Mode::Free, true));
+        assert_eq!(read("force"), Ok(Action::Ui(Ui::Ask(Question::Mode))));
+        assert_eq!(
+            read("force beam.1 s"),
+            Err("beam.1 is not a slave node; those are beam.4, beam.5".into())
+        );
+        assert_eq!(
+            read("force tip s"),
+            Err("no node is called 'tip'; slave nodes are beam.4, beam.5".into())
+        );
+        assert_eq!(
+            read("force glued"),
+            Err("'glued' is no mode; free, sliding or fixed would be".into())
+        );
+        assert_eq!(
+            read("release"),
+            Ok(Action::Session(Command::Release { slave: 1 }))
+        );
+    }
+
+    #[test]
+    fn numbers_and_paths() {
+        assert_eq!(
+            read("increment 0.005"),
+            Ok(Action::Session(Command::Increment(0.005)))
+        );
+        assert!(read("increment -1").is_err_and(|e| e.contains("'-1' is no increment")));
+        assert!(read("increment NaN").is_err());
+        let set = |path: &str, value: &str| {
+            Ok(Action::Session(Command::Set {
+                path: path.into(),
+                value: value.into(),
+            }))
+        };
+        assert_eq!(read("set friction.angle 20"), set("friction.angle", "20"));
+        assert_eq!(read("friction 20"), set("friction.angle", "20"));
+        assert_eq!(read("minors 50"), set("settings.minors", "50"));
+        let snapshot = |file: Option<&str>, overwrite| {
+            Ok(Action::Session(Command::Snapshot {
+                file: file.map(PathBuf::from),
+                overwrite,
+            }))
+        };
+        assert_eq!(read("w"), snapshot(None, false));
+        assert_eq!(read("snap a b.ron"), snapshot(Some("a b.ron"), false));
+        assert_eq!(read("snap! x.ron"), snapshot(Some("x.ron"), true));
+        assert_eq!(read("snapshot!"), Err("usage: snapshot! FILE".into()));
+    }
+
+    #[test]
+    fn finding_goes_round_from_the_selected_node() {
+        assert_eq!(read("node beam.5"), Ok(Action::Ui(Ui::Select(1))));
+        assert_eq!(read("/ beam"), Ok(Action::Ui(Ui::Select(0))));
+        assert!(read("node wall").is_err());
+    }
+
+    #[test]
+    fn completion_knows_names_nodes_paths_and_values() {
+        let model = model();
+        let scenes = ["01-pinned".to_string()];
+        let context = Context {
+            model: Some(&model),
+            scenes: &scenes,
+            ..Context::default()
+        };
+        let ask = |line: &str| complete(line, &context);
+        assert_eq!(ask("ste"), ["step"]);
+        assert_eq!(
+            ask("force beam.5 f"),
+            ["force beam.5 free", "force beam.5 fixed"]
+        );
+        assert_eq!(ask("release b"), ["release beam.4", "release beam.5"]);
+        assert_eq!(
+            ask("set friction."),
+            ["set friction.angle", "set friction.cohesion"]
+        );
+        assert_eq!(ask("set settings.ties p"), ["set settings.ties printed"]);
+        assert_eq!(ask("open "), ["open 01-pinned"]);
+        assert!(ask("nonsense ").is_empty());
+    }
+
+    #[test]
+    fn markdown_names_every_action_once() {
+        let text = markdown();
+        for entry in ACTIONS {
+            assert!(
+                text.contains(&format!("| {} |", entry.help)),
+                "{}",
+                entry.name
+            );
+        }
+    }
 }

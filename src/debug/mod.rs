@@ -1,6 +1,12 @@
 //! The debugger as a state machine without a terminal: commands in, frames out.
+//!
+//! - [`session`]: the history and a cursor in it; [`command`]: what it can be told.
+//! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
+//! - [`report`]: what happened, in words.
 
 pub mod command;
+pub mod differences;
+pub mod files;
 pub mod report;
 pub mod session;
 pub mod snapshot;

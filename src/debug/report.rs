@@ -1,7 +1,8 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
+use crate::contact::decision::Rule;
 use crate::scene::{Mode, Model};
-use crate::solve::event::{Cycle, Motion, Singular};
+use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
 use crate::solve::{Event, Failure, Intervention, Outcome, Position};
 
 /// Name of a slave node.
@@ -18,6 +19,23 @@ pub fn mode(mode: Mode) -> &'static str {
         Mode::Free => "free",
         Mode::Sliding => "sliding",
         Mode::Fixed => "fixed",
+    }
+}
+
+/// A rule's name: the row of Table 2, and what it does.
+pub fn rule(rule: Rule) -> &'static str {
+    match rule {
+        Rule::FixedStays => "fixed-stays",
+        Rule::FixedSlides => "fixed-slides",
+        Rule::FixedOpens => "fixed-opens",
+        Rule::SlidingSticks => "sliding-sticks",
+        Rule::SlidingStays => "sliding-stays",
+        Rule::SlidingOpens => "sliding-opens",
+        Rule::FreeSticks => "free-sticks",
+        Rule::FreeSlides => "free-slides",
+        Rule::FreeStays => "free-stays",
+        Rule::OffSurface => "off-surface",
+        Rule::Held => "held",
     }
 }
 
@@ -142,51 +160,143 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
     }
 }
 
+/// Where and why a run ended, up to which load it is sound, and what to try. `at` and `load` are those of the minor
+/// iteration that failed, `accepted` is the load factor of the last equilibrium.
+pub fn failure(model: &Model, at: Position, load: f64, accepted: f64, failure: &Failure) -> String {
+    let again = match at.attempt {
+        0 | 1 => String::new(),
+        n => format!(" in attempt {n}"),
+    };
+    let sound = match at.increment {
+        0 | 1 => format!("no equilibrium was accepted beyond the start, load {accepted}"),
+        n => format!(
+            "the last equilibrium is that of increment {}, load {accepted}",
+            n - 1
+        ),
+    };
+    format!(
+        "increment {} (load {load}){again}, major {}, minor {}: {}; {sound}; try {}",
+        at.increment,
+        at.major,
+        at.minor,
+        describe_failure(model, failure),
+        advice(failure)
+    )
+}
+
+/// What to try after a failure.
+pub fn advice(failure: &Failure) -> &'static str {
+    match failure {
+        Failure::Cycle(_) => {
+            "the debugger, to force one of the nodes to its third mode, or settings.at_cycle=damp, or another history.increment"
+        }
+        Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
+        Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
+        Failure::Singular(Singular::Rigid { .. }) => {
+            "a support against that motion, or slave nodes that start sliding or fixed"
+        }
+        Failure::Singular(Singular::Unexplained) => {
+            "a smaller history.increment; past a limit point, prescribe a displacement instead of the load"
+        }
+        Failure::Diverged { .. } => "a smaller history.increment",
+        Failure::Jammed { .. } => {
+            "to move the node out of the surface, to free its support, or to turn the surface (reverse)"
+        }
+    }
+}
+
 /// Why an increment failed.
 pub fn describe_failure(model: &Model, failure: &Failure) -> String {
     match failure {
         Failure::Cycle(c) => cycle(model, c),
         Failure::MinorLimit { limit, changing } => {
-            let nodes: Vec<&str> = changing.iter().map(|&s| slave(model, s)).collect();
-            format!("the minor iterations did not settle within {limit}; still changing: {}", nodes.join(", "))
+            let nodes = changing.iter().map(|&s| slave(model, s).to_owned());
+            format!(
+                "the minor iterations did not settle within {limit}; still changing: {}",
+                some(nodes.collect(), ", ")
+            )
         }
         Failure::MajorLimit { limit, relative } => {
             format!("no equilibrium within {limit} major iterations; relative residual {relative:.3e}")
         }
         Failure::Singular(Singular::Rigid { motions }) => {
-            let motions: Vec<String> = motions
-                .iter()
-                .map(|m| match m.motion {
-                    Motion::Translation([x, y]) => format!("body {} can move along ({x:.4}, {y:.4})", m.body),
-                    Motion::Rotation([x, y]) => format!("body {} can turn about ({x:.4}, {y:.4})", m.body),
-                })
-                .collect();
-            format!("nothing holds a rigid motion: {}", motions.join("; "))
+            let motions = motions.iter().map(motion).collect();
+            format!("nothing holds a rigid motion: {}", some(motions, "; "))
         }
         Failure::Singular(Singular::Unexplained) => {
             "the equations are singular, though every body is held: a limit point, or constraints that repeat each other".into()
         }
-        Failure::Diverged { relative } => format!("diverged: displacements beyond all bounds, relative residual {relative:.3e}"),
-        Failure::Jammed { slave: s, gap } => {
-            format!("{} penetrates by {:.3e}, and neither it nor its surface can move to close that", slave(model, *s), -gap)
+        Failure::Diverged { relative } => {
+            format!("diverged: displacements beyond all bounds, relative residual {relative:.3e}")
         }
+        Failure::Jammed { slave: s, gap } => format!(
+            "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
+            slave(model, *s),
+            -gap
+        ),
+    }
+}
+
+fn motion(rigid: &RigidMotion) -> String {
+    let body = &rigid.body;
+    match rigid.motion {
+        Motion::Translation([x, y]) => {
+            format!(
+                "body {body} can move along ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+        Motion::Rotation([x, y]) => {
+            format!(
+                "body {body} can turn about ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+    }
+}
+
+/// Four decimals without trailing zeros: for a place that a person is to find.
+fn rounded(x: f64) -> f64 {
+    let rounded = (x * 1e4).round() / 1e4;
+    // Neither a minus before a zero, nor infinity in place of what is only large.
+    match rounded.is_finite() {
+        true => rounded + 0.0,
+        false => x,
+    }
+}
+
+/// The first few of many.
+fn some(mut all: Vec<String>, between: &str) -> String {
+    const MOST: usize = 6;
+    let more = all.len().saturating_sub(MOST);
+    all.truncate(MOST);
+    let shown = all.join(between);
+    match more {
+        0 => shown,
+        n => format!("{shown} and {n} more"),
     }
 }
 
 /// A cycle of modes.
 pub fn cycle(model: &Model, cycle: &Cycle) -> String {
-    let members: Vec<String> = cycle
-        .members
-        .iter()
-        .map(|(s, modes)| {
-            let modes: Vec<&str> = modes.iter().map(|&m| mode(m)).collect();
-            format!("{} {}", slave(model, *s), modes.join(" > "))
-        })
-        .collect();
+    let member = |(s, modes): &(usize, Vec<Mode>)| {
+        let (name, words) = (
+            slave(model, *s),
+            modes.iter().map(|&m| mode(m)).collect::<Vec<_>>(),
+        );
+        if modes.iter().all(|m| Some(m) == modes.first()) {
+            let stays = words.first().copied().unwrap_or("?");
+            format!("{name} stays {stays} while its T_max repeats")
+        } else {
+            format!("{name} {} > …", words.join(" > "))
+        }
+    };
     format!(
         "the modes {}-cycle since minor {}: {}",
         cycle.period,
         cycle.start,
-        members.join("; ")
+        some(cycle.members.iter().map(member).collect(), "; ")
     )
 }

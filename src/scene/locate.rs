@@ -330,7 +330,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn found<'a>(text: &'a str, path: Path) -> &'a str {
+    fn found(text: &str, path: Path) -> &str {
         &text[locate(text, &path)]
     }
 

@@ -56,6 +56,16 @@ pub enum BodyKind {
     Solid(Solid),
 }
 
+impl BodyKind {
+    /// The lines of a drawing of it: a beam's elements, a solid's outline.
+    pub fn lines(&self) -> &[Vec<usize>] {
+        match self {
+            BodyKind::Beam(beam) => &beam.elements,
+            BodyKind::Solid(solid) => &solid.edges,
+        }
+    }
+}
+
 /// A continuum of 8-node quadrilaterals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
@@ -65,8 +75,8 @@ pub struct Solid {
     pub materials: Vec<Elastic>,
     /// Index into `materials` of each element.
     pub material_of: Vec<usize>,
-    /// Chains of 3-node elements around it, anticlockwise: bottom, right, top, left.
-    pub edges: [Vec<Vec<usize>>; 4],
+    /// Elements of 3 nodes around it, anticlockwise from the lower left corner.
+    pub edges: Vec<Vec<usize>>,
 }
 
 /// An elastic continuum's numbers.

@@ -165,7 +165,12 @@ impl Names {
         ))
     }
 
-    /// The block with an id: its nodes, its grid, and its place in the scene's `nodes`.
+    /// Position in the scene's `nodes` of what has an id.
+    pub(crate) fn place(&self, id: &str) -> Option<usize> {
+        self.index.get(id).map(|&k| self.entries[k].at)
+    }
+
+    /// The block with an id: its nodes and its grid.
     pub(crate) fn block(&self, id: &str) -> Result<(&Entry, Grid), String> {
         let blocks = || {
             let is_block = |e: &&Entry| matches!(e.kind, Kind::Block(_));

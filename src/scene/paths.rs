@@ -5,9 +5,9 @@
 
 use super::error::{Path, at, nearest, quoted};
 use super::spec::{
-    AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Law, LoadSpec, Material,
-    Mode, MonitorSpec, Nodes, Plane, Point, Quantity, Region, ResidualMethod, Scale, Settings,
-    SlipCount, Spec, Ties, Update,
+    AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, Law, LoadSpec,
+    Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity, Region, ResidualMethod, Scale,
+    Settings, SlipCount, Spec, Ties, Update,
 };
 
 /// A value set from outside.
@@ -273,6 +273,7 @@ choices! {
     Component { "x" => Component::X, "y" => Component::Y, "rotation" => Component::Rotation }
     Axis { "x" => Axis::X, "y" => Axis::Y }
     ResidualMethod { "accumulate" => ResidualMethod::Accumulate, "stress" => ResidualMethod::Stress }
+    Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
     FrictionLimit { "lagged" => FrictionLimit::Lagged, "consistent" => FrictionLimit::Consistent }
     SlipCount { "increment" => SlipCount::Increment, "major" => SlipCount::Major }
     Law { "svk" => Law::Svk, "neohookean" => Law::NeoHookean }
@@ -553,6 +554,10 @@ fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
     visit(
         &place.field("residual"),
         Scalar::Choice(&mut settings.residual),
+    );
+    visit(
+        &place.field("geometry"),
+        Scalar::Choice(&mut settings.geometry),
     );
     visit(&place.field("t_max"), Scalar::Choice(&mut settings.t_max));
     visit(&place.field("slip"), Scalar::Choice(&mut settings.slip));

@@ -412,6 +412,8 @@ pub struct History {
 pub struct Settings {
     /// How the total force of a slave node is found after a major iteration. Default: stress.
     pub residual: ResidualMethod,
+    /// Whether the tangent knows that the contact geometry changes. Default: consistent.
+    pub geometry: Geometry,
     /// How the sliding node's T_max enters the equations. Default: lagged.
     pub t_max: FrictionLimit,
     /// Over what the slip of Table 2's sliding row is counted. Default: increment.
@@ -436,6 +438,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             residual: ResidualMethod::default(),
+            geometry: Geometry::default(),
             t_max: FrictionLimit::default(),
             slip: SlipCount::default(),
             ties: Ties::default(),
@@ -458,6 +461,17 @@ pub enum ResidualMethod {
     /// Method 2: the interaction force at a slave node is the nodal force of the current stresses less the load.
     #[default]
     Stress,
+}
+
+/// Whether the change of normal, projection and gap stands in the tangent of a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Geometry {
+    /// It does: major iterations converge quadratically at the end.
+    #[default]
+    Consistent,
+    /// It does not, as in the paper: they converge linearly where nodes slide.
+    Frozen,
 }
 
 /// How T_max enters the equations of a sliding node.

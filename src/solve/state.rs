@@ -88,6 +88,7 @@ pub struct IncrementStart {
     pub u: Arc<Vec<f64>>,
     pub nodes: Vec<NodeState>,
     /// What the elements remember of it ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub history: Vec<f64>,
 }
 

@@ -289,7 +289,8 @@ impl Stepper {
         let settings = self.state.controls.settings;
         let accept = settings.at_minor_limit == AtLimit::Accept;
         let minor = self.state.next.minor;
-        let at_limit = self.state.trail.len(self.state.nodes.len()) as u32 % settings.minors == 0;
+        let tried = self.state.trail.len(self.state.nodes.len()) as u32;
+        let at_limit = tried.is_multiple_of(settings.minors);
         if at_limit && accept {
             return self.end_major(false);
         }
@@ -394,7 +395,7 @@ impl Stepper {
         let balanced = self.state.reached == self.state.load_factor
             && (exact || (after.relative <= after.limit && after.correction <= STILL))
             && after.interface <= after.limit.max(settings.tolerance);
-        let at_limit = self.state.next.major % settings.majors == 0;
+        let at_limit = self.state.next.major.is_multiple_of(settings.majors);
         if settled && balanced {
             return self.accept(after);
         }

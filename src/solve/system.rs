@@ -6,11 +6,12 @@
 
 use crate::contact::projection::{Footing, footing, tangent};
 use crate::contact::table1::{Equation, Known, Limit, Motion, equations, gone};
+use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
 use crate::scene::model::Model;
-use crate::scene::spec::{Component, FrictionLimit, SlipCount};
+use crate::scene::spec::{Component, FrictionLimit, Geometry, SlipCount};
 use crate::solve::event::Norms;
 use crate::solve::state::{NodeState, State};
 use std::sync::Arc;
@@ -39,6 +40,9 @@ struct Link {
     dof: usize,
     axis: usize,
     weight: f64,
+    /// Derivative of the share by ξ.
+    slope: f64,
+    variation: Variation,
     /// Places of (normal row, dof), (dof, normal column), (tangential row, dof), (dof, tangential column); none
     /// where the degree of freedom has no equation.
     slots: Option<[usize; 4]>,
@@ -57,6 +61,8 @@ enum Kind {
 struct Interface {
     footing: Option<Footing>,
     links: Vec<Link>,
+    /// Place of (link i, link j), row by row, for the geometric tangent; none where either has no equation.
+    pairs: Vec<Option<usize>>,
     /// Places of the 2 by 2 block of ΔF_n, ΔF_t.
     block: [usize; 4],
     /// Whether the normal and the tangential motion have any coefficient on an unknown.
@@ -104,6 +110,7 @@ impl System {
             .map(|_| Interface {
                 footing: None,
                 links: Vec::new(),
+                pairs: Vec::new(),
                 block: [0; 4],
                 moves: [true; 2],
                 prescribed: [0.0; 2],
@@ -189,6 +196,9 @@ impl System {
         };
         self.assembly.assemble(&model.dofs, moved, out);
         self.measure_interfaces(model);
+        if state.controls.settings.geometry == Geometry::Consistent {
+            self.turn(model, state);
+        }
         self.balance(model, state);
         Ok(())
     }
@@ -232,13 +242,16 @@ impl System {
         let mut entries = self.assembly.entries(&model.dofs);
         for (s, interface) in self.interfaces.iter().enumerate() {
             let row = equations + 2 * s;
-            for k in 0..2 {
-                entries.extend([(row + k, row), (row + k, row + 1)]);
-                for equation in interface
+            let linked = || {
+                interface
                     .links
                     .iter()
                     .filter_map(|l| model.dofs.equation[l.dof])
-                {
+            };
+            entries.extend(linked().flat_map(|i| linked().map(move |j| (i, j))));
+            for k in 0..2 {
+                entries.extend([(row + k, row), (row + k, row + 1)]);
+                for equation in linked() {
                     entries.extend([(row + k, equation), (equation, row + k)]);
                 }
             }
@@ -268,8 +281,38 @@ impl System {
                     interface.prescribed[link.axis] += link.weight * self.step[link.dof];
                     continue;
                 }
-                for k in 0..2 {
-                    interface.moves[k] |= (link.weight * frame[k][link.axis]).abs() > EMPTY;
+                for (moves, direction) in interface.moves.iter_mut().zip(frame) {
+                    *moves |= (link.weight * direction[link.axis]).abs() > EMPTY;
+                }
+            }
+        }
+    }
+
+    /// Adds what turning and travelling interaction forces do to the stiffness.
+    fn turn(&mut self, model: &Model, state: &State) {
+        for (interface, node) in self.interfaces.iter_mut().zip(&state.nodes) {
+            let Some((footing, curve)) = interface.footing.and_then(|f| Some((f, f.curve?))) else {
+                continue;
+            };
+            if node.f_n == 0.0 && node.f_t == 0.0 {
+                continue;
+            }
+            for link in &mut interface.links {
+                link.variation =
+                    Variation::new(&footing, &curve, link.axis, link.weight, link.slope);
+            }
+            let force = [node.f_n, node.f_t];
+            let count = interface.links.len();
+            for (i, row) in interface.links.iter().enumerate() {
+                let Some(equation) = model.dofs.equation[row.dof] else {
+                    continue;
+                };
+                for (j, col) in interface.links.iter().enumerate() {
+                    let value = turning(&footing, &curve, force, &row.variation, &col.variation);
+                    match interface.pairs[i * count + j] {
+                        Some(slot) => self.stiffness[slot] -= value,
+                        None => self.coupling[equation] -= value * self.step[col.dof],
+                    }
                 }
             }
         }
@@ -520,20 +563,23 @@ impl Interface {
     /// Lists the displacements of S and S*.
     fn link(&mut self, model: &Model, node: &NodeState, slave: usize) {
         self.links.clear();
-        let mut add = |n: usize, weight: f64| {
+        let mut add = |n: usize, weight: f64, slope: f64| {
             let first = model.dofs.first[n];
             self.links.extend((0..2).map(|axis| Link {
                 dof: first + axis,
                 axis,
                 weight,
+                slope,
+                variation: Variation::default(),
                 slots: None,
             }));
         };
-        add(slave, -1.0);
+        add(slave, -1.0, 0.0);
         if let (Some(spot), Some(footing)) = (node.spot, &self.footing) {
             let nodes = &model.surfaces[spot.surface].elements[spot.element];
-            for (&n, &weight) in nodes.iter().zip(&footing.shape) {
-                add(n, weight);
+            let shares = footing.shape.iter().zip(&footing.shape_slope);
+            for (&n, (&weight, &slope)) in nodes.iter().zip(shares) {
+                add(n, weight, slope);
             }
         }
     }
@@ -549,6 +595,13 @@ impl Interface {
                     slot(e, row + 1)?,
                 ])
             });
+        }
+        let equations = |l: &Link| model.dofs.equation[l.dof];
+        self.pairs.clear();
+        for i in self.links.iter().map(equations) {
+            let pair = |j: Option<usize>| slot(i?, j?);
+            self.pairs
+                .extend(self.links.iter().map(equations).map(pair));
         }
         let block = [
             (row, row),

@@ -6,7 +6,7 @@ use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use super::super::geometry;
 use super::super::limits;
 use super::super::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
-use super::super::nodes::{Names, unique};
+use super::super::nodes::{Entry, Names, unique};
 use super::super::spec::{BodySpec, Law, Material, Point, Region, Spec, Update};
 use std::collections::HashSet;
 
@@ -210,10 +210,9 @@ fn solid(
     let mut made = Solid {
         material_of: vec![0; elements.len()],
         materials: vec![continuum(&here.then("material"), spec, of)?],
-        edges: EDGES.map(|edge| {
-            let chain = names.chain(&format!("{mesh}.{edge}"));
-            chain.map_or(Vec::new(), |chain| chain.elements())
-        }),
+        edges: edge_chains(names, mesh)
+            .flat_map(|chain| chain.elements())
+            .collect(),
         elements,
     };
     for (k, region) in regions.iter().enumerate() {
@@ -226,6 +225,13 @@ fn solid(
         )?;
     }
     Ok(made)
+}
+
+/// The edges of a block, anticlockwise.
+fn edge_chains<'n>(names: &'n Names, mesh: &str) -> impl Iterator<Item = &'n Entry> {
+    EDGES
+        .iter()
+        .filter_map(move |edge| names.chain(&format!("{mesh}.{edge}")).ok())
 }
 
 fn continuum(here: &Path, spec: &Spec, id: &str) -> Result<Elastic, Fault> {
@@ -291,9 +297,7 @@ pub(super) fn check_bodies(
             }
             // What lies between the edges lies between sound curves.
             (BodyKind::Solid(solid), BodySpec::Solid { mesh, .. }) => {
-                for (edge, elements) in EDGES.iter().zip(&solid.edges) {
-                    check_chain(names, &format!("{mesh}.{edge}"), elements, length)?;
-                }
+                check_chain(names, mesh, &solid.edges, length)?;
             }
             _ => {}
         }
@@ -308,9 +312,8 @@ pub(super) fn check_chain(
     elements: &[Vec<usize>],
     length: f64,
 ) -> Result<(), Fault> {
-    // The chain was found when the elements were made.
     let at = names
-        .chain(along)
-        .map_or_else(|_| at!["nodes"], |chain| at!["nodes", chain.at]);
+        .place(along)
+        .map_or_else(|| at!["nodes"], |at| at!["nodes", at]);
     geometry::check_elements(&at, &names.nodes, elements, length)
 }

@@ -1,0 +1,32 @@
+//! `stickslip check`: is the scene sound, and what does it cost.
+
+use super::{Error, Exit, SceneArgs, say};
+use crate::scene::cost::Cost;
+use crate::scene::{Scene, paths};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Lists every value that --set can change: path, value, what it may be (separated by tabs)
+    #[arg(long)]
+    paths: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let scene = args.scene.open()?;
+    let text = if args.paths {
+        all_paths(&scene)
+    } else {
+        format!("{}: sound\n{}", scene.name, Cost::of(&scene))
+    };
+    say(&text)?;
+    Ok(Exit::Good)
+}
+
+fn all_paths(scene: &Scene) -> String {
+    paths::list(&scene.spec)
+        .iter()
+        .map(|l| format!("{}\t{}\t{}\n", l.path, l.value, l.kind))
+        .collect()
+}

@@ -1,0 +1,29 @@
+//! `stickslip diff`: two snapshots, node by node.
+
+use super::{Error, Exit, say};
+use crate::debug::snapshot::{Snapshot, compare};
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A snapshot
+    #[arg(value_name = "A")]
+    left: PathBuf,
+    /// Another
+    #[arg(value_name = "B")]
+    right: PathBuf,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let (left, right) = (Snapshot::read(&args.left)?, Snapshot::read(&args.right)?);
+    let differences = compare(&left, &right);
+    if differences.is_empty() {
+        return Ok(Exit::Good);
+    }
+    say(&format!(
+        "left: {}\nright: {}\n{differences}",
+        args.left.display(),
+        args.right.display()
+    ))?;
+    Ok(Exit::Differ)
+}

@@ -1,0 +1,15 @@
+//! `stickslip list`: the built-in scenes, one line each.
+
+use super::{Error, Exit, say};
+use crate::scene::builtin;
+
+pub fn main() -> Result<Exit, Error> {
+    let scenes = builtin::list();
+    let width = scenes.iter().map(|s| s.name.len()).max().unwrap_or(0);
+    let lines: String = scenes
+        .iter()
+        .map(|scene| format!("{:<width$}  {}\n", scene.name, scene.title()))
+        .collect();
+    say(&lines)?;
+    Ok(Exit::Good)
+}

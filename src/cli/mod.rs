@@ -1,0 +1,176 @@
+//! The command line: one file per subcommand.
+//!
+//! Standard output carries data only; messages go to standard error, and progress there only if it is a terminal.
+//! Exit codes are those of [`Exit`].
+
+mod check;
+mod debugger;
+mod diff;
+mod interrupt;
+mod list;
+mod record;
+mod replay;
+mod run;
+mod sink;
+mod table;
+
+use crate::debug::files::FileError;
+use crate::debug::snapshot::SnapshotError;
+use crate::scene::{Scene, SceneError};
+use clap::{Parser, Subcommand};
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// How the program ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exit {
+    /// Converged, equal, or sound.
+    Good = 0,
+    /// Snapshots differ.
+    Differ = 1,
+    /// Bad input or usage.
+    Bad = 2,
+    /// The solve did not converge.
+    Unconverged = 3,
+    /// Stopped from outside: Ctrl-C, or a reader that closed the pipe.
+    Interrupted = 130,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> ExitCode {
+        ExitCode::from(exit as u8)
+    }
+}
+
+/// Why a subcommand could not do its work; all of these are bad input or usage.
+#[derive(Debug, thiserror::Error)]
+enum Error {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
+    #[error("{}{}", .0, how_to_overwrite(.0))]
+    File(#[from] FileError),
+    #[error("{0}")]
+    Usage(String),
+    #[error("standard output: {0}")]
+    Output(io::Error),
+}
+
+fn how_to_overwrite(error: &FileError) -> &'static str {
+    match error {
+        FileError::Exists(_) => " (--force does it)",
+        FileError::Failed { .. } => "",
+    }
+}
+
+/// Steps through contact iterations of the finite element method, in a terminal.
+#[derive(Debug, Parser)]
+#[command(name = "stickslip", version, args_conflicts_with_subcommands = true)]
+#[command(max_term_width = 100)]
+#[command(after_help = "\
+SCENE is a file or the name of a built-in scene (`stickslip list`).
+
+Exit codes: 0 converged, equal or sound; 1 snapshots differ; 2 bad input or usage;
+3 the solve did not converge; 130 interrupted.")]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    debugger: debugger::Args,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solves a scene without stopping
+    Run(run::Args),
+    /// Tells whether a scene is sound, and what it costs
+    Check(check::Args),
+    /// Lists the built-in scenes
+    List,
+    /// Solves up to a place and writes a snapshot of it
+    Record(record::Args),
+    /// Computes snapshots again and compares
+    Replay(replay::Args),
+    /// Compares two snapshots, node by node
+    Diff(diff::Args),
+}
+
+/// A scene, and what is changed in it.
+#[derive(Debug, clap::Args)]
+struct SceneArgs {
+    /// A scene file, or the name of a built-in scene
+    scene: String,
+    #[command(flatten)]
+    set: SetArgs,
+}
+
+impl SceneArgs {
+    fn open(&self) -> Result<Scene, SceneError> {
+        Scene::open(&self.scene, &self.set.set)
+    }
+}
+
+/// Changes to a scene.
+#[derive(Debug, clap::Args)]
+struct SetArgs {
+    /// Changes a value of the scene, by a path as `check --paths` lists it; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
+    set: Vec<(String, String)>,
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((path, value)) => Ok((path.to_owned(), value.to_owned())),
+        None => Err("it must be PATH=VALUE, as friction.angle=20".to_owned()),
+    }
+}
+
+/// Runs the program with the arguments of the process.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help is an error for clap, too; where it cannot be printed there is nobody to tell.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    if !matches!(
+        cli.command,
+        None | Some(Command::Run(_) | Command::Record(_))
+    ) {
+        // These have nothing to put away.
+        interrupt::end_at_once();
+    }
+    let ended = match &cli.command {
+        None => debugger::main(cli.debugger),
+        Some(Command::Run(args)) => run::main(args),
+        Some(Command::Check(args)) => check::main(args),
+        Some(Command::List) => list::main(),
+        Some(Command::Record(args)) => record::main(args),
+        Some(Command::Replay(args)) => replay::main(args),
+        Some(Command::Diff(args)) => diff::main(args),
+    };
+    ended
+        .unwrap_or_else(|error| {
+            tell(&error.to_string());
+            Exit::Bad
+        })
+        .into()
+}
+
+/// A message to the user. Unlike `eprintln`, it survives a standard error that nobody reads.
+fn tell(message: &str) {
+    let _ = writeln!(io::stderr(), "{message}");
+}
+
+/// Data to standard output. A reader that has seen enough is no fault.
+fn say(text: &str) -> Result<(), Error> {
+    let mut out = io::stdout().lock();
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    match written {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,208 @@
+//! `stickslip record`: solves up to a place, and writes a snapshot of it.
+
+use super::interrupt::Interrupt;
+use super::{Error, Exit, SceneArgs, say, tell};
+use crate::debug::files::Output;
+use crate::debug::report;
+use crate::debug::snapshot::Snapshot;
+use crate::scene::Scene;
+use crate::solve::{Event, Failure, Outcome, Stepper};
+use std::fmt;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// After which minor iteration; without MINOR at the end of the major, without MAJOR at the end of the increment
+    #[arg(long, value_name = "INC[.MAJOR[.MINOR]]")]
+    at: At,
+    /// Where to; - is standard output [default: the scene's name and the place, in the working directory]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Overwrites a file that exists
+    #[arg(long)]
+    force: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
+    let scene = args.scene.open()?;
+    let path = args
+        .output
+        .clone()
+        .unwrap_or_else(|| default_name(&scene, args.at));
+    let output = match path.as_os_str() {
+        name if name == "-" => None,
+        _ => Some(Output::create(&path, args.force)?),
+    };
+    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    let steps = match seek(&mut stepper, args.at, &interrupt) {
+        Ok(steps) => steps,
+        Err(missed) => return Ok(tell_missed(&scene, &stepper, args.at, missed)),
+    };
+    let event = Some(stepper.event());
+    let text = Snapshot::take(&scene, &[], steps, stepper.state(), event).to_text()?;
+    let Some(mut output) = output else {
+        say(&text)?;
+        return Ok(Exit::Good);
+    };
+    output
+        .write_all(text.as_bytes())
+        .map_err(|e| output.failed(e))?;
+    output.finish()?;
+    tell(&format!("wrote {}", path.display()));
+    Ok(Exit::Good)
+}
+
+fn default_name(scene: &Scene, at: At) -> PathBuf {
+    let stem = Path::new(&scene.name).file_stem().unwrap_or_default();
+    PathBuf::from(format!("{}-{at}.ron", stem.to_string_lossy()))
+}
+
+/// A place in a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct At {
+    increment: u32,
+    major: Option<u32>,
+    minor: Option<u32>,
+}
+
+impl FromStr for At {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<At, String> {
+        let wrong = "a place is INC, INC.MAJOR or INC.MAJOR.MINOR, whole numbers from 1 on";
+        let mut numbers = Vec::new();
+        for part in text.split('.') {
+            match part.parse::<u32>() {
+                Ok(number) if number > 0 => numbers.push(number),
+                _ => return Err(wrong.to_owned()),
+            }
+        }
+        match numbers[..] {
+            [increment, ref rest @ ..] if rest.len() <= 2 => Ok(At {
+                increment,
+                major: rest.first().copied(),
+                minor: rest.get(1).copied(),
+            }),
+            _ => Err(wrong.to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.increment)?;
+        for part in [self.major, self.minor].into_iter().flatten() {
+            write!(f, ".{part}")?;
+        }
+        Ok(())
+    }
+}
+
+impl At {
+    /// Whether the place is the end of this minor iteration.
+    fn is(&self, event: &Event) -> bool {
+        let at = event.position;
+        let here = at.increment == self.increment && self.major.is_none_or(|m| m == at.major);
+        here && match (self.major, self.minor) {
+            (None, _) => matches!(event.outcome, Outcome::Increment { .. }),
+            (_, None) => ends_major(&event.outcome),
+            (_, Some(minor)) => minor == at.minor,
+        }
+    }
+
+    /// Whether no later minor iteration can be the place.
+    fn is_past(&self, event: &Event) -> bool {
+        let at = event.position;
+        at.increment == self.increment
+            && (matches!(event.outcome, Outcome::Increment { .. })
+                || (Some(at.major) == self.major && ends_major(&event.outcome)))
+    }
+}
+
+fn ends_major(outcome: &Outcome) -> bool {
+    matches!(
+        outcome,
+        Outcome::Major { .. }
+            | Outcome::Increment { .. }
+            | Outcome::Failed(Failure::MajorLimit { .. } | Failure::Diverged { .. })
+    )
+}
+
+/// Why a place was not reached.
+enum Missed {
+    Failed(Failure),
+    Interrupted,
+    /// There is no such place in this run.
+    Absent,
+}
+
+/// Steps to a place; the number of minor iterations that it took.
+fn seek(stepper: &mut Stepper, at: At, interrupt: &Interrupt) -> Result<u64, Missed> {
+    let mut steps = 0;
+    while stepper.step().is_some() {
+        steps += 1;
+        if interrupt.came() {
+            return Err(Missed::Interrupted);
+        }
+        let event = stepper.event();
+        if at.is(event) {
+            return Ok(steps);
+        }
+        if let Outcome::Failed(failure) = &event.outcome {
+            return Err(Missed::Failed(failure.clone()));
+        }
+        if at.is_past(event) {
+            return Err(Missed::Absent);
+        }
+    }
+    Err(Missed::Absent)
+}
+
+fn tell_missed(scene: &Scene, stepper: &Stepper, at: At, missed: Missed) -> Exit {
+    let (event, name) = (stepper.event(), &scene.name);
+    match missed {
+        Missed::Failed(failure) => {
+            let accepted = stepper.state().start.load_factor;
+            let told = report::failure(
+                &scene.model,
+                event.position,
+                event.load_factor,
+                accepted,
+                &failure,
+            );
+            tell(&format!("{name}: {at} is not reached: {told}"));
+            Exit::Unconverged
+        }
+        Missed::Interrupted => {
+            let reached = report::position(event.position);
+            tell(&format!("{name}: interrupted after {reached}"));
+            Exit::Interrupted
+        }
+        Missed::Absent => {
+            let reached = report::outcome(&scene.model, event);
+            tell(&format!("{name}: there is no {at}: {reached}"));
+            Exit::Bad
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_read_as_they_print() {
+        for text in ["7", "12.2", "12.2.3"] {
+            assert_eq!(text.parse::<At>().unwrap().to_string(), text);
+        }
+        for text in ["", "0", "1.0", "1.2.3.4", "1.", "-1", "a", "99999999999"] {
+            assert!(text.parse::<At>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! `stickslip run`: solves a scene from start to end.
+
+use super::interrupt::Interrupt;
+use super::sink::{Sent, Sink};
+use super::{Error, Exit, SceneArgs, table, tell};
+use crate::debug::files::Output;
+use crate::debug::report;
+use crate::debug::snapshot::Snapshot;
+use crate::scene::{Model, Scene};
+use crate::solve::{Event, Failure, Outcome, Stepper};
+use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Warnings that are printed one by one; the rest is counted.
+const MOST_WARNINGS: u32 = 10;
+/// Time between two lines of progress.
+const PROGRESS: Duration = Duration::from_millis(100);
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Writes a row per converged increment; - is standard output
+    #[arg(long, value_name = "FILE|-")]
+    csv: Option<String>,
+    /// Writes a row per slave node and minor iteration; - is standard output
+    #[arg(long, value_name = "FILE|-")]
+    trace: Option<String>,
+    /// Writes the state at the end, or where the solve failed
+    #[arg(long, value_name = "FILE")]
+    snapshot: Option<PathBuf>,
+    /// Overwrites files that exist
+    #[arg(long)]
+    force: bool,
+    /// Prints nothing but warnings and errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
+    let scene = args.scene.open()?;
+    // Before the solve, so that nobody waits for a result that then has no place to go.
+    let mut outputs = Outputs::open(args)?;
+    let mut run = Run::new(&scene, args.quiet);
+    let end = run.go(&mut outputs, &interrupt)?;
+    run.progress.clear();
+    let snapshot = outputs.close()?;
+    if let Some(output) = snapshot {
+        write_snapshot(output, &run)?;
+    }
+    Ok(run.tell(&end, args))
+}
+
+/// What a run writes.
+struct Outputs {
+    csv: Option<Sink>,
+    trace: Option<Sink>,
+    snapshot: Option<Output>,
+}
+
+impl Outputs {
+    fn open(args: &Args) -> Result<Outputs, Error> {
+        let snapshot = args.snapshot.as_ref().map(|path| path.to_string_lossy());
+        let named = [
+            args.csv.as_deref(),
+            args.trace.as_deref(),
+            snapshot.as_deref(),
+        ];
+        let named: Vec<&str> = named.into_iter().flatten().collect();
+        for (k, name) in named.iter().enumerate() {
+            if named[..k].contains(name) {
+                return Err(Error::Usage(format!(
+                    "{name}: only one of --csv, --trace and --snapshot can go there"
+                )));
+            }
+        }
+        let sink = |to: &Option<String>| match to {
+            Some(to) => Sink::open(to, args.force).map(Some),
+            None => Ok(None),
+        };
+        let output = |path: &PathBuf| Output::create(path, args.force);
+        Ok(Outputs {
+            csv: sink(&args.csv)?,
+            trace: sink(&args.trace)?,
+            snapshot: args.snapshot.as_ref().map(output).transpose()?,
+        })
+    }
+
+    fn headers(&mut self, model: &Model) -> Result<Sent, Error> {
+        let csv = send(&mut self.csv, || table::csv_header(model))?;
+        let trace = send(&mut self.trace, || table::TRACE_HEADER.to_owned())?;
+        Ok(first_closed(csv, trace))
+    }
+
+    /// Ends the tables; what is left is the snapshot to be written.
+    fn close(self) -> Result<Option<Output>, Error> {
+        self.csv.map(Sink::finish).transpose()?;
+        self.trace.map(Sink::finish).transpose()?;
+        Ok(self.snapshot)
+    }
+}
+
+fn send(sink: &mut Option<Sink>, lines: impl FnOnce() -> String) -> Result<Sent, Error> {
+    sink.as_mut().map_or(Ok(Sent::Well), |s| s.send(&lines()))
+}
+
+fn first_closed(a: Sent, b: Sent) -> Sent {
+    if a == Sent::Closed { a } else { b }
+}
+
+fn write_snapshot(mut output: Output, run: &Run) -> Result<(), Error> {
+    let event = (run.steps > 0).then(|| run.stepper.event());
+    let snapshot = Snapshot::take(run.scene, &[], run.steps, run.stepper.state(), event);
+    output
+        .write_all(snapshot.to_text()?.as_bytes())
+        .map_err(|e| output.failed(e))?;
+    Ok(output.finish()?)
+}
+
+/// A run, as far as it has come.
+struct Run<'a> {
+    scene: &'a Scene,
+    stepper: Stepper,
+    progress: Progress,
+    /// Minor iterations in all, and in the present increment.
+    steps: u64,
+    minors: u64,
+    /// Accepted increments, and their major iterations.
+    accepted: u64,
+    majors: u64,
+    /// Increments that were accepted in spite of something.
+    doubtful: u32,
+    /// Monitors after the last accepted increment.
+    monitors: Vec<f64>,
+}
+
+/// How a run ended.
+enum End {
+    Finished,
+    Failed(Failure),
+    Interrupted,
+    /// Nobody reads on.
+    Closed,
+}
+
+impl<'a> Run<'a> {
+    fn new(scene: &'a Scene, quiet: bool) -> Self {
+        Run {
+            scene,
+            stepper: Stepper::new(Arc::new(scene.model.clone())),
+            progress: Progress::new(quiet),
+            steps: 0,
+            minors: 0,
+            accepted: 0,
+            majors: 0,
+            doubtful: 0,
+            monitors: Vec::new(),
+        }
+    }
+
+    fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<End, Error> {
+        if outputs.headers(&self.scene.model)? == Sent::Closed {
+            return Ok(End::Closed);
+        }
+        while !interrupt.came() {
+            if self.stepper.step().is_none() {
+                return Ok(End::Finished);
+            }
+            (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
+            self.progress.show(self.stepper.event(), self.steps);
+            let (model, event) = (&self.scene.model, self.stepper.event());
+            let mut sent = send(&mut outputs.trace, || table::trace_rows(model, event))?;
+            if let Outcome::Failed(failure) = &event.outcome {
+                return Ok(End::Failed(failure.clone()));
+            }
+            if matches!(event.outcome, Outcome::Increment { .. }) {
+                sent = first_closed(sent, self.accept(outputs)?);
+            }
+            if sent == Sent::Closed {
+                return Ok(End::Closed);
+            }
+        }
+        Ok(End::Interrupted)
+    }
+
+    fn accept(&mut self, outputs: &mut Outputs) -> Result<Sent, Error> {
+        self.monitors.clear();
+        self.stepper.monitors(&mut self.monitors);
+        self.warn();
+        let event = self.stepper.event();
+        let (minors, monitors) = (self.minors, &self.monitors);
+        let sent = send(&mut outputs.csv, || table::csv_row(event, minors, monitors));
+        self.accepted += 1;
+        self.majors += u64::from(event.position.major);
+        self.minors = 0;
+        sent
+    }
+
+    /// Tells what the last increment was accepted in spite of.
+    fn warn(&mut self) {
+        let event = self.stepper.event();
+        let Outcome::Increment { unsettled, .. } = event.outcome else {
+            return;
+        };
+        let although = report::reservations(&self.scene.model, event, unsettled);
+        if although.is_empty() {
+            return;
+        }
+        self.doubtful += 1;
+        if self.doubtful <= MOST_WARNINGS {
+            let (increment, load) = (event.position.increment, event.load_factor);
+            self.progress.clear();
+            tell(&format!(
+                "warning: increment {increment} (load {load}) was accepted{although}"
+            ));
+        }
+    }
+
+    /// Tells how the run ended.
+    fn tell(&self, end: &End, args: &Args) -> Exit {
+        if self.doubtful > MOST_WARNINGS {
+            tell(&format!(
+                "warning: {} increments in all were accepted like this",
+                self.doubtful
+            ));
+        }
+        if !args.quiet {
+            self.tell_summary(args.csv.is_none());
+        }
+        let name = &self.scene.name;
+        match end {
+            End::Finished => Exit::Good,
+            End::Closed => Exit::Interrupted,
+            End::Interrupted => {
+                let at = report::position(self.stepper.state().next);
+                tell(&format!("{name}: interrupted before {at}"));
+                Exit::Interrupted
+            }
+            End::Failed(failure) => {
+                let (event, state) = (self.stepper.event(), self.stepper.state());
+                let told = report::failure(
+                    &self.scene.model,
+                    event.position,
+                    event.load_factor,
+                    state.start.load_factor,
+                    failure,
+                );
+                tell(&format!("{name}: {told}"));
+                Exit::Unconverged
+            }
+        }
+    }
+
+    fn tell_summary(&self, monitors: bool) {
+        tell(&format!(
+            "{}: {} increments accepted, up to load {}; {} major iterations for them, {} minor ones in all",
+            self.scene.name,
+            self.accepted,
+            self.stepper.state().start.load_factor,
+            self.majors,
+            self.steps,
+        ));
+        if !monitors {
+            return;
+        }
+        for (monitor, value) in self.scene.model.monitors.iter().zip(&self.monitors) {
+            tell(&format!("  {:<12} {value:?}", monitor.name));
+        }
+    }
+}
+
+/// A line on a terminal that says how far the run is.
+struct Progress {
+    wanted: bool,
+    shown: bool,
+    last: Instant,
+}
+
+impl Progress {
+    fn new(quiet: bool) -> Self {
+        Progress {
+            wanted: !quiet && io::stderr().is_terminal(),
+            shown: false,
+            last: Instant::now(),
+        }
+    }
+
+    fn show(&mut self, event: &Event, steps: u64) {
+        if !self.wanted || self.last.elapsed() < PROGRESS {
+            return;
+        }
+        let at = report::position(event.position);
+        let load = event.load_factor;
+        let _ = write!(
+            io::stderr(),
+            "\r\x1b[K{at}, load {load}; {steps} minor iterations"
+        );
+        (self.shown, self.last) = (true, Instant::now());
+    }
+
+    fn clear(&mut self) {
+        if self.shown {
+            let _ = write!(io::stderr(), "\r\x1b[K");
+            self.shown = false;
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Where a table goes: to a file, or to standard output.
+
+use super::Error;
+use crate::debug::files::Output;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// A table's way out.
+pub enum Sink {
+    /// Standard output, line by line.
+    Standard,
+    File(Box<Output>),
+}
+
+/// What became of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sent {
+    Well,
+    /// Nobody reads on.
+    Closed,
+}
+
+impl Sink {
+    /// Opens a file, or standard output for `-`.
+    pub fn open(to: &str, overwrite: bool) -> Result<Sink, Error> {
+        if to == "-" {
+            return Ok(Sink::Standard);
+        }
+        let output = Output::create(Path::new(to), overwrite)?;
+        Ok(Sink::File(Box::new(output)))
+    }
+
+    /// Sends whole lines.
+    pub fn send(&mut self, lines: &str) -> Result<Sent, Error> {
+        match self {
+            Sink::File(output) => match output.write_all(lines.as_bytes()) {
+                Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),
+                Err(e) => Err(output.failed(e).into()),
+                Ok(()) => Ok(Sent::Well),
+            },
+            Sink::Standard => {
+                let mut out = io::stdout().lock();
+                match out.write_all(lines.as_bytes()).and_then(|()| out.flush()) {
+                    Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),
+                    Err(e) => Err(Error::Output(e)),
+                    Ok(()) => Ok(Sent::Well),
+                }
+            }
+        }
+    }
+
+    /// Ends the table: a file gets its name.
+    pub fn finish(self) -> Result<(), Error> {
+        match self {
+            Sink::Standard => Ok(()),
+            Sink::File(output) => Ok(output.finish()?),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Rows of `--csv` and `--trace`.
+//!
+//! Floats have as many digits as they need to read back to the same bits; those that are no numbers are `NaN`, `inf`
+//! and `-inf`.
+//!
+//! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones.
+//!
+//! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
+//! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
+//! its end. `t_max` is that of the row's own F_n, `margin` the distance of the deciding inequality from switching
+//! (infinite where none was tested). A minor iteration that could not be solved has no rows.
+
+use crate::debug::report;
+use crate::scene::Model;
+use crate::solve::{Event, Failure, Outcome};
+use std::fmt::Write;
+
+/// The first line of `--csv`.
+pub fn csv_header(model: &Model) -> String {
+    let mut line = "increment,load,majors,minors".to_owned();
+    for monitor in &model.monitors {
+        line.push(',');
+        line.push_str(&field(&monitor.name));
+    }
+    line.push('\n');
+    line
+}
+
+/// The row of an increment that was just accepted.
+pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
+    let at = event.position;
+    let mut line = format!(
+        "{},{:?},{},{minors}",
+        at.increment, event.load_factor, at.major
+    );
+    for value in monitors {
+        // Writing to a string does not fail.
+        let _ = write!(line, ",{value:?}");
+    }
+    line.push('\n');
+    line
+}
+
+/// The first line of `--trace`.
+pub const TRACE_HEADER: &str =
+    "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual\n";
+
+/// The rows of a minor iteration.
+pub fn trace_rows(model: &Model, event: &Event) -> String {
+    let (at, residual) = (event.position, residual(event));
+    let mut lines = String::new();
+    for (slave, r) in event.nodes.iter().enumerate() {
+        let d = &r.decision;
+        let _ = writeln!(
+            lines,
+            "{},{},{},{},{},{},{},{},{:?},{:?},{:?},{:?},{:?},{:?},{residual:?}",
+            at.increment,
+            at.attempt,
+            at.major,
+            at.minor,
+            field(report::slave(model, slave)),
+            report::mode(d.before),
+            report::mode(d.next),
+            report::rule(d.rule),
+            r.gap,
+            r.f_n,
+            r.f_t,
+            r.t_max,
+            r.slip,
+            d.margin(),
+        );
+    }
+    lines
+}
+
+fn residual(event: &Event) -> f64 {
+    match &event.outcome {
+        Outcome::Major { after, .. } | Outcome::Increment { after, .. } => after.relative,
+        Outcome::Failed(Failure::MajorLimit { relative, .. } | Failure::Diverged { relative }) => {
+            *relative
+        }
+        _ => event.before.relative,
+    }
+}
+
+/// A text as a field of a CSV file.
+fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_that_would_break_a_row_are_quoted() {
+        assert_eq!(field("beam.1"), "beam.1");
+        assert_eq!(field("a,\"b\""), "\"a,\"\"b\"\"\"");
+    }
+}

@@ -1,0 +1,526 @@
+//! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
+//! app and yields at most one [`Effect`], which the event loop carries out.
+
+use crate::debug::command::{self, Action, Command, Context, Question, Step, Ui};
+use crate::scene::Mode;
+use crate::tui::commandline::{CommandLine, Purpose};
+use crate::tui::keys;
+use crate::tui::layout::{Choice, Pane};
+use crate::tui::number;
+use crate::tui::theme::{self, Theme};
+use crate::tui::view::View;
+use crossterm::event::KeyEvent;
+
+/// What a key asks of the world outside the app.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Effect {
+    /// A command for the session.
+    Submit(Command),
+    /// Stop the run.
+    Interrupt,
+    /// Load a scene, by file or built-in name.
+    Open(String),
+    Suspend,
+    Redraw,
+    Quit,
+}
+
+/// What lies over the panes or waits for keys before they do.
+#[derive(Debug, Clone)]
+pub enum Overlay {
+    None,
+    /// The list of actions, from this line on.
+    Help {
+        top: usize,
+    },
+    /// The list of scenes, with one of them selected.
+    Chooser {
+        at: usize,
+    },
+    /// A line being typed.
+    Line(CommandLine),
+    /// A letter for the mode of the selected node.
+    Mode,
+}
+
+/// How the message line speaks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tone {
+    Plain,
+    Error,
+}
+
+/// The last thing that was said to the user.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    pub text: String,
+    pub tone: Tone,
+}
+
+/// How the shape is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// 1 shows all of it.
+    pub zoom: f64,
+    /// Shift of the middle, as a fraction of what is seen at zoom 1.
+    pub pan: [f64; 2],
+}
+
+impl Camera {
+    /// All of the shape.
+    pub const ALL: Camera = Camera {
+        zoom: 1.0,
+        pan: [0.0; 2],
+    };
+
+    fn zoomed(self, factor: f64) -> Camera {
+        Camera {
+            zoom: (self.zoom * factor).clamp(0.05, 1e4),
+            ..self
+        }
+    }
+
+    fn panned(self, x: f64, y: f64) -> Camera {
+        let step = 0.1 / self.zoom;
+        Camera {
+            pan: [self.pan[0] + step * x, self.pan[1] + step * y],
+            ..self
+        }
+    }
+}
+
+/// A scene that the chooser offers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Offer {
+    pub name: String,
+    pub title: String,
+}
+
+/// Everything on the screen that is not in the session.
+#[derive(Debug, Clone)]
+pub struct App {
+    pub theme: Theme,
+    pub overlay: Overlay,
+    /// Pane with the focus.
+    pub focus: Pane,
+    /// Pane under the table where the screen is small.
+    pub page: Pane,
+    pub zoomed: bool,
+    /// Selected slave node, by slave number.
+    pub selected: usize,
+    /// Count typed before a motion.
+    pub count: Option<u32>,
+    pub message: Message,
+    pub camera: Camera,
+    /// Scenes to choose from.
+    pub offers: Vec<Offer>,
+    /// Turns of the spinner.
+    pub tick: usize,
+    /// The last motion, for Enter.
+    last: Option<Command>,
+    /// Lines typed at `:`, oldest first.
+    history: Vec<String>,
+}
+
+/// Largest count that digits can make.
+const MOST: u32 = 1_000_000;
+/// Nodes that a page key goes past.
+const PAGE: isize = 10;
+
+impl App {
+    /// A fresh screen. Without a scene the chooser comes first.
+    pub fn new(theme: Theme, offers: Vec<Offer>) -> Self {
+        App {
+            theme,
+            overlay: Overlay::None,
+            focus: Pane::Nodes,
+            page: Pane::Decision,
+            zoomed: false,
+            selected: 0,
+            count: None,
+            message: Message {
+                text: String::new(),
+                tone: Tone::Plain,
+            },
+            camera: Camera::ALL,
+            offers,
+            tick: 0,
+            last: None,
+            history: Vec::new(),
+        }
+    }
+
+    /// Says something.
+    pub fn say(&mut self, text: impl Into<String>) {
+        self.tell(text.into(), Tone::Plain);
+    }
+
+    /// Says what went wrong.
+    pub fn complain(&mut self, text: impl Into<String>) {
+        self.tell(text.into(), Tone::Error);
+    }
+
+    fn tell(&mut self, text: String, tone: Tone) {
+        let text = text.replace(char::is_control, " ");
+        self.message = Message { text, tone };
+    }
+
+    /// Shows a scene that was just opened.
+    pub fn opened(&mut self) {
+        self.overlay = Overlay::None;
+        self.selected = 0;
+        self.camera = Camera::ALL;
+        self.last = None;
+        self.count = None;
+    }
+
+    /// Offers the scenes.
+    pub fn choose(&mut self) {
+        self.overlay = Overlay::Chooser { at: 0 };
+    }
+
+    /// The user's part in the arrangement of the screen.
+    pub fn choice(&self, slaves: usize, outcome: u16, message: u16) -> Choice {
+        Choice {
+            focus: self.focus,
+            page: self.page,
+            zoomed: self.zoomed,
+            slaves,
+            outcome,
+            message,
+        }
+    }
+
+    /// What a key does.
+    pub fn key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
+        let name = keys::name(key)?;
+        match (&mut self.overlay, name.as_str()) {
+            (_, "Ctrl-z") => Some(Effect::Suspend),
+            (_, "Ctrl-l") => Some(Effect::Redraw),
+            (_, "Ctrl-c") => self.interrupt(view),
+            (Overlay::None, _) => self.pane_key(&name, view),
+            (Overlay::Help { .. }, _) => self.help_key(&name),
+            (Overlay::Chooser { .. }, _) => self.chooser_key(&name, view),
+            (Overlay::Line(_), _) => self.line_key(key, &name, view),
+            (Overlay::Mode, _) => self.mode_key(&name, view),
+        }
+    }
+
+    /// Text pasted from the terminal goes into a line that is being typed, and nowhere else: keys do things.
+    pub fn paste(&mut self, text: &str) {
+        if let Overlay::Line(line) = &mut self.overlay {
+            line.insert(text);
+        }
+    }
+
+    fn scenes(&self) -> Vec<String> {
+        self.offers.iter().map(|offer| offer.name.clone()).collect()
+    }
+
+    /// Ctrl-C: closes what is open and stops a run; never the program.
+    fn interrupt(&mut self, view: Option<&View>) -> Option<Effect> {
+        self.close(view);
+        if view.is_some_and(|view| view.running) {
+            return Some(Effect::Interrupt);
+        }
+        self.say("nothing is running; q quits");
+        None
+    }
+
+    /// Closes overlays; without a scene the chooser is what is left.
+    fn close(&mut self, view: Option<&View>) {
+        self.count = None;
+        match view {
+            Some(_) => self.overlay = Overlay::None,
+            None => self.choose(),
+        }
+    }
+
+    fn pane_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        if let Some(digit) = digit(name)
+            && (digit > 0 || self.count.is_some())
+        {
+            self.count = Some(
+                (self
+                    .count
+                    .unwrap_or(0)
+                    .saturating_mul(10)
+                    .saturating_add(digit))
+                .min(MOST),
+            );
+            return None;
+        }
+        let count = self.count.take();
+        let Some(entry) = command::by_key(name) else {
+            self.complain(format!("{name} does nothing here; ? lists the keys"));
+            return None;
+        };
+        let rest = count
+            .filter(|_| entry.takes_count())
+            .map(|count| count.to_string());
+        let action = entry.act(
+            &rest.unwrap_or_default(),
+            &context(view, self.selected, &[]),
+        );
+        self.attempt(action, count, view)
+    }
+
+    /// Carries out an action, or says why it cannot be.
+    fn attempt(
+        &mut self,
+        action: Result<Action, String>,
+        count: Option<u32>,
+        view: Option<&View>,
+    ) -> Option<Effect> {
+        match action {
+            Ok(Action::Session(command)) => self.submit(command, view),
+            Ok(Action::Ui(ui)) => self.ui(ui, count, view),
+            Err(message) => {
+                self.complain(message);
+                None
+            }
+        }
+    }
+
+    fn submit(&mut self, command: Command, view: Option<&View>) -> Option<Effect> {
+        match view {
+            None => self.complain("open a scene first"),
+            Some(_) => {
+                if matches!(command, Command::Forward { .. } | Command::Back { .. }) {
+                    self.last = Some(command.clone());
+                }
+                self.say("");
+                return Some(Effect::Submit(command));
+            }
+        }
+        None
+    }
+
+    fn ui(&mut self, ui: Ui, count: Option<u32>, view: Option<&View>) -> Option<Effect> {
+        match ui {
+            Ui::Quit => return Some(Effect::Quit),
+            Ui::Suspend => return Some(Effect::Suspend),
+            Ui::Redraw => return Some(Effect::Redraw),
+            Ui::Interrupt => return self.interrupt(view),
+            Ui::Open(scene) => return Some(Effect::Open(scene)),
+            Ui::Repeat => match self.last.clone() {
+                Some(command) => return self.submit(command, view),
+                None => self.complain("there is no motion to repeat yet; s is one minor iteration"),
+            },
+            Ui::Move(step) => self.step(step, count.unwrap_or(1) as isize, view),
+            Ui::Select(slave) => self.selected = slave,
+            Ui::NextPane => self.turn(1),
+            Ui::PreviousPane => self.turn(Pane::ALL.len() - 1),
+            Ui::Zoom => self.zoomed = !self.zoomed,
+            Ui::Explain => self.explain(),
+            Ui::Enlarge => self.camera = self.camera.zoomed(1.25),
+            Ui::Shrink => self.camera = self.camera.zoomed(0.8),
+            Ui::Fit => self.camera = Camera::ALL,
+            Ui::Ask(question) => self.ask(question, view),
+            Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
+            Ui::Help => self.overlay = Overlay::Help { top: 0 },
+            Ui::Cancel => {
+                self.zoomed = false;
+                self.say("");
+            }
+        }
+        None
+    }
+
+    fn turn(&mut self, places: usize) {
+        self.focus = self.focus.turn(places);
+        if self.focus != Pane::Nodes {
+            self.page = self.focus;
+        }
+    }
+
+    fn explain(&mut self) {
+        self.zoomed = !(self.zoomed && self.focus == Pane::Decision);
+        self.focus = Pane::Decision;
+        self.page = Pane::Decision;
+    }
+
+    fn step(&mut self, step: Step, count: isize, view: Option<&View>) {
+        let last = view.map_or(0, |view| view.model.slaves.len().saturating_sub(1));
+        let to = |by: isize| {
+            self.selected
+                .saturating_add_signed(by.saturating_mul(count))
+                .min(last)
+        };
+        match (self.focus, step) {
+            (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
+            (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
+            (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),
+            (Pane::Shape, Step::Down) => self.camera = self.camera.panned(0.0, -1.0),
+            (_, Step::Up) => self.selected = to(-1),
+            (_, Step::Down) => self.selected = to(1),
+            (_, Step::PageUp) => self.selected = to(-PAGE),
+            (_, Step::PageDown) => self.selected = to(PAGE),
+            (_, Step::First) => self.selected = 0,
+            (_, Step::Last) => self.selected = last,
+            (_, Step::Left | Step::Right) => {}
+        }
+    }
+
+    fn ask(&mut self, question: Question, view: Option<&View>) {
+        let has_slaves = view.is_some_and(|view| !view.model.slaves.is_empty());
+        match question {
+            Question::Mode if !has_slaves => self.complain("this scene has no slave nodes"),
+            Question::Mode => self.overlay = Overlay::Mode,
+            Question::Increment => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Increment, ""))
+            }
+            Question::Node => self.overlay = Overlay::Line(CommandLine::new(Purpose::Node, "")),
+            Question::Scene => self.choose(),
+        }
+    }
+
+    fn mode_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        self.close(view);
+        let wanted = [Mode::Free, Mode::Sliding, Mode::Fixed]
+            .into_iter()
+            .find(|mode| theme::letter(*mode).eq_ignore_ascii_case(name));
+        match wanted {
+            Some(mode) => {
+                let hold = name.chars().all(char::is_uppercase);
+                self.submit(
+                    Command::Force {
+                        slave: self.selected,
+                        mode,
+                        hold,
+                    },
+                    view,
+                )
+            }
+            None if name == "Esc" => None,
+            None => {
+                self.complain(format!(
+                    "{name} is no mode: f free, s sliding, x fixed; a capital holds it"
+                ));
+                None
+            }
+        }
+    }
+
+    fn help_key(&mut self, name: &str) -> Option<Effect> {
+        let Overlay::Help { top } = &mut self.overlay else {
+            return None;
+        };
+        match name {
+            "Esc" | "q" | "?" | "F1" | "Enter" => self.overlay = Overlay::None,
+            _ => *top = scrolled(*top, name, usize::MAX),
+        }
+        None
+    }
+
+    fn chooser_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        let Overlay::Chooser { at } = &mut self.overlay else {
+            return None;
+        };
+        match name {
+            "Enter" => {
+                return self
+                    .offers
+                    .get(*at)
+                    .map(|offer| Effect::Open(offer.name.clone()));
+            }
+            "q" | "Esc" if view.is_none() => return Some(Effect::Quit),
+            "q" | "Esc" => self.overlay = Overlay::None,
+            ":" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open ")),
+            _ => *at = scrolled(*at, name, self.offers.len().saturating_sub(1)),
+        }
+        None
+    }
+
+    fn line_key(&mut self, key: &KeyEvent, name: &str, view: Option<&View>) -> Option<Effect> {
+        let scenes = self.scenes();
+        let context = context(view, self.selected, &scenes);
+        let Overlay::Line(line) = &mut self.overlay else {
+            return None;
+        };
+        match name {
+            "Esc" => self.close(view),
+            "Backspace" if line.text().is_empty() => self.close(view),
+            "Tab" => line.complete(1, &context),
+            "Shift-Tab" => line.complete(-1, &context),
+            "Up" => line.recall(1, &self.history),
+            "Down" => line.recall(-1, &self.history),
+            "Enter" => return self.enter(view),
+            _ => line.edit(key),
+        }
+        None
+    }
+
+    /// Carries out the line that was typed.
+    fn enter(&mut self, view: Option<&View>) -> Option<Effect> {
+        let Overlay::Line(line) = &self.overlay else {
+            return None;
+        };
+        let (purpose, text) = (line.purpose, line.text().trim().to_string());
+        self.close(view);
+        let line = match purpose {
+            _ if text.is_empty() => return None,
+            Purpose::Command => text,
+            Purpose::Increment => format!("increment {text}"),
+            Purpose::Node => format!("node {text}"),
+        };
+        self.history.retain(|old| *old != line);
+        self.history.push(line.clone());
+        let scenes = self.scenes();
+        let action = command::parse(&line, &context(view, self.selected, &scenes));
+        self.attempt(action, None, view)
+    }
+
+    /// What the prompt in the message line asks; none where nothing is asked.
+    pub fn question(&self, view: Option<&View>) -> Option<String> {
+        let view = view?;
+        match &self.overlay {
+            Overlay::Mode => Some(format!(
+                "mode of {}:  f free   s sliding   x fixed   (a capital holds it until M releases)",
+                view.slave(self.selected)
+            )),
+            Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
+                "new increment (now {}): ",
+                number::plain(view.frame().state.controls.increment)
+            )),
+            _ => None,
+        }
+    }
+}
+
+/// What actions need to know to read their arguments.
+pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String]) -> Context<'a> {
+    let (model, scene) = (
+        view.map(|view| view.model),
+        view.and_then(|view| view.scene),
+    );
+    Context {
+        model,
+        scene,
+        selected,
+        scenes,
+    }
+}
+
+/// The digit that a key is.
+fn digit(name: &str) -> Option<u32> {
+    let mut letters = name.chars();
+    match (letters.next(), letters.next()) {
+        (Some(letter), None) => letter.to_digit(10),
+        _ => None,
+    }
+}
+
+/// Where a list stands after a key that moves in lists.
+fn scrolled(at: usize, name: &str, last: usize) -> usize {
+    let to = match name {
+        "Up" | "k" => at.saturating_sub(1),
+        "Down" | "j" => at.saturating_add(1),
+        "PageUp" => at.saturating_sub(PAGE as usize),
+        "PageDown" | "Space" => at.saturating_add(PAGE as usize),
+        "Home" | "g" => 0,
+        "End" | "G" => last,
+        _ => at,
+    };
+    to.min(last)
+}

@@ -1,0 +1,113 @@
+//! Terminal keys as the names that the table of actions uses.
+
+use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+
+/// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. None for key releases and
+/// for keys that the table never names.
+pub fn name(key: &KeyEvent) -> Option<String> {
+    if key.kind == KeyEventKind::Release || key.modifiers.contains(KeyModifiers::ALT) {
+        return None;
+    }
+    let control = key.modifiers.contains(KeyModifiers::CONTROL);
+    let shift = key.modifiers.contains(KeyModifiers::SHIFT);
+    let name = match key.code {
+        KeyCode::Char(' ') => "Space".into(),
+        KeyCode::Char(letter) if control => format!("Ctrl-{}", letter.to_lowercase()),
+        KeyCode::Char(letter) => letter.into(),
+        KeyCode::F(number) if shift => format!("Shift-F{number}"),
+        // Many terminals send Shift-F11 as F23: twelve keys further.
+        KeyCode::F(number @ 13..=24) => format!("Shift-F{}", number - 12),
+        KeyCode::F(number) => format!("F{number}"),
+        KeyCode::Tab if shift => "Shift-Tab".into(),
+        KeyCode::BackTab => "Shift-Tab".into(),
+        other => plain(other)?.into(),
+    };
+    Some(name)
+}
+
+/// Names of the keys that take no letter.
+fn plain(code: KeyCode) -> Option<&'static str> {
+    Some(match code {
+        KeyCode::Enter => "Enter",
+        KeyCode::Tab => "Tab",
+        KeyCode::Esc => "Esc",
+        KeyCode::Up => "Up",
+        KeyCode::Down => "Down",
+        KeyCode::Left => "Left",
+        KeyCode::Right => "Right",
+        KeyCode::Home => "Home",
+        KeyCode::End => "End",
+        KeyCode::PageUp => "PageUp",
+        KeyCode::PageDown => "PageDown",
+        KeyCode::Backspace => "Backspace",
+        KeyCode::Delete => "Delete",
+        _ => return None,
+    })
+}
+
+/// The key press of a name: the way back, for tests and scripts that speak in names.
+pub fn press(name: &str) -> Option<KeyEvent> {
+    let (modifiers, rest) = match name {
+        _ if name.starts_with("Ctrl-") => (KeyModifiers::CONTROL, &name[5..]),
+        _ if name.starts_with("Shift-F") => (KeyModifiers::SHIFT, &name[6..]),
+        _ => (KeyModifiers::NONE, name),
+    };
+    let mut letters = rest.chars();
+    let code = match (letters.next()?, letters.as_str()) {
+        (letter, "") => KeyCode::Char(letter),
+        ('F', number) if number.parse::<u8>().is_ok() => KeyCode::F(number.parse().ok()?),
+        _ => NAMED
+            .iter()
+            .copied()
+            .find(|code| spelled(*code) == Some(rest))?,
+    };
+    Some(KeyEvent::new(code, modifiers))
+}
+
+const NAMED: [KeyCode; 15] = [
+    KeyCode::Char(' '),
+    KeyCode::BackTab,
+    KeyCode::Enter,
+    KeyCode::Tab,
+    KeyCode::Esc,
+    KeyCode::Up,
+    KeyCode::Down,
+    KeyCode::Left,
+    KeyCode::Right,
+    KeyCode::Home,
+    KeyCode::End,
+    KeyCode::PageUp,
+    KeyCode::PageDown,
+    KeyCode::Backspace,
+    KeyCode::Delete,
+];
+
+fn spelled(code: KeyCode) -> Option<&'static str> {
+    match code {
+        KeyCode::Char(' ') => Some("Space"),
+        KeyCode::BackTab => Some("Shift-Tab"),
+        other => plain(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::debug::command::ACTIONS;
+
+    #[test]
+    fn every_key_of_the_table_can_be_pressed() {
+        for key in ACTIONS.iter().flat_map(|entry| entry.keys) {
+            let pressed = press(key).unwrap_or_else(|| panic!("no key is called {key}"));
+            assert_eq!(name(&pressed).as_deref(), Some(*key));
+        }
+    }
+
+    #[test]
+    fn releases_and_far_function_keys() {
+        let mut key = KeyEvent::new(KeyCode::F(23), KeyModifiers::NONE);
+        assert_eq!(name(&key).as_deref(), Some("Shift-F11"));
+        key.kind = KeyEventKind::Release;
+        assert_eq!(name(&key), None);
+    }
+}

@@ -1,0 +1,220 @@
+//! Where everything stands on the screen.
+//!
+//! Three arrangements. Small (80x24): the table, and under it one more pane, which Tab changes. Medium (120x40):
+//! the table across, the decision over the residual on the left, the shape on the right. Large (200x60): two
+//! columns. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
+//! one pane at a time.
+
+use ratatui::layout::{Constraint, Layout, Rect};
+
+/// A part of the screen that can have the focus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pane {
+    Nodes,
+    Decision,
+    Residual,
+    Shape,
+}
+
+impl Pane {
+    /// All, in the order of Tab.
+    pub const ALL: [Pane; 4] = [Pane::Nodes, Pane::Decision, Pane::Residual, Pane::Shape];
+
+    /// The pane so many places further on.
+    pub fn turn(self, places: usize) -> Pane {
+        Pane::ALL[(self as usize + places) % Pane::ALL.len()]
+    }
+}
+
+/// What of the user's choices decides the arrangement.
+#[derive(Debug, Clone, Copy)]
+pub struct Choice {
+    /// The pane with the focus.
+    pub focus: Pane,
+    /// The pane under the table on a small screen.
+    pub page: Pane,
+    /// Whether the pane with the focus has the screen for itself.
+    pub zoomed: bool,
+    /// Number of slave nodes, hence of the table's rows.
+    pub slaves: usize,
+    /// Lines that the last outcome takes in the status, at least one.
+    pub outcome: u16,
+    /// Lines that the message takes, at least one.
+    pub message: u16,
+}
+
+/// Where everything stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Places {
+    pub status: Rect,
+    pub panes: Vec<(Pane, Rect)>,
+    pub message: Rect,
+    pub footer: Rect,
+    /// Whether not all panes are on the screen, so that Tab turns pages.
+    pub paged: bool,
+}
+
+/// Rows of the table that are no nodes: two of border, one of headings.
+const TABLE_FRAME: u16 = 3;
+/// Fewest rows in which the decision shows everything, border included, and its numbers on lines of their own.
+const DECISION: u16 = 12;
+const TALL_DECISION: u16 = 17;
+
+/// Arranges the screen.
+pub fn places(area: Rect, choice: &Choice) -> Places {
+    let status = match area.height {
+        0..=5 => 1.min(area.height),
+        6..=15 => 2,
+        16..=23 => 3,
+        _ => 2 + choice.outcome.max(1),
+    };
+    let footer = u16::from(area.height > 6);
+    let message = match area.height {
+        0..=2 => 0,
+        3..=11 => 1,
+        _ => choice.message.max(1),
+    };
+    let rows = [
+        status,
+        area.height - status - footer - message,
+        message,
+        footer,
+    ]
+    .map(Constraint::Length);
+    let [status, body, message, footer] = Layout::vertical(rows).areas(area);
+    let panes = match () {
+        _ if choice.zoomed => vec![(choice.focus, body)],
+        _ if area.width >= 160 && body.height >= 40 => large(body, choice),
+        _ if area.width >= 110 && body.height >= 30 => medium(body, choice),
+        _ => small(body, choice),
+    };
+    let paged = panes.len() < Pane::ALL.len() && !choice.zoomed;
+    Places {
+        status,
+        panes,
+        message,
+        footer,
+        paged,
+    }
+}
+
+/// Rows for the table: as many as it has nodes, but no more than given.
+fn table(choice: &Choice, most: u16) -> u16 {
+    (choice.slaves.min(usize::from(u16::MAX - TABLE_FRAME)) as u16)
+        .max(1)
+        .saturating_add(TABLE_FRAME)
+        .min(most)
+}
+
+fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    if body.height < DECISION + TABLE_FRAME + 1 || body.width < 40 {
+        return vec![(choice.focus, body)];
+    }
+    let rows = [table(choice, body.height - DECISION), 0];
+    let [upper, lower] =
+        Layout::vertical([Constraint::Length(rows[0]), Constraint::Min(rows[1])]).areas(body);
+    vec![(Pane::Nodes, upper), (choice.page, lower)]
+}
+
+fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    let most = body.height - TALL_DECISION - 7;
+    let rows = [Constraint::Length(table(choice, most)), Constraint::Min(0)];
+    let [upper, lower] = Layout::vertical(rows).areas(body);
+    let columns = [
+        Constraint::Length((body.width / 2).clamp(66, 76)),
+        Constraint::Min(0),
+    ];
+    let [left, right] = Layout::horizontal(columns).areas(lower);
+    let rows = [Constraint::Length(TALL_DECISION), Constraint::Min(0)];
+    let [decision, residual] = Layout::vertical(rows).areas(left);
+    vec![
+        (Pane::Nodes, upper),
+        (Pane::Decision, decision),
+        (Pane::Residual, residual),
+        (Pane::Shape, right),
+    ]
+}
+
+fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    let columns = [
+        Constraint::Length((body.width * 11 / 20).clamp(104, 130)),
+        Constraint::Min(0),
+    ];
+    let [left, right] = Layout::horizontal(columns).areas(body);
+    let most = left.height - TALL_DECISION - 10;
+    let rows = [
+        Constraint::Length(table(choice, most)),
+        Constraint::Length(TALL_DECISION),
+        Constraint::Min(0),
+    ];
+    let [nodes, decision, residual] = Layout::vertical(rows).areas(left);
+    vec![
+        (Pane::Nodes, nodes),
+        (Pane::Decision, decision),
+        (Pane::Residual, residual),
+        (Pane::Shape, right),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(width: u16, height: u16, slaves: usize) -> Places {
+        let choice = Choice {
+            focus: Pane::Nodes,
+            page: Pane::Decision,
+            zoomed: false,
+            slaves,
+            outcome: 1,
+            message: 1,
+        };
+        places(Rect::new(0, 0, width, height), &choice)
+    }
+
+    #[test]
+    fn medium_and_large_screens_show_all_panes() {
+        for (width, height) in [(120, 40), (200, 60), (110, 36), (160, 46)] {
+            for slaves in [0, 1, 9, 1000] {
+                let places = at(width, height, slaves);
+                assert_eq!(places.panes.len(), 4);
+                assert!(!places.paged);
+                assert!(
+                    places
+                        .panes
+                        .iter()
+                        .all(|(_, area)| area.height >= 4 && area.width >= 40)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_small_screen_has_the_table_and_a_page() {
+        let places = at(80, 24, 500);
+        assert_eq!(
+            places.panes.iter().map(|p| p.0).collect::<Vec<_>>(),
+            [Pane::Nodes, Pane::Decision]
+        );
+        assert_eq!(places.panes[1].1.height, DECISION);
+        assert!(places.paged);
+    }
+
+    #[test]
+    fn nothing_overlaps_and_nothing_leaves_the_screen() {
+        for (width, height) in [(1, 1), (3, 2), (40, 10), (80, 24), (120, 40), (250, 80)] {
+            let places = at(width, height, 7);
+            let whole = Rect::new(0, 0, width, height);
+            let mut areas: Vec<Rect> = places.panes.iter().map(|p| p.1).collect();
+            areas.extend([places.status, places.message, places.footer]);
+            for (index, area) in areas.iter().enumerate() {
+                assert_eq!(whole.intersection(*area).area(), area.area());
+                assert!(
+                    areas[..index]
+                        .iter()
+                        .all(|other| !other.intersects(*area) || area.area() == 0)
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! The event loop, and what it loops over: an app, a session, and commands that wait for the solver.
+
+use crate::debug::command::{Command, Unit};
+use crate::debug::report;
+use crate::debug::session::{Reply, Session};
+use crate::scene::{Scene, builtin};
+use crate::tui::app::{App, Effect, Offer};
+use crate::tui::draw;
+use crate::tui::keys;
+use crate::tui::terminal::{self, Signals, Terminal};
+use crate::tui::theme::Theme;
+use crate::tui::view::View;
+use crossterm::event::{self, Event, KeyEvent};
+use std::collections::VecDeque;
+use std::io::{self, IsTerminal};
+use std::time::Duration;
+
+/// Why the debugger could not start, or had to end.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Standard input or output is not a terminal.
+    #[error("the debugger needs a terminal; `stickslip run SCENE` solves without one")]
+    NoTerminal,
+    /// The scene could not be loaded.
+    #[error("{0}")]
+    Scene(String),
+    /// The terminal failed.
+    #[error("terminal: {0}")]
+    Terminal(#[from] io::Error),
+}
+
+/// Runs the debugger on a scene (a file or a built-in one), with settings of the scene overridden; without a scene it
+/// offers the built-in ones. A signal that ends the process ends it here, with the terminal restored.
+///
+/// # Errors
+/// If there is no terminal, the scene cannot be loaded, or the terminal fails.
+pub fn run(scene: Option<String>, overrides: &[(String, String)]) -> Result<(), Error> {
+    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
+        return Err(Error::NoTerminal);
+    }
+    let session = scene
+        .map(|scene| load(&scene, overrides))
+        .transpose()
+        .map_err(Error::Scene)?;
+    let mut debugger = Debugger::new(Theme::from_environment(), offers(), session);
+    let signals = Signals::listen()?;
+    let mut terminal = Terminal::enter()?;
+    let ended = events(&mut debugger, &mut terminal, &signals);
+    drop(terminal);
+    if let Some(signal) = signals.end() {
+        terminal::obey(signal)?;
+    }
+    ended.map_err(Error::from)
+}
+
+/// The screen after some keys, as plain text: the program's own picture of itself. Keys are named as in the table and
+/// parted by blanks; the solver is waited for after each.
+///
+/// # Errors
+/// If the scene cannot be loaded.
+pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
+    let session = load(scene, &[]).map_err(Error::Scene)?;
+    let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
+    debugger.type_keys(keys);
+    Ok(debugger.text(width, height))
+}
+
+/// How long to wait for a key: while the solver is at work the screen follows it.
+const IDLE: Duration = Duration::from_millis(100);
+const BUSY: Duration = Duration::from_millis(40);
+/// How long a step may take for the next key to wait for it, so that quick steps neither flicker nor pile up.
+const QUICK: Duration = Duration::from_millis(30);
+
+fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
+    let mut changed = true;
+    while signals.end().is_none() {
+        changed |= debugger.advance();
+        if std::mem::take(&mut changed) {
+            terminal.draw(&debugger.app, debugger.view().as_ref())?;
+        }
+        let wait = if debugger.is_busy() { BUSY } else { IDLE };
+        let mut ready = event::poll(wait)?;
+        while ready {
+            changed = true;
+            match debugger.event(&event::read()?) {
+                None => {}
+                Some(Outside::Quit) => return Ok(()),
+                Some(Outside::Suspend) => suspend(terminal, signals)?,
+                Some(Outside::Redraw) => terminal.forget()?,
+            }
+            debugger.breathe();
+            ready = event::poll(Duration::ZERO)?;
+        }
+        if signals.stop() {
+            suspend(terminal, signals)?;
+            changed = true;
+        }
+        if signals.resumed() {
+            terminal.retake()?;
+            changed = true;
+        }
+    }
+    Ok(())
+}
+
+fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
+    terminal.suspend()?;
+    signals.resumed();
+    Ok(())
+}
+
+/// Loads a scene.
+fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, String> {
+    let scene = Scene::open(scene, overrides).map_err(|error| error.to_string())?;
+    Ok(Session::new(scene))
+}
+
+/// The built-in scenes.
+pub fn offers() -> Vec<Offer> {
+    let offer = |scene: &builtin::Builtin| Offer {
+        name: scene.name.into(),
+        title: scene.title(),
+    };
+    builtin::list().iter().map(offer).collect()
+}
+
+/// What only the event loop can do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outside {
+    Quit,
+    Suspend,
+    Redraw,
+}
+
+/// The debugger without its terminal: keys in, screens out.
+pub struct Debugger {
+    pub app: App,
+    pub session: Option<Session>,
+    /// Commands given while the solver was at work on an earlier one.
+    queue: VecDeque<Command>,
+    /// Whether the solver is at work on a run that may never end: nothing queues behind such a run.
+    endless: bool,
+    /// Frames of the session when the screen was last drawn.
+    frames: usize,
+}
+
+/// Most commands that wait; more come only from a key that is held down.
+const WAITING: usize = 16;
+
+impl Debugger {
+    /// A debugger on a session, or one that offers scenes.
+    pub fn new(theme: Theme, offers: Vec<Offer>, session: Option<Session>) -> Self {
+        let mut app = App::new(theme, offers);
+        match session {
+            Some(_) => app.say("s is one minor iteration; ? lists the keys"),
+            None => app.choose(),
+        }
+        Debugger {
+            app,
+            session,
+            queue: VecDeque::new(),
+            endless: false,
+            frames: 0,
+        }
+    }
+
+    /// What the panes show.
+    pub fn view(&self) -> Option<View<'_>> {
+        self.session.as_ref().map(View::of)
+    }
+
+    /// Whether the solver is at work.
+    pub fn is_busy(&self) -> bool {
+        self.session.as_ref().is_some_and(Session::is_running)
+    }
+
+    /// Takes in what came from the terminal.
+    pub fn event(&mut self, event: &Event) -> Option<Outside> {
+        match event {
+            Event::Key(key) => self.key(key),
+            Event::Paste(text) => {
+                self.app.paste(text);
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// Takes in a key.
+    pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
+        let view = self.session.as_ref().map(View::of);
+        match self.app.key(key, view.as_ref())? {
+            Effect::Quit => return Some(Outside::Quit),
+            Effect::Suspend => return Some(Outside::Suspend),
+            Effect::Redraw => return Some(Outside::Redraw),
+            Effect::Submit(command) => self.submit(command),
+            Effect::Interrupt => self.interrupt(),
+            Effect::Open(scene) => self.open(&scene),
+        }
+        None
+    }
+
+    /// Types keys by their names, parted by blanks, and waits for the solver after each. For tests and pictures.
+    pub fn type_keys(&mut self, names: &str) {
+        for key in names.split_whitespace().filter_map(keys::press) {
+            self.key(&key);
+            self.settle();
+        }
+    }
+
+    /// Types a text, letter by letter.
+    pub fn type_text(&mut self, text: &str) {
+        for letter in text.chars() {
+            if let Some(key) = keys::press(&letter.to_string()) {
+                self.key(&key);
+            }
+        }
+    }
+
+    /// Waits until the solver has nothing left to do.
+    pub fn settle(&mut self) {
+        while self.is_busy() || !self.queue.is_empty() {
+            if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
+                self.tell(reply);
+            }
+            self.advance();
+        }
+    }
+
+    /// The screen as plain text.
+    pub fn text(&self, width: u16, height: u16) -> String {
+        draw::text(&self.app, self.view().as_ref(), width, height)
+    }
+
+    fn submit(&mut self, command: Command) {
+        if !self.is_busy() {
+            self.start(command);
+        } else if self.endless || self.queue.len() >= WAITING {
+            self.app.complain("the solver is at work; Ctrl-C stops it");
+        } else {
+            self.queue.push_back(command);
+        }
+    }
+
+    fn start(&mut self, command: Command) {
+        let Some(session) = &mut self.session else {
+            return;
+        };
+        self.endless = matches!(
+            command,
+            Command::Forward {
+                unit: Unit::Run,
+                ..
+            }
+        );
+        match session.submit(command) {
+            Ok(reply) => self.tell(reply),
+            Err(message) => {
+                self.queue.clear();
+                self.app.complain(message);
+            }
+        }
+    }
+
+    /// Says what a command led to, unless the status at the top says the same.
+    fn tell(&mut self, Reply(text): Reply) {
+        let known = self.session.as_ref().and_then(|session| {
+            match (session.is_running(), &session.frame().event) {
+                (true, _) => Some(text.clone()),
+                (false, Some(event)) => Some(report::outcome(session.model(), event)),
+                (false, None) => None,
+            }
+        });
+        self.app.say(if known.is_some_and(|known| known == text) {
+            String::new()
+        } else {
+            text
+        });
+    }
+
+    fn interrupt(&mut self) {
+        self.queue.clear();
+        if let Some(session) = &self.session {
+            session.interrupt();
+            self.app.say("stopping after this minor iteration");
+        }
+    }
+
+    fn open(&mut self, scene: &str) {
+        match load(scene, &[]) {
+            Ok(session) => {
+                self.session = Some(session);
+                self.queue.clear();
+                self.app.opened();
+                self.app.say("s is one minor iteration; ? lists the keys");
+            }
+            Err(message) => self.app.complain(message),
+        }
+    }
+
+    /// Gathers what the solver did and gives it the next command. Returns whether there is something new to draw.
+    pub fn advance(&mut self) -> bool {
+        let Some(session) = &mut self.session else {
+            return false;
+        };
+        let was_busy = session.is_running();
+        let reply = session.poll();
+        let said = reply.is_some();
+        if let Some(reply) = reply {
+            self.tell(reply);
+        }
+        let Some(session) = &self.session else {
+            return said;
+        };
+        let (frames, busy) = (session.frames().len(), session.is_running());
+        let grown = frames != std::mem::replace(&mut self.frames, frames);
+        if busy && grown {
+            self.app.tick += 1;
+        }
+        let panicked = terminal::panic_elsewhere();
+        let failed = panicked.is_some();
+        if let Some(message) = panicked {
+            self.app.complain(format!(
+                "the solver broke down, please report this: {message}"
+            ));
+        }
+        if !busy && let Some(command) = self.queue.pop_front() {
+            self.start(command);
+            return true;
+        }
+        said || grown || failed || was_busy != busy
+    }
+
+    /// Waits a moment for a quick step, so that keys typed fast are not told to wait.
+    fn breathe(&mut self) {
+        let begin = std::time::Instant::now();
+        while self.is_busy() && begin.elapsed() < QUICK {
+            std::thread::sleep(Duration::from_micros(500));
+            self.advance();
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! The real terminal: taken over, and given back whatever happens.
+//!
+//! It is given back when [`Terminal`] is dropped (the end, or an error on its way up), by the panic hook (before the
+//! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP give it back, stop the process as the shell
+//! expects, and take it again with a full redraw when the process goes on.
+
+use crate::tui::app::App;
+use crate::tui::draw;
+use crate::tui::view::View;
+use crossterm::cursor::{Hide, Show};
+use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
+use crossterm::terminal::{
+    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
+    disable_raw_mode, enable_raw_mode,
+};
+use crossterm::{execute, queue};
+use ratatui::backend::CrosstermBackend;
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
+use signal_hook::iterator::Handle;
+use signal_hook::{SigId, flag, low_level};
+use std::io::{self, Stdout, Write, stdout};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, Once, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// Whether the terminal is ours at this moment.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+/// What a panic on another thread had to say; the screen is not its to write on.
+static PANIC: Mutex<Option<String>> = Mutex::new(None);
+
+/// The terminal, taken over for as long as this lives.
+#[derive(Debug)]
+pub struct Terminal {
+    screen: ratatui::Terminal<CrosstermBackend<Stdout>>,
+}
+
+impl Terminal {
+    /// Takes the terminal over.
+    pub fn enter() -> io::Result<Self> {
+        hook_panics();
+        take()?;
+        match ratatui::Terminal::new(CrosstermBackend::new(stdout())) {
+            Ok(screen) => Ok(Terminal { screen }),
+            Err(error) => {
+                give_back();
+                Err(error)
+            }
+        }
+    }
+
+    /// Draws what changed, in one go where the terminal can do that.
+    pub fn draw(&mut self, app: &App, view: Option<&View>) -> io::Result<()> {
+        queue!(stdout(), BeginSynchronizedUpdate)?;
+        let drawn = self.screen.draw(|frame| {
+            let area = frame.area();
+            draw::draw(frame.buffer_mut(), area, app, view);
+        });
+        let drawn = drawn.map(drop);
+        execute!(stdout(), EndSynchronizedUpdate)?;
+        drawn
+    }
+
+    /// Forgets what is on the screen, so that the next draw is a full one.
+    pub fn forget(&mut self) -> io::Result<()> {
+        self.screen.clear()
+    }
+
+    /// Gives the terminal back, stops the process until it is continued, and takes the terminal again.
+    pub fn suspend(&mut self) -> io::Result<()> {
+        give_back();
+        low_level::emulate_default_handler(SIGTSTP)?;
+        take()?;
+        self.forget()
+    }
+
+    /// Takes the terminal again after somebody else may have changed its settings.
+    pub fn retake(&mut self) -> io::Result<()> {
+        give_back();
+        take()?;
+        self.forget()
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        give_back();
+    }
+}
+
+fn take() -> io::Result<()> {
+    enable_raw_mode()?;
+    TAKEN.store(true, Ordering::SeqCst);
+    let entered = execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide);
+    if entered.is_err() {
+        give_back();
+    }
+    entered
+}
+
+/// Gives the terminal back, if it is ours. Errors are of no use here: there may be no terminal any more.
+fn give_back() {
+    if TAKEN.swap(false, Ordering::SeqCst) {
+        let _ = execute!(
+            stdout(),
+            EndSynchronizedUpdate,
+            DisableBracketedPaste,
+            LeaveAlternateScreen,
+            Show
+        );
+        let _ = stdout().flush();
+        let _ = disable_raw_mode();
+    }
+}
+
+/// Makes a panic readable: on this thread the terminal is given back first; on another one (the solver's) the
+/// message is kept for [`panic_elsewhere`], since this thread goes on drawing.
+fn hook_panics() {
+    static ONCE: Once = Once::new();
+    let ours = thread::current().id();
+    ONCE.call_once(|| {
+        let before = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            if thread::current().id() == ours || !TAKEN.load(Ordering::SeqCst) {
+                give_back();
+                before(info);
+            } else {
+                *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some(info.to_string());
+            }
+        }));
+    });
+}
+
+/// What a panic on another thread said, once.
+pub fn panic_elsewhere() -> Option<String> {
+    PANIC.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// Signals, as flags for the event loop.
+#[derive(Debug)]
+pub struct Signals {
+    /// Number of the signal that asks for the end, or 0.
+    end: Arc<AtomicUsize>,
+    watch: Handle,
+    stop: Arc<AtomicBool>,
+    resumed: Arc<AtomicBool>,
+    registered: [SigId; 2],
+}
+
+/// How long the event loop has to end by itself once a signal asks for it.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+impl Signals {
+    /// Listens from now on.
+    pub fn listen() -> io::Result<Self> {
+        let (end, stop, resumed) = (Arc::default(), Arc::default(), Arc::default());
+        let watch = watch(&end)?;
+        let registered = [
+            flag::register(SIGTSTP, Arc::clone(&stop))?,
+            flag::register(SIGCONT, Arc::clone(&resumed))?,
+        ];
+        Ok(Signals {
+            end,
+            watch,
+            stop,
+            resumed,
+            registered,
+        })
+    }
+
+    /// The signal that asks for the end, if one came.
+    pub fn end(&self) -> Option<i32> {
+        match self.end.load(Ordering::SeqCst) {
+            0 => None,
+            signal => Some(signal as i32),
+        }
+    }
+
+    /// Whether somebody asked the process to stop, once.
+    pub fn stop(&self) -> bool {
+        self.stop.swap(false, Ordering::SeqCst)
+    }
+
+    /// Whether the process was stopped and goes on, once.
+    pub fn resumed(&self) -> bool {
+        self.resumed.swap(false, Ordering::SeqCst)
+    }
+}
+
+impl Drop for Signals {
+    fn drop(&mut self) {
+        self.watch.close();
+        for id in self.registered {
+            low_level::unregister(id);
+        }
+    }
+}
+
+/// Waits on a thread of its own for the signals that end the process. The event loop is told and given a moment;
+/// it may be stuck, since the terminal library reads for ever from a terminal that is gone.
+fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
+    let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
+    let handle = signals.handle();
+    let end = Arc::clone(end);
+    thread::spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            end.store(signal as usize, Ordering::SeqCst);
+            thread::sleep(PATIENCE);
+            give_back();
+            let _ = obey(signal);
+        }
+    });
+    Ok(handle)
+}
+
+/// Ends the process as the signal would have without us, so that whoever sent it sees that.
+pub fn obey(signal: i32) -> io::Result<()> {
+    low_level::emulate_default_handler(signal)
+}

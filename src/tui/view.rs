@@ -1,0 +1,128 @@
+//! What the panes show: a borrowed, read-only look at a session.
+
+use crate::debug::session::{Frame, Session};
+use crate::scene::{Mode, Model, Scene};
+use crate::solve::{Event, Forced, Intervention, NodeRecord, Norms, Outcome, Position};
+
+/// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
+#[derive(Debug, Clone)]
+pub struct View<'a> {
+    /// File or built-in name of the scene.
+    pub name: &'a str,
+    /// The scene as read, for the names that it gives its nodes; tests by hand have none.
+    pub scene: Option<&'a Scene>,
+    pub model: &'a Model,
+    /// The history, oldest first; never empty.
+    pub frames: &'a [Frame],
+    /// Which of them is shown.
+    pub cursor: usize,
+    /// Whether the solver is at work.
+    pub running: bool,
+    /// Norms by major iteration of the shown increment attempt.
+    pub residuals: Vec<(u32, Norms)>,
+}
+
+impl<'a> View<'a> {
+    /// The look of a session now.
+    pub fn of(session: &'a Session) -> Self {
+        let mut view = View {
+            name: session.scene_name(),
+            scene: Some(session.scene()),
+            model: session.model(),
+            frames: session.frames(),
+            cursor: session.cursor(),
+            running: session.is_running(),
+            residuals: session.residual_history(),
+        };
+        if view.event().is_none() {
+            view.residuals.clear();
+        }
+        view
+    }
+
+    /// The frame that is shown.
+    pub fn frame(&self) -> &'a Frame {
+        &self.frames[self.cursor]
+    }
+
+    /// The minor iteration that led to the shown frame; none at the start, and none where the increment starts again,
+    /// since what was found before that is not about this state.
+    pub fn event(&self) -> Option<&'a Event> {
+        let (event, next) = (self.frame().event.as_deref()?, self.frame().state.next);
+        let again =
+            event.position.increment == next.increment && event.position.attempt != next.attempt;
+        (!again).then_some(event)
+    }
+
+    /// What the user changed in the shown frame, if it is due to that.
+    pub fn intervention(&self) -> Option<&'a Intervention> {
+        self.frame().intervention.as_ref()
+    }
+
+    /// Where the solver is: the minor iteration that is shown, or else the one to come.
+    pub fn position(&self) -> Position {
+        self.event()
+            .map_or(self.frame().state.next, |event| event.position)
+    }
+
+    /// What that minor iteration found at a slave node.
+    pub fn record(&self, slave: usize) -> Option<&'a NodeRecord> {
+        self.event()?.nodes.get(slave)
+    }
+
+    /// Name of a slave node.
+    pub fn slave(&self, slave: usize) -> &'a str {
+        match self.model.slaves.get(slave) {
+            Some(slave) => &self.model.nodes[slave.node].name,
+            None => "",
+        }
+    }
+
+    /// The mode that a slave node takes next: Table 2's, or the user's.
+    pub fn mode(&self, slave: usize) -> Mode {
+        self.frame().state.nodes[slave].mode
+    }
+
+    /// The mode that it had in the shown minor iteration; at the start the one that it starts with.
+    pub fn mode_before(&self, slave: usize) -> Mode {
+        self.record(slave)
+            .map_or(self.mode(slave), |record| record.decision.before)
+    }
+
+    /// How the user stands behind its next mode, or else behind the one that it had in the shown minor iteration.
+    pub fn forced(&self, slave: usize) -> Forced {
+        match (self.frame().state.nodes[slave].forced, self.record(slave)) {
+            (Forced::No, Some(record)) if self.intervention().is_none() => record.forced,
+            (forced, _) => forced,
+        }
+    }
+
+    /// Whether a sliding node's T_max still moves by more than the tolerance, so that it is solved for again.
+    pub fn t_max_moves(&self, slave: usize) -> bool {
+        let (Some(event), Some(record)) = (self.event(), self.record(slave)) else {
+            return false;
+        };
+        let settled = matches!(
+            event.outcome,
+            Outcome::Major { settled: true, .. } | Outcome::Increment { .. }
+        );
+        let slides =
+            record.decision.before == Mode::Sliding && record.decision.next == Mode::Sliding;
+        let least = self.frame().state.controls.settings.tolerance * event.before.scale;
+        slides && !settled && (record.t_max - record.t_max_used).abs() > least
+    }
+
+    /// Where a node is: its place in the reference shape, displaced.
+    pub fn place(&self, node: usize) -> [f64; 2] {
+        let at = self.model.nodes[node].at;
+        let u = &self.frame().state.u;
+        let Some(&first) = self.model.dofs.first.get(node) else {
+            return at;
+        };
+        let moved = |axis: usize| u.get(first + axis).copied().unwrap_or(0.0);
+        match self.model.dofs.count.get(node) {
+            Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
+            _ => at,
+        }
+    }
+}

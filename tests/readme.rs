@@ -1,0 +1,75 @@
+//! The README shows what the program shows: its screens and key list are generated, its scene is sound.
+//!
+//! `README=write cargo test --test readme` renews them.
+
+use std::fs;
+use stickslip::scene::Scene;
+
+const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
+
+/// The README with the part between each marker and its end made anew.
+fn renewed(readme: &str) -> String {
+    let mut text = String::new();
+    let mut skipping = false;
+    for line in readme.lines() {
+        if line == "<!-- end -->" {
+            skipping = false;
+        }
+        if !skipping {
+            text += line;
+            text.push('\n');
+        }
+        if let Some(what) = line.strip_prefix("<!-- screen ") {
+            text += &screen(what.trim_end_matches(" -->"));
+            skipping = true;
+        } else if line == "<!-- keys -->" {
+            text += &format!("\n{}\n", stickslip::debug::command::markdown().trim_end());
+            skipping = true;
+        }
+    }
+    text
+}
+
+/// `WIDTHxHEIGHT SCENE: KEYS` as a fenced picture of the program's own buffer.
+fn screen(what: &str) -> String {
+    let (size, rest) = what.split_once(' ').unwrap();
+    let (scene, keys) = rest.split_once(": ").unwrap();
+    let (width, height) = size.split_once('x').unwrap();
+    let picture =
+        stickslip::tui::screen(scene, keys, width.parse().unwrap(), height.parse().unwrap())
+            .unwrap();
+    let lines: Vec<&str> = picture.lines().map(str::trim_end).collect();
+    format!("```text\n{}\n```\n", lines.join("\n").trim_end())
+}
+
+#[test]
+fn screens_and_keys_in_the_readme_are_those_of_the_program() {
+    let readme = fs::read_to_string(README).unwrap();
+    let expected = renewed(&readme);
+    if std::env::var("README").as_deref() == Ok("write") {
+        fs::write(README, &expected).unwrap();
+    }
+    assert!(
+        readme == expected,
+        "renew it: README=write cargo test --test readme"
+    );
+}
+
+#[test]
+fn the_scene_in_the_readme_is_sound_and_converges() {
+    let readme = fs::read_to_string(README).unwrap();
+    let text = readme
+        .split("```ron\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let scene = Scene::from_text("README.md", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut stepper = stickslip::solve::Stepper::new(std::sync::Arc::new(scene.model));
+    while let Some(event) = stepper.step() {
+        if let stickslip::solve::Outcome::Failed(failure) = &event.outcome {
+            panic!("{failure:?}");
+        }
+    }
+}

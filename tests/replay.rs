@@ -1,0 +1,189 @@
+//! Every file in `snapshots/` leads to the state that it holds, and snapshots survive whatever files go through.
+//!
+//! Where a change of the method is meant to change them, they are recorded again:
+//! ```text
+//! stickslip record 01-pinned-beam-rough-floor --at 26.1.1 -o snapshots/01-sticks-when-the-load-falls.ron
+//! stickslip record 01-pinned-beam-rough-floor --at 44.1.1 -o snapshots/01-lets-go-and-slides-back.ron
+//! stickslip record 02-two-cantilevers-rough --at 50 -o snapshots/02-rough-at-the-end.ron
+//! stickslip record 02-two-cantilevers-smooth --at 10 -o snapshots/02-smooth-slid-down.ron
+//! stickslip record osc-inclined-cantilever --at 1.1.2 -o snapshots/osc-free-and-fixed-take-turns.ron
+//! stickslip osc-inclined-cantilever  (s s, force the tip to sliding, f, w): snapshots/osc-tip-forced-to-sliding.ron
+//! ```
+
+mod common;
+
+use common::scene;
+use proptest::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+use stickslip::debug::snapshot::{Applied, Snapshot, SnapshotError, compare};
+use stickslip::scene::Mode;
+use stickslip::solve::{Intervention, Outcome, Stepper};
+
+fn recorded() -> Vec<PathBuf> {
+    let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots");
+    let entries = std::fs::read_dir(directory).unwrap();
+    let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "ron"));
+    files.sort();
+    files
+}
+
+#[test]
+fn every_recorded_state_is_reached_again() {
+    let files = recorded();
+    assert!(!files.is_empty());
+    for file in files {
+        let snapshot = Snapshot::read(&file).unwrap_or_else(|e| panic!("{e}"));
+        let again = snapshot.replay().unwrap_or_else(|e| panic!("{e}"));
+        let differences = compare(&snapshot, &again);
+        assert!(differences.is_empty(), "{}\n{differences}", file.display());
+    }
+}
+
+#[test]
+fn a_snapshot_reads_back_to_the_same_bits() {
+    for file in recorded() {
+        let snapshot = Snapshot::read(&file).unwrap();
+        let text = snapshot.to_text().unwrap();
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), text);
+        assert_eq!(Snapshot::from_text("again", &text).unwrap(), snapshot);
+    }
+}
+
+#[test]
+fn numbers_that_are_none_and_extreme_ones_survive() {
+    let mut snapshot = Snapshot::read(&recorded()[0]).unwrap();
+    let extremes = [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        -0.0,
+        5e-324,
+        f64::MAX,
+        f64::MIN_POSITIVE,
+        0.1 + 0.2,
+        1e300,
+        3.0,
+    ];
+    for value in extremes {
+        let slave = &mut snapshot.state.slaves[0];
+        (slave.gap, slave.f_n, slave.slip) = (Some(value), value, value);
+        snapshot.state.shear = vec![value; 2];
+        let read = Snapshot::from_text("a", &snapshot.to_text().unwrap()).unwrap();
+        let bits = |s: &Snapshot| {
+            let slave = &s.state.slaves[0];
+            [slave.gap.unwrap(), slave.f_n, s.state.shear[1]].map(f64::to_bits)
+        };
+        assert_eq!(bits(&read), bits(&snapshot), "{value:?}");
+        assert!(compare(&read, &snapshot).is_empty(), "{value:?}");
+    }
+}
+
+/// The tip forced to sliding once, then the increment halved: what the debugger's user does on this scene.
+fn with_interventions() -> Snapshot {
+    let scene = scene("osc-inclined-cantilever", &[]);
+    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    let force = Intervention::Force {
+        slave: 0,
+        mode: Mode::Sliding,
+        hold: false,
+    };
+    let mut applied = Vec::new();
+    let mut steps = 0;
+    let mut act = |stepper: &mut Stepper, steps: u64, intervention: Intervention| {
+        stepper.intervene(&intervention).unwrap();
+        applied.push(Applied {
+            step: steps,
+            intervention,
+        });
+    };
+    for _ in 0..2 {
+        stepper.step().unwrap();
+        steps += 1;
+    }
+    act(&mut stepper, steps, Intervention::Increment(0.025));
+    while let Some(event) = stepper.step() {
+        steps += 1;
+        match event.outcome {
+            Outcome::Failed(_) => act(&mut stepper, steps, force.clone()),
+            Outcome::Increment { .. } if event.load_factor > 0.045 => break,
+            _ => assert!(steps < 1000),
+        }
+    }
+    Snapshot::take(
+        &scene,
+        &applied,
+        steps,
+        stepper.state(),
+        Some(stepper.event()),
+    )
+}
+
+#[test]
+fn interventions_are_replayed() {
+    let snapshot = with_interventions();
+    assert!(snapshot.interventions.len() > 1);
+    let text = snapshot.to_text().unwrap();
+    let read = Snapshot::from_text("a", &text).unwrap();
+    assert_eq!(read, snapshot);
+    assert_eq!(read.replay().unwrap(), snapshot, "to the last bit");
+    let mut without = read.clone();
+    without.interventions.pop();
+    let differences = compare(&snapshot, &without.replay().unwrap());
+    assert!(!differences.is_empty());
+}
+
+#[test]
+fn steps_beyond_the_end_and_interventions_out_of_order_are_told() {
+    let mut snapshot = Snapshot::read(&recorded()[0]).unwrap();
+    snapshot.steps = u64::MAX;
+    let error = snapshot.replay().unwrap_err();
+    assert!(matches!(error, SnapshotError::Replay(_)), "{error}");
+    snapshot.steps = 2;
+    snapshot.interventions = vec![Applied {
+        step: 3,
+        intervention: Intervention::Increment(0.1),
+    }];
+    let error = snapshot.replay().unwrap_err();
+    assert!(matches!(error, SnapshotError::Replay(_)), "{error}");
+}
+
+#[test]
+fn only_the_known_format_is_read_whatever_else_is_in_the_file() {
+    for text in [
+        "(format: 2)",
+        "(format: 9, whatever: [(1, 2)], steps: \"x\")",
+    ] {
+        let error = Snapshot::from_text("a.ron", text).unwrap_err();
+        assert!(matches!(error, SnapshotError::Format { .. }), "{error}");
+    }
+    let error = Snapshot::from_text("a.ron", "(\n  format: 1,\n  steps: -1,\n)").unwrap_err();
+    assert!(error.to_string().starts_with("a.ron:"), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    /// Neither reading a damaged file nor computing what can still be read panics.
+    #[test]
+    fn damaged_snapshots_do_not_panic(at in 0.0..1.0_f64, length in 0usize..40, junk in "[ -~]{0,8}") {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots/osc-free-and-fixed-take-turns.ron");
+        let text = std::fs::read_to_string(file).unwrap();
+        let start = (at * text.len() as f64) as usize;
+        let end = (start + length).min(text.len());
+        let damaged = format!("{}{junk}{}", &text[..start], &text[end..]);
+        match Snapshot::from_text("damaged.ron", &damaged) {
+            Err(error) => {
+                let message = error.to_string();
+                prop_assert!(message.starts_with("damaged.ron"), "{}", message);
+            }
+            Ok(snapshot) if snapshot.steps < 1000 => {
+                if let Ok(again) = snapshot.replay() {
+                    let _ = compare(&snapshot, &again).to_string();
+                }
+            }
+            Ok(_) => {}
+        }
+    }
+}
