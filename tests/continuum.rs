@@ -62,34 +62,29 @@ fn a_slender_cantilever_bends_as_a_timoshenko_beam() {
 
 #[test]
 fn a_slender_block_turns_as_far_as_the_beam_of_its_section() {
-    // A load that brings the end two thirds of the length up. The block is no beam where its surface strains by
-    // half of depth times curvature, which is why the difference must fall with the square of the depth.
-    let mut errors = Vec::new();
-    for depth in [0.2_f64, 0.1] {
-        let e = 1.2e5 / depth.powi(3);
-        let p = 400.0;
-        let text = format!(
-            "(title: \"t\", nodes: [Line(id: \"b\", from: (0, 0), to: (10, 0), elements: 10, per_element: 5)],
-              materials: [Section(id: \"m\", EA: {}, EI: 1e4, GA: {})],
-              bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")],
-              supports: [(node: \"b.start\", fix: [x, y, rotation])], loads: [Force(node: \"b.end\", y: {p})],
-              history: (path: [0, 1], increment: 0.1),
-              monitors: [(name: \"x\", of: Displacement(node: \"b.end\", component: x)),
-                         (name: \"y\", of: Displacement(node: \"b.end\", component: y))])",
-            e * depth,
-            e * depth / 2.0 * 5.0 / 6.0
-        );
-        let beam = finished(&Scene::from_text("beam", &text, &[]).unwrap());
-        let material = format!("E: {e}, nu: 0, plane: stress");
-        let solid = cantilever(depth, &material, "(40, 1)", p / depth, 0.1);
-        assert!(last(&beam, "y") > 6.5);
-        let error = |axis| (last(&solid, axis) - last(&beam, axis)) / last(&beam, "y");
-        errors.push(error("x").abs().max(error("y").abs()));
-    }
-    assert!(
-        errors[0] < 1e-3 && errors[1] < 0.5 * errors[0],
-        "{errors:?}"
+    // The load brings the end two thirds of the length up. The surface strains by half of depth times curvature, 2 %,
+    // which is what the two bodies may differ by in their stiffness.
+    let (depth, p) = (0.1_f64, 400.0);
+    let e = 1.2e5 / depth.powi(3);
+    let text = format!(
+        "(title: \"t\", nodes: [Line(id: \"b\", from: (0, 0), to: (10, 0), elements: 10, per_element: 5)],
+          materials: [Section(id: \"m\", EA: {}, EI: 1e4, GA: {})],
+          bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")],
+          supports: [(node: \"b.start\", fix: [x, y, rotation])], loads: [Force(node: \"b.end\", y: {p})],
+          history: (path: [0, 1], increment: 0.1),
+          monitors: [(name: \"x\", of: Displacement(node: \"b.end\", component: x)),
+                     (name: \"y\", of: Displacement(node: \"b.end\", component: y))])",
+        e * depth,
+        e * depth / 2.0 * 5.0 / 6.0
     );
+    let beam = finished(&Scene::from_text("beam", &text, &[]).unwrap());
+    let material = format!("E: {e}, nu: 0, plane: stress");
+    let solid = cantilever(depth, &material, "(40, 1)", p / depth, 0.1);
+    assert!(last(&beam, "y") > 6.5);
+    for axis in ["x", "y"] {
+        let error = (last(&solid, axis) - last(&beam, axis)) / last(&beam, "y");
+        assert!(error.abs() < 4e-4, "{axis}: {error:e}");
+    }
 }
 
 /// A unit square pulled to the stretch 1 + u along x, free to contract along y unless that is held.
@@ -295,8 +290,120 @@ fn two_materials_in_one_block_share_the_load_in_series() {
 
 #[test]
 fn problem_05_runs_to_its_end_and_to_the_tip_displacement_known() {
-    let run = finished(&scene("05-cantilever-elastic-block", &[]));
-    assert_eq!(run.accepted.len(), 22);
+    let tip = |increment: &str, update: &str| {
+        let run = finished(&scene(
+            "05-cantilever-elastic-block",
+            &[
+                ("history.increment", increment),
+                ("materials.lower.update", update),
+                ("materials.upper.update", update),
+            ],
+        ));
+        balanced(&run);
+        last(&run, "u_x")
+    };
+    let total = ["0.15", "0.05", "0.01"].map(|increment| tip(increment, "total"));
+    for tip in total {
+        // The number of an independent program, whose normals at the borders of elements need not be ours.
+        assert!((tip - 1.025653).abs() < 1e-4, "{total:?}");
+        assert!((tip - total[0]).abs() < 1e-9, "{total:?}");
+    }
+    // Fig. 8: the updated update depends on the increments, less and less.
+    let updated =
+        ["0.15", "0.1", "0.05", "0.02", "0.01"].map(|increment| tip(increment, "updated"));
+    println!("total {total:?}\nupdated {updated:?}");
+    let steps: Vec<f64> = updated
+        .windows(2)
+        .map(|pair| (pair[0] - pair[1]).abs())
+        .collect();
+    assert!(steps[0] > 1e-4 && steps[3] < steps[1], "{updated:?}");
+}
+
+/// The column's supports and the block's carry the load together.
+fn balanced(run: &Run) {
+    use stickslip::scene::model::{Monitor, Watched};
+    let mut model = (**run.stepper.model()).clone();
+    let held: Vec<usize> = (0..model.nodes.len())
+        .map(|n| model.dofs.first[n])
+        .filter(|&d| model.dofs.equation[d].is_none())
+        .collect();
+    model.monitors = held
+        .into_iter()
+        .map(|dof| Monitor {
+            name: String::new(),
+            of: Watched::Reaction { dof },
+        })
+        .collect();
+    let mut stepper = stickslip::solve::Stepper::new(std::sync::Arc::new(model));
+    // The end of the history as the start of nothing more: its memory is that of its own displacements.
+    let mut state = run.accepted.last().unwrap().state.clone();
+    state.aim = state.load_factor;
+    stepper.restore(&state);
+    let mut reactions = Vec::new();
+    stepper.monitors(&mut reactions);
+    let sum: f64 = reactions.iter().sum();
+    assert!((sum + state.load_factor).abs() < 1e-7, "{sum}");
+}
+
+#[test]
+fn problem_05_with_its_roles_swapped_runs_to_its_end_too() {
+    let run = finished(&scene("05-cantilever-elastic-block-swapped", &[]));
     let tip = last(&run, "u_x");
-    assert!((tip - 1.0256).abs() < 1e-3, "{tip}");
+    println!("swapped {tip}");
+    assert!((tip - 1.0256).abs() < 0.03, "{tip}");
+}
+
+#[test]
+#[ignore = "a measurement: cargo test --release --test continuum -- --ignored --nocapture"]
+fn time_of_an_assembly_of_50000_unknowns() {
+    use std::time::Instant;
+    use stickslip::fem::assembly::{Assembled, Assembly, Moved};
+    use stickslip::linalg::Pattern;
+    let started = Instant::now();
+    let scene = block(
+        "(0, 0), (1, 1)",
+        "(91, 91)",
+        "E: 100, nu: 0.3, law: neohookean",
+        "supports: [(node: \"k.bottom\", fix: [x, y])], history: (path: [0, 1], increment: 1)",
+    );
+    println!(
+        "scene {:?}, {} equations",
+        started.elapsed(),
+        scene.model.dofs.equations
+    );
+    let dofs = &scene.model.dofs;
+    let started = Instant::now();
+    let mut assembly = Assembly::new(&scene.model);
+    println!("elements {:?}", started.elapsed());
+    let started = Instant::now();
+    let entries = assembly.entries(dofs);
+    println!("entries {:?}", started.elapsed());
+    let started = Instant::now();
+    let pattern = Pattern::new(dofs.equations, entries);
+    println!("pattern {:?}", started.elapsed());
+    let started = Instant::now();
+    assembly.bind(dofs, &pattern);
+    println!("bind {:?}", started.elapsed());
+    let u: Vec<f64> = (0..dofs.len()).map(|d| 1e-5 * (d % 7) as f64).collect();
+    let (mut force, mut size) = (u.clone(), u.clone());
+    let mut values = vec![0.0; pattern.entries()];
+    let mut coupling = vec![0.0; dofs.equations];
+    for _ in 0..5 {
+        let started = Instant::now();
+        let moved = Moved {
+            u: &u,
+            step: &u,
+            before: &u,
+            history: &[],
+        };
+        let out = Assembled {
+            force: &mut force,
+            size: &mut size,
+            values: &mut values,
+            coupling: &mut coupling,
+        };
+        assembly.assemble(dofs, moved, out);
+        println!("assemble {:?}", started.elapsed());
+    }
+    assert!(force.iter().all(|f| f.is_finite()));
 }

@@ -171,6 +171,259 @@ fn nodes_have_the_names_that_the_format_promises() {
 const SLAVE_P: &str =
     "surfaces: [(id: \"s\", along: \"b\")], slaves: [(nodes: [\"p\"], on: [\"s\"])]";
 
+/// A block of two by one elements, made a solid, and what else the scene has.
+fn solid(block: &str, material: &str, body: &str, rest: &str) -> Result<Scene, SceneError> {
+    let text = format!(
+        "(title: \"t\", nodes: [Block(id: \"k\", {block})], materials: [Elastic(id: \"e\", {material}), \
+         Section(id: \"s\", EA: 1, EI: 1)], bodies: [{body}], history: (path: [0, 1], increment: 0.5), {rest})"
+    );
+    Scene::from_text("solid", &text, &[])
+}
+
+const BLOCK: &str = "corners: [(0, 0), (4, 2)], elements: (2, 1)";
+const ELASTIC: &str = "E: 100, nu: 0.3";
+const SOLID: &str = "Solid(id: \"k\", mesh: \"k\", material: \"e\")";
+
+#[test]
+fn a_block_and_its_edges_have_the_names_that_the_format_promises() {
+    let scene = solid(BLOCK, ELASTIC, SOLID, "").unwrap();
+    let node = |name: &str| scene.node(name);
+    let at = |name: &str| scene.model.nodes[scene.node(name).unwrap()].at;
+    assert_eq!(scene.model.nodes.len(), 13);
+    assert_eq!(scene.model.nodes[12].name, "k.13");
+    assert_eq!(
+        (at("k.1"), at("k.6"), at("k.13")),
+        ([0.0, 0.0], [0.0, 1.0], [4.0, 2.0])
+    );
+    assert_eq!(
+        (at("k.bottom.start"), at("k.bottom.end")),
+        ([0.0, 0.0], [4.0, 0.0])
+    );
+    assert_eq!(
+        (at("k.left.start"), at("k.left.end")),
+        ([0.0, 2.0], [0.0, 0.0])
+    );
+    assert_eq!((at("k.top.2"), at("k.right@0.5")), ([3.0, 2.0], [4.0, 1.0]));
+    let names = scene.names();
+    assert_eq!(names.nodes("k.left"), Ok(vec![8, 5, 0]));
+    assert_eq!(names.nodes("k.left.all"), names.nodes("k.left"));
+    assert_eq!(names.nodes("k.all"), Ok((0..13).collect()));
+    for wrong in [
+        "k",
+        "k.all",
+        "k.left",
+        "k.left.all",
+        "k.start",
+        "k@0.5",
+        "k.14",
+        "k.0",
+        "k.left.4",
+        "k.left.",
+        "k.middle",
+        "k.left.left",
+        "k.1.left",
+        "k.left@0.3",
+        "k..left",
+    ] {
+        assert!(node(wrong).is_err(), "{wrong:?} names a node");
+    }
+    assert!(scene.model.dofs.count.iter().all(|&count| count == 2));
+    let fine = scene.with("refine", "3").unwrap();
+    assert_eq!(
+        fine.model.nodes[fine.node("k.top@0.5").unwrap()].at,
+        [2.0, 2.0]
+    );
+    let BodyKind::Solid(body) = &fine.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    assert_eq!((body.elements.len(), body.edges.len()), (18, 18));
+    assert_eq!(
+        fine.with("nodes.k.elements.x", "1").unwrap().model.bodies[0]
+            .nodes
+            .len(),
+        40
+    );
+}
+
+#[test]
+fn each_fault_of_a_solid_has_one_message_with_its_place() {
+    let elastic = |material: &str| solid(BLOCK, material, SOLID, "");
+    let shaped = |block: &str| solid(block, ELASTIC, SOLID, "");
+    let made = |body: &str| solid(BLOCK, ELASTIC, body, "");
+    let more = |rest: &str| solid(BLOCK, ELASTIC, SOLID, rest);
+    let cases = [
+        (
+            shaped("corners: [(0, 0)], elements: (1, 1)"),
+            "nodes[0].corners: the list has 1 corners",
+        ),
+        (
+            shaped("corners: [(4, 2), (0, 3)], elements: (1, 1)"),
+            "folded or flat at its corner",
+        ),
+        (
+            shaped("corners: [(0, 0), (0, 2), (4, 2), (4, 0)], elements: (1, 1)"),
+            "corners run anticlockwise",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, NaN)], elements: (1, 1)"),
+            "nodes[0].corners[1][1]: y is NaN",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, 2)], elements: (0, 1)"),
+            "nodes[0].elements[0]: the number of elements is 0",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, 2)], elements: (900, 900)"),
+            "at most 200000 can be had",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, 2)], elements: 3"),
+            "nodes[0].elements",
+        ),
+        (
+            elastic("E: 0, nu: 0.3"),
+            "solid:1:116: materials[0].E: E is 0.0",
+        ),
+        (
+            elastic("E: 1, nu: 0.5"),
+            "materials[0].nu: nu is 0.5; it must be at least 0 and below 0.5",
+        ),
+        (elastic("E: 1, nu: -0.1"), "materials[0].nu: nu is -0.1"),
+        (elastic("E: 1, nu: NaN"), "materials[0].nu: nu is NaN"),
+        (
+            elastic("E: 1, nu: 0, thickness: 0"),
+            "materials[0].thickness: the thickness is 0.0",
+        ),
+        (
+            elastic("E: 1, nu: 0, law: hooke"),
+            "\"hooke\" is none of the choices",
+        ),
+        (
+            elastic("E: 1, nu: 0, law: neohookean, update: updated"),
+            "materials[0].update: the updated update has a law",
+        ),
+        (
+            made("Solid(id: \"k\", mesh: \"q\", material: \"e\")"),
+            "bodies[0].mesh: no block called \"q\" (blocks: \"k\")",
+        ),
+        (
+            made("Solid(id: \"k\", mesh: \"k.left\", material: \"e\")"),
+            "is no block; a solid needs",
+        ),
+        (
+            made("Solid(id: \"k\", mesh: \"k\", material: \"s\")"),
+            "material \"s\" is a beam's section",
+        ),
+        (
+            made("Beam(id: \"k\", along: \"k.left\", material: \"e\")"),
+            "material \"e\" is a continuum's",
+        ),
+        (
+            made("Beam(id: \"k\", along: \"k\", material: \"s\")"),
+            "is a block; name one of its edges, \"k.bottom\"",
+        ),
+        (
+            made("Beam(id: \"k\", along: \"k.left\", material: \"s\")"),
+            "node \"k.2\" is used by no body",
+        ),
+        (
+            made(
+                "Solid(id: \"k\", mesh: \"k\", material: \"e\", regions: [(from: (4, 2), to: (0, 0), material: \"e\")])",
+            ),
+            "bodies[0].regions[0]: no element has its middle in the region",
+        ),
+        (
+            made(
+                "Solid(id: \"k\", mesh: \"k\", material: \"e\", regions: [(from: (0, 0), to: (4, 2), material: \"f\")])",
+            ),
+            "bodies[0].regions[0].material: no material called \"f\"",
+        ),
+        (
+            more("supports: [(node: \"k.left\", fix: [rotation])]"),
+            "is on no beam and has no rotation",
+        ),
+        (
+            more("loads: [Force(node: \"k.left\", x: 1)]"),
+            "\"k.left\" is an edge of 3 nodes; name one of them",
+        ),
+        (
+            more("loads: [Force(node: \"k\", x: 1)]"),
+            "\"k\" is a block of 13 nodes; name one of them",
+        ),
+        (
+            more("loads: [Traction(along: \"k.lft\", x: 1)]"),
+            "loads[0].along: no chain of nodes called \"k.lft\"; did you mean \"k.left\"?",
+        ),
+        (
+            more("loads: [Traction(along: \"k.left\", normal: inf)]"),
+            "loads[0].normal: the load is inf",
+        ),
+        (
+            more(
+                "supports: [(node: \"k.left\", fix: [x])], loads: [Traction(along: \"k.left\", normal: 1)]",
+            ),
+            "every node of \"k.left\" is held where this load acts",
+        ),
+        (
+            more(
+                "surfaces: [(id: \"s\", along: \"k.left\")], slaves: [(nodes: [\"k.bottom\"], on: [\"s\"])]",
+            ),
+            "a node cannot touch itself",
+        ),
+    ];
+    for (k, (result, expected)) in cases.into_iter().enumerate() {
+        let error = match result {
+            Ok(_) => panic!("case {k} is accepted: {expected}"),
+            Err(error) => error.to_string(),
+        };
+        assert!(
+            error.contains(expected),
+            "case {k}\n got: {error}\nwant: {expected}"
+        );
+    }
+}
+
+#[test]
+fn tractions_add_up_to_load_times_length() {
+    let line = "nodes: [Line(id: \"b\", from: (0, 0), to: (3, 4), elements: 2, per_element: 4)],";
+    let beam = format!(
+        "(title: \"t\", {line} materials: [Section(id: \"m\", EA: 1, EI: 1)], \
+         bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")], history: (path: [0, 1], increment: 1), \
+         loads: [Traction(along: \"b\", normal: 2, y: 1)])"
+    );
+    let model = Scene::from_text("beam", &beam, &[]).unwrap().model;
+    let sum = |axis: usize| -> f64 {
+        let of_axis = model.loads.iter().filter(|l| l.dof % 3 == axis);
+        of_axis.map(|l| l.value).sum()
+    };
+    // The outward normal, to the right of the walk, is (4, -3)/5.
+    assert!((sum(0) - 8.0).abs() < 1e-13 && (sum(1) - (-6.0 + 5.0)).abs() < 1e-13);
+    let rest = "loads: [Traction(along: \"k.top\", normal: -3)]";
+    let model = solid(BLOCK, ELASTIC, SOLID, rest).unwrap().model;
+    let forces: Vec<f64> = model.loads.iter().map(|l| l.value).collect();
+    // Simpson's rule over two elements of length 2.
+    for (force, expected) in forces.iter().zip([-1.0, -4.0, -2.0, -4.0, -1.0]) {
+        assert!((force - expected).abs() < 1e-13, "{forces:?}");
+    }
+}
+
+#[test]
+fn a_region_gives_its_elements_another_material() {
+    let body = "Solid(id: \"k\", mesh: \"k\", material: \"e\", regions: [(from: (2, 0), to: (4, 2), material: \"e\")])";
+    let scene = solid(BLOCK, ELASTIC, body, "refine: 2").unwrap();
+    let BodyKind::Solid(made) = &scene.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    assert_eq!(made.material_of, [0, 0, 1, 1, 0, 0, 1, 1]);
+    let text = Cost::of(&scene).to_string();
+    for line in [
+        "k: solid, 8 elements of 8 nodes, E 100, nu 0.3, St Venant-Kirchhoff, plane strain, thickness 1",
+        "no memory of earlier increments in k: update is total",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+}
+
 #[test]
 fn an_arc_is_exact_at_right_angles() {
     let arc =
