@@ -196,8 +196,8 @@ fn a_distorted_patch_reproduces_a_homogeneous_deformation_exactly() {
             let state = run.stepper.state();
             let first = &run.stepper.model().dofs.first;
             for (n, x) in at.iter().enumerate() {
-                for k in 0..2 {
-                    let expected = scale * (f[k][0] * x[0] + f[k][1] * x[1]);
+                for (k, row) in f.iter().enumerate() {
+                    let expected = scale * (row[0] * x[0] + row[1] * x[1]);
                     let error = state.u[first[n] + k] - expected;
                     assert!(error.abs() < 1e-11 * scale, "{material} {scale}: {error:e}");
                 }
