@@ -134,6 +134,7 @@ fn limits_stop_an_increment_or_mark_it_as_the_settings_say() {
         "02-two-cantilevers-smooth",
         &[
             ("settings.majors", "3"),
+            ("settings.geometry", "frozen"),
             ("settings.at_major_limit", "accept"),
         ],
     ));
@@ -142,7 +143,7 @@ fn limits_stop_an_increment_or_mark_it_as_the_settings_say() {
     assert!(marked.accepted.iter().filter(unsettled).count() > 40);
     let stopped = run(&scene(
         "02-two-cantilevers-smooth",
-        &[("settings.majors", "3")],
+        &[("settings.majors", "3"), ("settings.geometry", "frozen")],
     ));
     assert!(matches!(
         failure(&stopped),

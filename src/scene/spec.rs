@@ -272,7 +272,8 @@ pub struct SurfaceSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlaveSpec {
-    /// Names of nodes; `ID.all` stands for every node of a chain, and `ID.left` for those of a block's edge.
+    /// Names of nodes; `ID.all` stands for every node of a chain, and a block's `ID.left` for those of its edge, less
+    /// those that cannot move over surfaces that cannot move either.
     pub nodes: Vec<String>,
     /// Surfaces among which each node finds its own element.
     pub on: Vec<String>,

@@ -124,6 +124,7 @@ impl Stepper {
     fn linearise(&mut self) -> bool {
         if !self.linearised {
             self.linearised = self.system.linearise(&self.model, &self.state).is_ok();
+            self.system.turn(&self.model, &self.state);
         }
         self.linearised
     }
@@ -452,11 +453,11 @@ impl Stepper {
             node.travel = 0.0;
         }
         self.find_spots();
-        self.linearised = false;
-        self.linearise();
+        self.linearised = self.system.linearise(&self.model, &self.state).is_ok();
         if self.state.controls.settings.residual == ResidualMethod::Stress {
             self.take_forces_from_stresses();
         }
+        self.system.turn(&self.model, &self.state);
         self.state.forget_trail();
     }
 

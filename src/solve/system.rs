@@ -153,7 +153,7 @@ impl System {
         }
     }
 
-    /// Freezes geometry, stiffness and residual at a state's u, forces and load factor.
+    /// Freezes geometry, stiffness and residual at a state's u, forces and load factor; [`System::turn`] completes it.
     ///
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
@@ -196,9 +196,6 @@ impl System {
         };
         self.assembly.assemble(&model.dofs, moved, out);
         self.measure_interfaces(model);
-        if state.controls.settings.geometry == Geometry::Consistent {
-            self.turn(model, state);
-        }
         self.balance(model, state);
         Ok(())
     }
@@ -288,8 +285,12 @@ impl System {
         }
     }
 
-    /// Adds what turning and travelling interaction forces do to the stiffness.
-    fn turn(&mut self, model: &Model, state: &State) {
+    /// Adds what turning and travelling interaction forces do to the stiffness, where the settings want it; once
+    /// after each linearisation, when the state has its final forces.
+    pub fn turn(&mut self, model: &Model, state: &State) {
+        if state.controls.settings.geometry == Geometry::Frozen {
+            return;
+        }
         for (interface, node) in self.interfaces.iter_mut().zip(&state.nodes) {
             let Some((footing, curve)) = interface.footing.and_then(|f| Some((f, f.curve?))) else {
                 continue;

@@ -62,8 +62,12 @@ impl Terminal {
     }
 
     /// Forgets what is on the screen, so that the next draw is a full one.
+    ///
+    /// Not with the library's `clear`: that one asks the terminal where the cursor is, and fails where no answer comes
+    /// within two seconds.
     pub fn forget(&mut self) -> io::Result<()> {
-        self.screen.clear()
+        let size = self.screen.size()?;
+        self.screen.resize(size.into())
     }
 
     /// Gives the terminal back, stops the process until it is continued, and takes the terminal again.

@@ -226,6 +226,25 @@ fn can_move(dofs: &Dofs, node: usize) -> bool {
     })
 }
 
+/// Takes nodes off that only a name for many made slaves, and that can do nothing: held, over held surfaces.
+pub(super) fn drop_idle_slaves(
+    spec: &Spec,
+    names: &Names,
+    dofs: &Dofs,
+    surfaces: &[Surface],
+    slaves: &mut Vec<Slave>,
+) {
+    let single = |node: usize| {
+        let mut all = spec.slaves.iter().flat_map(|group| &group.nodes);
+        all.any(|name| names.node(name) == Ok(node))
+    };
+    slaves.retain(|slave| {
+        can_move(dofs, slave.node)
+            || !slave.surfaces.iter().all(|&s| surfaces[s].rigid)
+            || single(slave.node)
+    });
+}
+
 /// Refuses slave nodes whose constraint would have no unknown at all.
 pub(super) fn check_held_slaves(
     spec: &Spec,

@@ -35,13 +35,14 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let length = geometry::diagonal(of_bodies.map(|(node, _)| node));
     bodies::check_bodies(spec, &names, &bodies, length)?;
     let mut surfaces = interface::surfaces(spec, &names, length)?;
-    let slaves = interface::slaves(spec, &names, &surfaces, length)?;
+    let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
     interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
     let (loads, prescribed) = layout.loads(spec, &names)?;
     let dofs = layout.number(&mut bodies);
     interface::find_rigid(&dofs, &mut surfaces);
+    interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
     history::settings(&spec.settings)?;

@@ -1,0 +1,725 @@
+//! Whole sessions: the real program in a real pseudo-terminal, keys in, screens out.
+//!
+//! A terminal emulator reads what the program writes, and each test waits for what a person would see. Nothing waits
+//! for a fixed time: a test goes on as soon as the screen shows what it must, and fails when that takes too long.
+
+#![cfg(unix)]
+
+use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, SlavePty};
+use std::io::{Read, Write};
+use std::num::NonZeroU16;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+use stickslip::scene::{Scene, builtin};
+use stickslip::tui;
+use tempfile::TempDir;
+use vt100::{Parser, Screen};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
+const FLOOR: &str = "01-pinned-beam-rough-floor";
+const CANTILEVERS: &str = "02-two-cantilevers-rough";
+const OSCILLATES: &str = "osc-inclined-cantilever";
+
+/// How long anything may take: far more than it does, since the machine may be busy with other tests.
+const DEADLINE: Duration = Duration::from_secs(30);
+
+const CTRL_C: &str = "\x03";
+const CTRL_L: &str = "\x0c";
+const CTRL_Z: &str = "\x1a";
+const ESC: &str = "\x1b";
+const UP: &str = "\x1b[A";
+
+/// A program in a terminal.
+struct Session {
+    master: Box<dyn MasterPty + Send>,
+    /// Kept open, so that the terminal outlives the program and can be looked at.
+    slave: Box<dyn SlavePty + Send>,
+    keyboard: Box<dyn Write + Send>,
+    child: Box<dyn Child + Send + Sync>,
+    seen: Arc<Mutex<Seen>>,
+    /// Ends the reader after its next read.
+    deaf: Arc<AtomicBool>,
+    reader: JoinHandle<()>,
+    /// The terminal's modes before the program started.
+    before: String,
+    directory: TempDir,
+}
+
+/// What the terminal was sent.
+struct Seen {
+    parser: Parser,
+    raw: Vec<u8>,
+}
+
+/// What is to be started, and in what terminal.
+struct Start<'a> {
+    program: &'a str,
+    arguments: Vec<&'a str>,
+    variables: Vec<(&'a str, &'a str)>,
+    size: (u16, u16),
+}
+
+impl<'a> Start<'a> {
+    fn program(program: &'a str, arguments: &[&'a str]) -> Self {
+        Start {
+            program,
+            arguments: arguments.to_vec(),
+            variables: vec![("TERM", "xterm-256color")],
+            size: (120, 40),
+        }
+    }
+
+    fn debugger(arguments: &[&'a str]) -> Self {
+        Start::program(PROGRAM, arguments)
+    }
+
+    fn size(self, width: u16, height: u16) -> Self {
+        let size = (width, height);
+        Start { size, ..self }
+    }
+
+    fn variable(mut self, name: &'a str, value: &'a str) -> Self {
+        self.variables.push((name, value));
+        self
+    }
+
+    fn go(self) -> Session {
+        let directory = tempfile::tempdir().unwrap();
+        let mut command = CommandBuilder::new(self.program);
+        command.args(&self.arguments);
+        command.cwd(directory.path());
+        for name in ["NO_COLOR", "ENV"] {
+            command.env_remove(name);
+        }
+        for (name, value) in &self.variables {
+            command.env(name, value);
+        }
+        let (width, height) = self.size;
+        let pair = portable_pty::native_pty_system()
+            .openpty(pty_size(width, height))
+            .unwrap();
+        let before = modes(&*pair.master);
+        let child = pair.slave.spawn_command(command).unwrap();
+        let seen = Arc::new(Mutex::new(Seen {
+            parser: Parser::new(cells(height), cells(width), 0),
+            raw: Vec::new(),
+        }));
+        let deaf = Arc::default();
+        let reader = read(&*pair.master, &seen, &deaf);
+        Session {
+            keyboard: pair.master.take_writer().unwrap(),
+            master: pair.master,
+            slave: pair.slave,
+            child,
+            seen,
+            deaf,
+            reader,
+            before,
+            directory,
+        }
+    }
+}
+
+/// Opens a scene at 120x40 and waits for its first screen.
+fn open(scene: &str) -> Session {
+    let session = Start::debugger(&[scene]).go();
+    session.see("nothing is solved yet");
+    session
+}
+
+fn cells(count: u16) -> NonZeroU16 {
+    NonZeroU16::new(count).unwrap()
+}
+
+fn pty_size(cols: u16, rows: u16) -> PtySize {
+    PtySize {
+        rows,
+        cols,
+        ..PtySize::default()
+    }
+}
+
+/// All of the terminal's modes, in words.
+fn modes(master: &dyn MasterPty) -> String {
+    format!("{:?}", master.get_termios().unwrap())
+}
+
+/// Reads on a thread of its own, until the terminal is gone or nobody wants to hear more.
+fn read(master: &dyn MasterPty, seen: &Arc<Mutex<Seen>>, deaf: &Arc<AtomicBool>) -> JoinHandle<()> {
+    let mut from = master.try_clone_reader().unwrap();
+    let (seen, deaf) = (Arc::clone(seen), Arc::clone(deaf));
+    thread::spawn(move || {
+        let mut bytes = [0; 4096];
+        while let Ok(count @ 1..) = from.read(&mut bytes) {
+            let mut seen = seen.lock().unwrap();
+            seen.parser.process(&bytes[..count]);
+            seen.raw.extend(&bytes[..count]);
+            if deaf.load(Ordering::SeqCst) {
+                break;
+            }
+        }
+    })
+}
+
+/// Tries again and again, until there is something. None if there never is.
+fn patiently<T>(mut attempt: impl FnMut() -> Option<T>) -> Option<T> {
+    let begin = Instant::now();
+    loop {
+        if let Some(found) = attempt() {
+            return Some(found);
+        }
+        if begin.elapsed() > DEADLINE {
+            return None;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+impl Session {
+    fn keys(&mut self, keys: &str) {
+        self.keyboard.write_all(keys.as_bytes()).unwrap();
+        self.keyboard.flush().unwrap();
+    }
+
+    /// Keys, and what the screen must show after them.
+    fn type_and_see(&mut self, keys: &str, text: &str) {
+        self.keys(keys);
+        self.see(text);
+    }
+
+    fn screen<T>(&self, look: impl FnOnce(&Screen) -> T) -> T {
+        look(self.seen.lock().unwrap().parser.screen())
+    }
+
+    fn text(&self) -> String {
+        self.screen(Screen::contents)
+    }
+
+    /// Waits until the screen is as it must be.
+    #[track_caller]
+    fn wait(&self, what: &str, holds: impl Fn(&Screen) -> bool) {
+        let found = patiently(|| self.screen(&holds).then_some(()));
+        assert!(found.is_some(), "never seen: {what}\n{}", self.text());
+    }
+
+    #[track_caller]
+    fn see(&self, text: &str) {
+        self.wait(text, |screen| screen.contents().contains(text));
+    }
+
+    #[track_caller]
+    fn see_no_more(&self, text: &str) {
+        let gone = |screen: &Screen| !screen.contents().contains(text);
+        self.wait(&format!("the end of '{text}'"), gone);
+    }
+
+    /// Waits until the screen is the one that the program pictures after these keys.
+    #[track_caller]
+    fn see_picture(&self, scene: &str, keys: &str, width: u16, height: u16) {
+        let picture = tui::screen(scene, keys, width, height).unwrap();
+        let lines = |text: &str| text.trim_end().lines().map(trimmed).collect::<Vec<_>>();
+        let wanted = lines(&picture);
+        let same = |screen: &Screen| lines(&screen.contents()) == wanted;
+        self.wait(&format!("at {width}x{height}\n{picture}"), same);
+    }
+
+    fn resize(&self, width: u16, height: u16) {
+        // Nothing that is drawn at the new size may meet an emulator of the old one.
+        let mut seen = self.seen.lock().unwrap();
+        seen.parser.set_size(cells(height), cells(width));
+        self.master.resize(pty_size(width, height)).unwrap();
+    }
+
+    fn signal(&self, name: &str) {
+        let id = self.child.process_id().unwrap();
+        let kill = format!("kill -{name} {id}");
+        let status = Command::new("sh").args(["-c", &kill]).status().unwrap();
+        assert!(status.success(), "{kill}");
+    }
+
+    #[track_caller]
+    fn end(&mut self) -> ExitStatus {
+        match patiently(|| self.child.try_wait().unwrap()) {
+            Some(status) => status,
+            None => panic!("the program never ends\n{}", self.text()),
+        }
+    }
+
+    /// Whether the screen is the main one, with its cursor, and the keyboard's pastes are plain.
+    fn on_main_screen(screen: &Screen) -> bool {
+        !screen.alternate_screen() && !screen.hide_cursor() && !screen.bracketed_paste()
+    }
+
+    /// Waits until the terminal is the program's: raw, on the alternate screen.
+    #[track_caller]
+    fn see_taken(&self) {
+        self.wait("the terminal taken", |screen| {
+            screen.alternate_screen() && screen.hide_cursor() && screen.bracketed_paste()
+        });
+        let modes = patiently(|| Some(modes(&*self.master)).filter(|now| *now != self.before));
+        assert!(modes.is_some(), "the terminal is not raw");
+    }
+
+    /// Waits until the terminal is as it was before the program took it.
+    #[track_caller]
+    fn see_restored(&self) {
+        self.wait("the terminal restored", Session::on_main_screen);
+        patiently(|| (modes(&*self.master) == self.before).then_some(()));
+        assert_eq!(modes(&*self.master), self.before);
+    }
+
+    /// `q` ends it well, and nothing of it is left on the terminal.
+    #[track_caller]
+    fn quit(mut self) {
+        self.keys("q");
+        let status = self.end();
+        assert!(status.success(), "{status}\n{}", self.text());
+        self.see_restored();
+    }
+
+    /// The terminal goes away under the program.
+    fn hang_up(self) -> Box<dyn Child + Send + Sync> {
+        let Session {
+            master,
+            slave,
+            mut keyboard,
+            child,
+            deaf,
+            reader,
+            ..
+        } = self;
+        // The reader holds the terminal open until it has read something more.
+        deaf.store(true, Ordering::SeqCst);
+        keyboard.write_all(CTRL_L.as_bytes()).unwrap();
+        reader.join().unwrap();
+        drop((slave, keyboard, master));
+        child
+    }
+}
+
+fn trimmed(line: &str) -> String {
+    line.trim_end().to_string()
+}
+
+/// Runs the program without a terminal.
+fn run(arguments: &[&str], input: Stdio) -> Output {
+    Command::new(PROGRAM)
+        .args(arguments)
+        .stdin(input)
+        .output()
+        .unwrap()
+}
+
+/// The snapshots that a session left behind.
+fn snapshots(session: &Session) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(session.directory.path()).unwrap();
+    entries.map(|entry| entry.unwrap().path()).collect()
+}
+
+#[test]
+fn a_whole_session_steps_back_and_forth_interferes_records_and_leaves_no_trace() {
+    let mut session = open(FLOOR);
+    session.see_taken();
+    assert!(session.before.contains("ECHO") && session.before.contains("ICANON"));
+    session.keys("s");
+    session.see_picture(FLOOR, "s", 120, 40);
+    session.keys("5s");
+    session.see_picture(FLOOR, "s s s s s s", 120, 40);
+    session.keys("n");
+    session.see_picture(FLOOR, "6 s n", 120, 40);
+    session.keys("f");
+    session.see_picture(FLOOR, "6 s n f", 120, 40);
+    session.type_and_see("S", " steps");
+    session.see_picture(FLOOR, "6 s n f S", 120, 40);
+
+    session.type_and_see("m", "mode of beam.5:");
+    session.type_and_see("x", "◇ 1 forced");
+    session.see("beam.5 is fixed in the next minor iteration");
+    session.type_and_see("M", "beam.5 obeys Table 2 again");
+    session.see_no_more("◇ 1 forced");
+    session.type_and_see("m", "mode of beam.5:");
+    session.type_and_see("X", "◆ 1 held");
+    session.type_and_see("M", "beam.5 obeys Table 2 again");
+    session.see_no_more("◆ 1 held");
+
+    session.type_and_see("i", "new increment (now 0.01):");
+    session.type_and_see("0.005\r", "increment 0.005 (scene: 0.01)");
+    session.type_and_see("s", "attempt 2");
+    session.type_and_see("w", ".ron");
+
+    let files = snapshots(&session);
+    assert_eq!(files.len(), 1, "{files:?}");
+    let replayed = run(&["replay", files[0].to_str().unwrap()], Stdio::null());
+    assert_eq!(replayed.status.code(), Some(0), "{replayed:?}");
+    session.quit();
+}
+
+#[test]
+fn the_cycle_that_the_paper_s_rule_runs_into_is_left_by_forcing_the_tip_to_slide() {
+    let mut session = open(OSCILLATES);
+    session.type_and_see("c", "2-cycle since minor 1");
+    session.see("✗");
+    session.type_and_see("m", "mode of beam.5:");
+    session.type_and_see("s", "◇ 1 forced");
+    session.type_and_see("c", "the history is done");
+    session.see("load 1 accepted");
+    session.quit();
+}
+
+#[test]
+fn without_a_scene_the_built_in_ones_are_offered_and_enter_opens_one() {
+    let mut session = Start::debugger(&[]).size(80, 24).go();
+    session.see("Choose a scene");
+    for scene in builtin::list() {
+        session.see(scene.name);
+    }
+    session.type_and_see("j", &format!("▸ {}", builtin::list()[1].name));
+    session.type_and_see("k", &format!("▸ {FLOOR}"));
+    session.keys("\r");
+    session.see_picture(FLOOR, "", 80, 24);
+    session.quit();
+    let mut session = Start::debugger(&[]).go();
+    session.see("Choose a scene");
+    // Ctrl-C is no way out, q is.
+    session.type_and_see(CTRL_C, "nothing is running; q quits");
+    session.quit();
+}
+
+#[test]
+fn commands_are_typed_completed_recalled_and_refused() {
+    let mut session = open(FLOOR);
+    session.type_and_see(":ste\t", ":step ");
+    session.keys("3\r");
+    session.see_picture(FLOOR, "3 s", 120, 40);
+    session.type_and_see(":frobnicate\r", "no action is called 'frobnicate'");
+    session.type_and_see(&format!(":{UP}{UP}"), ":step 3");
+    session.keys("\r");
+    session.see_picture(FLOOR, "6 s", 120, 40);
+    session.type_and_see(":increment -1\r", "'-1' is no increment");
+    session.quit();
+}
+
+#[test]
+fn help_opens_scrolls_and_closes() {
+    let mut session = open(FLOOR);
+    session.type_and_see("?", "Go through the iterations");
+    session.type_and_see("G", "closer to switching than the tolerance");
+    session.keys(ESC);
+    session.see_picture(FLOOR, "", 120, 40);
+    session.type_and_see("?", "Go through the iterations");
+    session.keys("?");
+    session.see_picture(FLOOR, "", 120, 40);
+    session.quit();
+}
+
+#[test]
+fn nodes_are_found_by_a_part_of_their_name() {
+    let mut session = open(CANTILEVERS);
+    let model = Scene::open(CANTILEVERS, &[]).unwrap().model;
+    let name = |slave: usize| model.nodes[model.slaves[slave].node].name.clone();
+    let last = name(model.slaves.len() - 1);
+    session.see(&format!("Decision  {}", name(0)));
+    session.type_and_see(&format!("/{last}\r"), &format!("Decision  {last}"));
+    session.type_and_see("/nowhere\r", "no slave node's name contains 'nowhere'");
+    session.see(&format!("Decision  {last}"));
+    session.quit();
+}
+
+#[test]
+fn every_size_is_drawn_and_a_changed_one_drawn_anew() {
+    let mut session = open(FLOOR);
+    session.keys("3s");
+    session.see_picture(FLOOR, "3 s", 120, 40);
+    for (width, height) in [(80, 24), (200, 60), (20, 5), (1, 1), (120, 40)] {
+        session.resize(width, height);
+        session.see_picture(FLOOR, "3 s", width, height);
+    }
+    session.quit();
+    for (width, height) in [(20, 5), (80, 24), (200, 60)] {
+        let session = Start::debugger(&[FLOOR]).size(width, height).go();
+        session.see_picture(FLOOR, "", width, height);
+        session.quit();
+    }
+}
+
+#[test]
+fn a_screen_that_somebody_else_wrote_on_is_drawn_anew_when_asked() {
+    let mut session = open(FLOOR);
+    session.see_picture(FLOOR, "", 120, 40);
+    session
+        .seen
+        .lock()
+        .unwrap()
+        .parser
+        .process(b"\x1b[20;3Hnoise");
+    session.see("noise");
+    session.keys(CTRL_L);
+    session.see_picture(FLOOR, "", 120, 40);
+    session.quit();
+}
+
+/// Opens a scene that takes hundreds of thousands of minor iterations, and sets it going.
+fn long_run() -> Session {
+    let mut session = Start::debugger(&[FLOOR, "--set", "history.increment=1e-6"]).go();
+    session.see("nothing is solved yet");
+    session.type_and_see("c", "solving: increment");
+    session
+}
+
+/// The number before "steps so far".
+fn steps(session: &Session) -> Option<u64> {
+    let text = session.text();
+    let (before, _) = text.split_once(" steps so far")?;
+    before.rsplit(' ').next()?.parse().ok()
+}
+
+#[test]
+fn keys_are_answered_while_the_solver_runs_and_ctrl_c_stops_it_alone() {
+    let mut session = long_run();
+    session.type_and_see("?", "Go through the iterations");
+    session.keys("?");
+    session.see_no_more("Go through the iterations");
+    session.type_and_see("s", "the solver is at work; Ctrl-C stops it");
+    let now = patiently(|| steps(&session)).unwrap();
+    let further = patiently(|| steps(&session).filter(|later| *later > now));
+    assert!(further.is_some(), "it stands still\n{}", session.text());
+    session.resize(80, 24);
+    session.wait("the small screen", |screen| {
+        screen
+            .contents()
+            .lines()
+            .last()
+            .is_some_and(|line| line.contains("? help"))
+    });
+    session.resize(120, 40);
+    session.type_and_see(CTRL_C, "interrupted;");
+    session.see_no_more("solving:");
+    session.type_and_see("S", " steps");
+    session.type_and_see(CTRL_C, "nothing is running; q quits");
+    session.quit();
+}
+
+#[test]
+fn q_ends_it_in_the_midst_of_a_run() {
+    long_run().quit();
+}
+
+#[test]
+fn ctrl_z_goes_back_to_the_shell_and_fg_returns() {
+    let mut session = Start::program("sh", &["-i"])
+        .variable("PS1", "ready> ")
+        .go();
+    session.see("ready> ");
+    session.keys(&format!("{PROGRAM} {FLOOR}\r"));
+    session.see_picture(FLOOR, "", 120, 40);
+    session.keys("3s");
+    session.see_picture(FLOOR, "3 s", 120, 40);
+    session.keys(CTRL_Z);
+    session.wait("the main screen", Session::on_main_screen);
+    session.see("Stopped");
+    // The shell's own line editor may change modes while it waits, so the terminal is asked for those of a command.
+    session.keys("stty -a; echo asked=$?\r");
+    session.see("asked=0");
+    let text = session.text();
+    let on = |mode: &str| text.split([' ', '\n', ';']).any(|word| word == mode);
+    for mode in ["echo", "icanon", "isig", "icrnl", "opost"] {
+        assert!(on(mode), "{mode} is off\n{text}");
+    }
+    session.keys("fg\r");
+    session.see_picture(FLOOR, "3 s", 120, 40);
+    session.keys("s");
+    session.see_picture(FLOOR, "4 s", 120, 40);
+    session.keys("q");
+    session.wait("the main screen", Session::on_main_screen);
+    session.type_and_see("echo left=$?\r", "left=0");
+    session.keys("exit\r");
+    session.end();
+}
+
+#[test]
+fn a_stop_from_outside_gives_the_terminal_back_and_going_on_takes_it_again() {
+    let mut session = open(FLOOR);
+    session.keys("3s");
+    session.see_picture(FLOOR, "3 s", 120, 40);
+    session.signal("TSTP");
+    session.see_restored();
+    // It may not quite have stopped yet, and a signal to go on before that is lost.
+    let back = patiently(|| {
+        session.signal("CONT");
+        session.screen(Screen::alternate_screen).then_some(())
+    });
+    assert!(back.is_some(), "it does not come back");
+    session.see_taken();
+    session.see_picture(FLOOR, "3 s", 120, 40);
+    session.keys("s");
+    session.see_picture(FLOOR, "4 s", 120, 40);
+    session.quit();
+}
+
+#[test]
+fn a_signal_that_ends_it_restores_the_terminal_and_is_seen_by_the_parent() {
+    for (name, told) in [
+        ("TERM", "Terminated"),
+        ("HUP", "Hangup"),
+        ("INT", "Interrupt"),
+    ] {
+        for mut session in [open(FLOOR), long_run()] {
+            session.see_taken();
+            session.signal(name);
+            let status = session.end();
+            assert_eq!(status.signal(), Some(told), "{name}: {status}");
+            session.see_restored();
+        }
+    }
+}
+
+#[test]
+fn a_terminal_that_goes_away_ends_it() {
+    for session in [open(FLOOR), long_run()] {
+        session.see_taken();
+        let mut child = session.hang_up();
+        let status = patiently(|| child.try_wait().unwrap());
+        assert!(status.is_some(), "it outlives its terminal");
+    }
+}
+
+/// Tells the copies of this test program that the next test starts which part they play.
+const PART: &str = "STICKSLIP_TEST_PART";
+
+/// Not a test by itself: in a terminal and with a part to play, it breaks down while the terminal is taken.
+#[test]
+fn breaks_down() {
+    match std::env::var(PART).as_deref() {
+        Ok("here") => {
+            let _terminal = tui::terminal::Terminal::enter().unwrap();
+            panic!("broken down here");
+        }
+        Ok("elsewhere") => {
+            let terminal = tui::terminal::Terminal::enter().unwrap();
+            let solver = thread::spawn(|| panic!("broken down elsewhere"));
+            assert!(solver.join().is_err());
+            let told = tui::terminal::panic_elsewhere();
+            drop(terminal);
+            println!(
+                "kept: {}",
+                told.is_some_and(|told| told.contains("broken down elsewhere"))
+            );
+        }
+        _ => {}
+    }
+}
+
+fn breaking_down(part: &str) -> Session {
+    let program = std::env::current_exe().unwrap();
+    let arguments = ["--exact", "breaks_down", "--nocapture", "--test-threads=1"];
+    Start::program(program.to_str().unwrap(), &arguments)
+        .variable(PART, part)
+        .go()
+}
+
+#[test]
+fn a_panic_is_told_on_a_terminal_that_is_restored_first() {
+    let mut session = breaking_down("here");
+    let status = session.end();
+    assert!(!status.success());
+    session.see("broken down here");
+    session.see_restored();
+    let raw = String::from_utf8_lossy(&session.seen.lock().unwrap().raw).into_owned();
+    let (left, told) = (raw.find("\x1b[?1049l"), raw.find("broken down here"));
+    assert!(left.is_some() && left < told, "{raw:?}");
+    assert_eq!(raw.matches("\x1b[?1049l").count(), 1, "{raw:?}");
+}
+
+#[test]
+fn a_panic_of_the_solver_does_not_write_on_the_screen() {
+    let mut session = breaking_down("elsewhere");
+    let status = session.end();
+    assert!(status.success(), "{}", session.text());
+    session.see("kept: true");
+    session.see_restored();
+    let raw = String::from_utf8_lossy(&session.seen.lock().unwrap().raw).into_owned();
+    assert!(!raw.contains("broken down elsewhere"), "{raw:?}");
+}
+
+/// The parameters of every SGR sequence.
+fn styles(raw: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(raw);
+    let parameters = |piece: &str| {
+        let end = piece.find(|c: char| !c.is_ascii_digit() && c != ';' && c != ':')?;
+        piece[end..]
+            .starts_with('m')
+            .then(|| piece[..end].to_string())
+    };
+    text.split("\x1b[").skip(1).filter_map(parameters).collect()
+}
+
+/// Whether an SGR sequence chooses a colour; going back to the terminal's own (39, 49) does not.
+fn colours(style: &str) -> bool {
+    let codes = style.split([';', ':']).filter_map(|code| code.parse().ok());
+    let colour = |code: u32| matches!(code, 30..=38 | 40..=48 | 58 | 90..=107);
+    codes.into_iter().any(colour)
+}
+
+/// All that is drawn on the way through panes, prompts, marks, help, and a failure.
+fn drawn(start: Start) -> Vec<u8> {
+    let mut session = start.go();
+    session.see("nothing is solved yet");
+    session.type_and_see("c", "2-cycle");
+    session.type_and_see("m", "mode of beam.5:");
+    session.type_and_see("S", "◆ 1 held");
+    session.type_and_see("c", "the history is done");
+    session.type_and_see(":nonsense\r", "no action is called");
+    session.type_and_see("?", "Go through the iterations");
+    session.keys("?");
+    session.see_no_more("Go through the iterations");
+    session.type_and_see("o", "Choose a scene");
+    session.keys("q");
+    session.see_no_more("Choose a scene");
+    let seen = Arc::clone(&session.seen);
+    session.quit();
+    std::mem::take(&mut seen.lock().unwrap().raw)
+}
+
+#[test]
+fn no_color_leaves_weights_but_no_colours() {
+    let plain = styles(&drawn(
+        Start::debugger(&[OSCILLATES]).variable("NO_COLOR", "1"),
+    ));
+    let coloured: Vec<_> = plain
+        .iter()
+        .filter(|style| colours(style.as_str()))
+        .collect();
+    assert!(coloured.is_empty(), "{coloured:?}");
+    for weight in ["1", "7"] {
+        let there = |style: &String| style.split(';').any(|code| code == weight);
+        assert!(plain.iter().any(there), "no {weight} among {plain:?}");
+    }
+    // Without it there are colours, so that the above has something to miss.
+    let styles = styles(&drawn(Start::debugger(&[OSCILLATES])));
+    assert!(styles.iter().any(|style| colours(style)), "{styles:?}");
+}
+
+#[test]
+fn without_a_terminal_it_names_run_and_ends_with_2() {
+    for arguments in [vec![], vec![FLOOR]] {
+        let ended = run(&arguments, Stdio::piped());
+        let message = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(2), "{message}");
+        assert!(message.contains("stickslip run"), "{message}");
+        assert!(ended.stdout.is_empty());
+    }
+    // One of the two is not enough.
+    for elsewhere in ["< /dev/null", "> out"] {
+        let line = format!("{PROGRAM} {FLOOR} {elsewhere}; echo ended=$?");
+        let mut session = Start::program("sh", &["-c", &line]).go();
+        session.see("stickslip run");
+        session.see("ended=2");
+        session.end();
+        let raw = session.seen.lock().unwrap().raw.clone();
+        assert!(!raw.contains(&b'\x1b'), "the terminal was touched");
+    }
+}
