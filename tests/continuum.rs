@@ -354,6 +354,58 @@ fn problem_05_with_its_roles_swapped_runs_to_its_end_too() {
 }
 
 #[test]
+fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
+    let scene = block(
+        "(0, 0), (1, 1)",
+        "(2, 2)",
+        "E: 100, nu: 0.3, law: neohookean",
+        "supports: [(node: \"k.bottom\", fix: [x, y])],
+         loads: [Displacement(node: \"k.top.all\", component: y, value: -1.5)],
+         history: (path: [0, 1], increment: 1)",
+    );
+    let run = run(&scene);
+    assert!(run.failure.is_some() && run.accepted.is_empty());
+}
+
+#[test]
+fn a_rigid_cylinder_on_a_block_presses_as_hertz_says() {
+    // Half of a block under a rigid cylinder of radius 8. The arc is walked so that its outward side is below.
+    let count = 32;
+    let text = format!(
+        "(title: \"t\", nodes: [
+            Block(id: \"k\", corners: [(0, -1), (1, 0)], elements: ({count}, 16)),
+            Arc(id: \"c\", center: (0, 8), radius: 8, from: 262, to: 280, elements: 4, per_element: 5)],
+          materials: [Elastic(id: \"m\", E: 100, nu: 0.3)], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
+          surfaces: [(id: \"c\", along: \"c\")], slaves: [(nodes: [\"k.top\"], on: [\"c\"])],
+          supports: [(node: \"k.left\", fix: [x]), (node: \"k.bottom\", fix: [x, y]), (node: \"k.right\", fix: [x, y])],
+          loads: [Displacement(node: \"c.all\", component: y, value: -1)],
+          history: (path: [0, 0.0075], increment: 0.0025),
+          monitors: [(name: \"f\", of: Contact(component: y))])"
+    );
+    let run = finished(&Scene::from_text("hertz", &text, &[]).unwrap_or_else(|e| panic!("{e}")));
+    let (radius, modulus) = (8.0, 100.0 / (1.0 - 0.09));
+    let force = -2.0 * last(&run, "f");
+    let width = (4.0 * force * radius / (std::f64::consts::PI * modulus)).sqrt();
+    let peak = 2.0 * force / (std::f64::consts::PI * width);
+    let (state, model) = (run.stepper.state(), run.stepper.model());
+    let spacing = 0.5 / f64::from(count);
+    for (node, slave) in state.nodes.iter().zip(&model.slaves) {
+        let x = model.nodes[slave.node].at[0];
+        if (x - width).abs() > spacing {
+            assert_eq!(node.f_n > 0.0, x < width, "{x} {width}");
+        }
+        // The middle node of an element carries two thirds of what presses on it.
+        let is_middle = (x / spacing).round() as usize % 2 == 1;
+        if is_middle && x < 0.9 * width {
+            let pressure = node.f_n / (4.0 / 3.0 * spacing);
+            let expected = peak * (1.0 - (x / width).powi(2)).sqrt();
+            let error = (pressure - expected) / peak;
+            assert!(error.abs() < 0.02, "{x}: {pressure} {expected}");
+        }
+    }
+}
+
+#[test]
 #[ignore = "a measurement: cargo test --release --test continuum -- --ignored --nocapture"]
 fn time_of_an_assembly_of_50000_unknowns() {
     use std::time::Instant;
