@@ -5,6 +5,7 @@ mod common;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use stickslip::scene::Scene;
 use stickslip::solve::Stepper;
 
 struct Counting;
@@ -29,14 +30,24 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// A sheet that is bent, with a memory of its own.
+const SHEET: &str = "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (4, 1)], elements: (4, 2))],
+    materials: [Elastic(id: \"m\", E: 100, nu: 0.3, update: updated)],
+    bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")], supports: [(node: \"k.left\", fix: [x, y])],
+    loads: [Traction(along: \"k.right\", y: 1)], history: (path: [0, 1], increment: 0.01))";
+
 #[test]
 fn minor_major_and_increment_loops_do_not_allocate_after_warm_up() {
     for name in [
         "01-pinned-beam-rough-floor",
         "02-two-cantilevers-smooth",
         "02-two-cantilevers-rough",
+        "sheet",
     ] {
-        let scene = common::scene(name, &[]);
+        let scene = match name {
+            "sheet" => Scene::from_text(name, SHEET, &[]).unwrap_or_else(|e| panic!("{e}")),
+            name => common::scene(name, &[]),
+        };
         let mut stepper = Stepper::new(Arc::new(scene.model));
         let warm = 200.min(if name.ends_with("rough") { 60 } else { 200 });
         for _ in 0..warm {

@@ -1,6 +1,8 @@
 //! Scene files: the built-in ones are sound, damaged ones get one message with a place, and nothing panics.
 
 use proptest::prelude::*;
+use std::collections::HashSet;
+use stickslip::contact::projection::{footing, project};
 use stickslip::scene::model::{BodyKind, Watched};
 use stickslip::scene::spec::{Component, FrictionLimit};
 use stickslip::scene::{Cost, Model, Scene, SceneError, Spec, builtin, paths, read};
@@ -83,7 +85,9 @@ fn a_file_is_found_by_its_path_and_wins_over_a_built_in_scene() {
     let file = folder.path().join("x.ron");
     std::fs::write(&file, pinned().replacen("EA: 100.0", "EA: 7.0", 1)).unwrap();
     let scene = Scene::open(file.to_str().unwrap(), &[]).unwrap();
-    let BodyKind::Beam(beam) = &scene.model.bodies[0].kind;
+    let BodyKind::Beam(beam) = &scene.model.bodies[0].kind else {
+        panic!("no beam")
+    };
     assert_eq!(beam.ea, 7.0);
     assert_eq!(scene.name, file.to_str().unwrap());
 }
@@ -103,7 +107,9 @@ fn the_pinned_beam_is_numbered_node_by_node_with_shear_last() {
         [Some(13), Some(14), Some(15), Some(16)]
     );
     assert_eq!((model.dofs.equations, model.dofs.shear), (17, 4));
-    let BodyKind::Beam(beam) = &model.bodies[0].kind;
+    let BodyKind::Beam(beam) = &model.bodies[0].kind else {
+        panic!("no beam")
+    };
     assert_eq!(beam.first_shear, Some(25));
     assert!(model.surfaces[0].rigid);
     assert!((model.length - 4.0).abs() < 1e-14);
@@ -114,7 +120,9 @@ fn the_pinned_beam_is_numbered_node_by_node_with_shear_last() {
 #[test]
 fn shear_stiffness_replaces_the_shear_unknowns() {
     let model = with("materials.rod.GA", "5").unwrap().model;
-    let BodyKind::Beam(beam) = &model.bodies[0].kind;
+    let BodyKind::Beam(beam) = &model.bodies[0].kind else {
+        panic!("no beam")
+    };
     assert_eq!((beam.ga, beam.first_shear), (Some(5.0), None));
     assert_eq!(
         (model.dofs.equations, model.dofs.shear, model.dofs.len()),
@@ -163,6 +171,259 @@ fn nodes_have_the_names_that_the_format_promises() {
 
 const SLAVE_P: &str =
     "surfaces: [(id: \"s\", along: \"b\")], slaves: [(nodes: [\"p\"], on: [\"s\"])]";
+
+/// A block of two by one elements, made a solid, and what else the scene has.
+fn solid(block: &str, material: &str, body: &str, rest: &str) -> Result<Scene, SceneError> {
+    let text = format!(
+        "(title: \"t\", nodes: [Block(id: \"k\", {block})], materials: [Elastic(id: \"e\", {material}), \
+         Section(id: \"s\", EA: 1, EI: 1)], bodies: [{body}], history: (path: [0, 1], increment: 0.5), {rest})"
+    );
+    Scene::from_text("solid", &text, &[])
+}
+
+const BLOCK: &str = "corners: [(0, 0), (4, 2)], elements: (2, 1)";
+const ELASTIC: &str = "E: 100, nu: 0.3";
+const SOLID: &str = "Solid(id: \"k\", mesh: \"k\", material: \"e\")";
+
+#[test]
+fn a_block_and_its_edges_have_the_names_that_the_format_promises() {
+    let scene = solid(BLOCK, ELASTIC, SOLID, "").unwrap();
+    let node = |name: &str| scene.node(name);
+    let at = |name: &str| scene.model.nodes[scene.node(name).unwrap()].at;
+    assert_eq!(scene.model.nodes.len(), 13);
+    assert_eq!(scene.model.nodes[12].name, "k.13");
+    assert_eq!(
+        (at("k.1"), at("k.6"), at("k.13")),
+        ([0.0, 0.0], [0.0, 1.0], [4.0, 2.0])
+    );
+    assert_eq!(
+        (at("k.bottom.start"), at("k.bottom.end")),
+        ([0.0, 0.0], [4.0, 0.0])
+    );
+    assert_eq!(
+        (at("k.left.start"), at("k.left.end")),
+        ([0.0, 2.0], [0.0, 0.0])
+    );
+    assert_eq!((at("k.top.2"), at("k.right@0.5")), ([3.0, 2.0], [4.0, 1.0]));
+    let names = scene.names();
+    assert_eq!(names.nodes("k.left"), Ok(vec![8, 5, 0]));
+    assert_eq!(names.nodes("k.left.all"), names.nodes("k.left"));
+    assert_eq!(names.nodes("k.all"), Ok((0..13).collect()));
+    for wrong in [
+        "k",
+        "k.all",
+        "k.left",
+        "k.left.all",
+        "k.start",
+        "k@0.5",
+        "k.14",
+        "k.0",
+        "k.left.4",
+        "k.left.",
+        "k.middle",
+        "k.left.left",
+        "k.1.left",
+        "k.left@0.3",
+        "k..left",
+    ] {
+        assert!(node(wrong).is_err(), "{wrong:?} names a node");
+    }
+    assert!(scene.model.dofs.count.iter().all(|&count| count == 2));
+    let fine = scene.with("refine", "3").unwrap();
+    assert_eq!(
+        fine.model.nodes[fine.node("k.top@0.5").unwrap()].at,
+        [2.0, 2.0]
+    );
+    let BodyKind::Solid(body) = &fine.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    assert_eq!((body.elements.len(), body.edges.len()), (18, 18));
+    assert_eq!(
+        fine.with("nodes.k.elements.x", "1").unwrap().model.bodies[0]
+            .nodes
+            .len(),
+        40
+    );
+}
+
+#[test]
+fn each_fault_of_a_solid_has_one_message_with_its_place() {
+    let elastic = |material: &str| solid(BLOCK, material, SOLID, "");
+    let shaped = |block: &str| solid(block, ELASTIC, SOLID, "");
+    let made = |body: &str| solid(BLOCK, ELASTIC, body, "");
+    let more = |rest: &str| solid(BLOCK, ELASTIC, SOLID, rest);
+    let cases = [
+        (
+            shaped("corners: [(0, 0)], elements: (1, 1)"),
+            "nodes[0].corners: the list has 1 corners",
+        ),
+        (
+            shaped("corners: [(4, 2), (0, 3)], elements: (1, 1)"),
+            "folded or flat at its corner",
+        ),
+        (
+            shaped("corners: [(0, 0), (0, 2), (4, 2), (4, 0)], elements: (1, 1)"),
+            "corners run anticlockwise",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, NaN)], elements: (1, 1)"),
+            "nodes[0].corners[1][1]: y is NaN",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, 2)], elements: (0, 1)"),
+            "nodes[0].elements[0]: the number of elements is 0",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, 2)], elements: (900, 900)"),
+            "at most 200000 can be had",
+        ),
+        (
+            shaped("corners: [(0, 0), (4, 2)], elements: 3"),
+            "nodes[0].elements",
+        ),
+        (
+            elastic("E: 0, nu: 0.3"),
+            "solid:1:116: materials[0].E: E is 0.0",
+        ),
+        (
+            elastic("E: 1, nu: 0.5"),
+            "materials[0].nu: nu is 0.5; it must be at least 0 and below 0.5",
+        ),
+        (elastic("E: 1, nu: -0.1"), "materials[0].nu: nu is -0.1"),
+        (elastic("E: 1, nu: NaN"), "materials[0].nu: nu is NaN"),
+        (
+            elastic("E: 1, nu: 0, thickness: 0"),
+            "materials[0].thickness: the thickness is 0.0",
+        ),
+        (
+            elastic("E: 1, nu: 0, law: hooke"),
+            "\"hooke\" is none of the choices",
+        ),
+        (
+            elastic("E: 1, nu: 0, law: neohookean, update: updated"),
+            "materials[0].update: the updated update has a law",
+        ),
+        (
+            made("Solid(id: \"k\", mesh: \"q\", material: \"e\")"),
+            "bodies[0].mesh: no block called \"q\" (blocks: \"k\")",
+        ),
+        (
+            made("Solid(id: \"k\", mesh: \"k.left\", material: \"e\")"),
+            "is no block; a solid needs",
+        ),
+        (
+            made("Solid(id: \"k\", mesh: \"k\", material: \"s\")"),
+            "material \"s\" is a beam's section",
+        ),
+        (
+            made("Beam(id: \"k\", along: \"k.left\", material: \"e\")"),
+            "material \"e\" is a continuum's",
+        ),
+        (
+            made("Beam(id: \"k\", along: \"k\", material: \"s\")"),
+            "is a block; name one of its edges, \"k.bottom\"",
+        ),
+        (
+            made("Beam(id: \"k\", along: \"k.left\", material: \"s\")"),
+            "node \"k.2\" is used by no body",
+        ),
+        (
+            made(
+                "Solid(id: \"k\", mesh: \"k\", material: \"e\", regions: [(from: (4, 2), to: (0, 0), material: \"e\")])",
+            ),
+            "bodies[0].regions[0]: no element has its middle in the region",
+        ),
+        (
+            made(
+                "Solid(id: \"k\", mesh: \"k\", material: \"e\", regions: [(from: (0, 0), to: (4, 2), material: \"f\")])",
+            ),
+            "bodies[0].regions[0].material: no material called \"f\"",
+        ),
+        (
+            more("supports: [(node: \"k.left\", fix: [rotation])]"),
+            "is on no beam and has no rotation",
+        ),
+        (
+            more("loads: [Force(node: \"k.left\", x: 1)]"),
+            "\"k.left\" is an edge of 3 nodes; name one of them",
+        ),
+        (
+            more("loads: [Force(node: \"k\", x: 1)]"),
+            "\"k\" is a block of 13 nodes; name one of them",
+        ),
+        (
+            more("loads: [Traction(along: \"k.lft\", x: 1)]"),
+            "loads[0].along: no chain of nodes called \"k.lft\"; did you mean \"k.left\"?",
+        ),
+        (
+            more("loads: [Traction(along: \"k.left\", normal: inf)]"),
+            "loads[0].normal: the load is inf",
+        ),
+        (
+            more(
+                "supports: [(node: \"k.left\", fix: [x])], loads: [Traction(along: \"k.left\", normal: 1)]",
+            ),
+            "every node of \"k.left\" is held where this load acts",
+        ),
+        (
+            more(
+                "surfaces: [(id: \"s\", along: \"k.left\")], slaves: [(nodes: [\"k.bottom\"], on: [\"s\"])]",
+            ),
+            "a node cannot touch itself",
+        ),
+    ];
+    for (k, (result, expected)) in cases.into_iter().enumerate() {
+        let error = match result {
+            Ok(_) => panic!("case {k} is accepted: {expected}"),
+            Err(error) => error.to_string(),
+        };
+        assert!(
+            error.contains(expected),
+            "case {k}\n got: {error}\nwant: {expected}"
+        );
+    }
+}
+
+#[test]
+fn tractions_add_up_to_load_times_length() {
+    let line = "nodes: [Line(id: \"b\", from: (0, 0), to: (3, 4), elements: 2, per_element: 4)],";
+    let beam = format!(
+        "(title: \"t\", {line} materials: [Section(id: \"m\", EA: 1, EI: 1)], \
+         bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")], history: (path: [0, 1], increment: 1), \
+         loads: [Traction(along: \"b\", normal: 2, y: 1)])"
+    );
+    let model = Scene::from_text("beam", &beam, &[]).unwrap().model;
+    let sum = |axis: usize| -> f64 {
+        let of_axis = model.loads.iter().filter(|l| l.dof % 3 == axis);
+        of_axis.map(|l| l.value).sum()
+    };
+    // The outward normal, to the right of the walk, is (4, -3)/5.
+    assert!((sum(0) - 8.0).abs() < 1e-13 && (sum(1) - (-6.0 + 5.0)).abs() < 1e-13);
+    let rest = "loads: [Traction(along: \"k.top\", normal: -3)]";
+    let model = solid(BLOCK, ELASTIC, SOLID, rest).unwrap().model;
+    let forces: Vec<f64> = model.loads.iter().map(|l| l.value).collect();
+    // Simpson's rule over two elements of length 2.
+    for (force, expected) in forces.iter().zip([-1.0, -4.0, -2.0, -4.0, -1.0]) {
+        assert!((force - expected).abs() < 1e-13, "{forces:?}");
+    }
+}
+
+#[test]
+fn a_region_gives_its_elements_another_material() {
+    let body = "Solid(id: \"k\", mesh: \"k\", material: \"e\", regions: [(from: (2, 0), to: (4, 2), material: \"e\")])";
+    let scene = solid(BLOCK, ELASTIC, body, "refine: 2").unwrap();
+    let BodyKind::Solid(made) = &scene.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    assert_eq!(made.material_of, [0, 0, 1, 1, 0, 0, 1, 1]);
+    let text = Cost::of(&scene).to_string();
+    for line in [
+        "k: solid, 8 elements of 8 nodes, E 100, nu 0.3, St Venant-Kirchhoff, plane strain, thickness 1",
+        "no memory of earlier increments in k: update is total",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
+}
 
 #[test]
 fn an_arc_is_exact_at_right_angles() {
@@ -227,27 +488,19 @@ fn a_reversed_surface_is_walked_the_other_way() {
 fn built_in_slaves_start_on_the_outward_side() {
     for builtin in builtin::list() {
         let model = Scene::open(builtin.name, &[]).unwrap().model;
+        let positions: Vec<[f64; 2]> = model.nodes.iter().map(|n| n.at).collect();
+        let mut over = 0;
         for slave in &model.slaves {
-            let body = model
-                .bodies
-                .iter()
-                .find(|body| body.nodes.contains(&slave.node))
-                .unwrap();
-            for element in &model.surfaces[slave.surfaces[0]].elements {
-                let (a, b) = (
-                    model.nodes[element[0]].at,
-                    model.nodes[element[element.len() - 1]].at,
-                );
-                let right =
-                    |p: [f64; 2]| (b[1] - a[1]) * (p[0] - a[0]) - (b[0] - a[0]) * (p[1] - a[1]);
-                let outside = body.nodes.iter().all(|&n| right(model.nodes[n].at) >= 0.0);
-                assert!(
-                    outside,
-                    "{}: the body is on the left of its master",
-                    builtin.name
-                );
-            }
+            let at = positions[slave.node];
+            // A node that stands past the ends of its surfaces has no side yet.
+            let Some(spot) = project(at, &model.surfaces, &slave.surfaces, &positions, None) else {
+                continue;
+            };
+            over += 1;
+            let gap = footing(&model.surfaces, spot, &positions, at).gap;
+            assert!(gap > -1e-12 * model.length, "{}: {gap}", builtin.name);
         }
+        assert!(over > 0, "{}", builtin.name);
     }
 }
 
@@ -319,8 +572,8 @@ fn each_fault_has_one_message_with_its_place() {
         ),
         (
             "Beam(",
-            "Solid(",
-            ":35:14: bodies[0]: \"Solid\" is none of the choices (choices: Beam)",
+            "Plate(",
+            ":35:14: bodies[0]: \"Plate\" is none of the choices (choices: Beam, Solid)",
         ),
         (
             "sliding)",
@@ -783,15 +1036,22 @@ fn assert_usable(model: &Model) {
     );
     let numbers: Vec<usize> = model.dofs.equation.iter().flatten().copied().collect();
     assert!(numbers.iter().enumerate().all(|(k, number)| k == *number));
-    for node in model.bodies.iter().flat_map(|body| &body.nodes) {
-        assert!(model.dofs.dof(*node, Component::Rotation).is_some());
+    for body in &model.bodies {
+        match &body.kind {
+            BodyKind::Beam(_) => {
+                for node in &body.nodes {
+                    assert!(model.dofs.dof(*node, Component::Rotation).is_some());
+                }
+            }
+            BodyKind::Solid(solid) => {
+                assert_eq!(solid.elements.len(), solid.material_of.len());
+                assert!(solid.material_of.iter().all(|&k| k < solid.materials.len()));
+                let nodes: HashSet<usize> = solid.elements.iter().flatten().copied().collect();
+                assert_eq!(nodes, body.nodes.iter().copied().collect());
+            }
+        }
     }
-    assert!(
-        model
-            .loads
-            .iter()
-            .all(|load| load.value.is_finite() && model.dofs.equation[load.dof].is_some())
-    );
+    assert!(model.loads.iter().all(|load| load.value.is_finite()));
     assert!(
         model
             .prescribed
@@ -923,20 +1183,30 @@ const EVERYTHING: &str = r#"(
         Arc(id: "a", center: (2, -2), radius: 2, from: 135, to: 45, elements: 2, per_element: 3),
         Through(id: "t", points: [(0, 2), (1, 2.1), (2, 2)], per_element: 3),
         Chain(id: "c", of: ["b.1", "p"], per_element: 2),
+        Block(id: "k", corners: [(5, 0), (6, 0), (6, 2), (5, 1.5)], elements: (2, 3)),
+        Block(id: "r", corners: [(5, -3), (6, -2)], elements: (1, 2)),
     ],
-    materials: [Section(id: "m", EA: 10, EI: 1, GA: 3), Section(id: "n", EA: 10, EI: 1)],
+    materials: [
+        Section(id: "m", EA: 10, EI: 1, GA: 3), Section(id: "n", EA: 10, EI: 1),
+        Elastic(id: "e", E: 100, nu: 0.3),
+        Elastic(id: "f", E: 50, nu: 0.2, law: neohookean, plane: stress, thickness: 0.1, update: total),
+        Elastic(id: "g", E: 50, nu: 0, update: updated),
+    ],
     bodies: [
         Beam(id: "b", along: "b", material: "m"), Beam(id: "c", along: "c", material: "n"),
-        Beam(id: "t", along: "t", material: "n"),
+        Beam(id: "t", along: "t", material: "n"), Beam(id: "skin", along: "r.top", material: "m"),
+        Solid(id: "k", mesh: "k", material: "e", regions: [(from: (5, 1), to: (6, 2), material: "f")]),
+        Solid(id: "r", mesh: "r", material: "g"),
     ],
-    surfaces: [(id: "s", along: "a"), (id: "u", along: "t", reverse: true)],
+    surfaces: [(id: "s", along: "a"), (id: "u", along: "t", reverse: true), (id: "v", along: "k.left")],
     slaves: [
         (nodes: ["b.all"], on: ["s"], start: fixed, friction: (angle: 10, cohesion: 0.1)),
-        (nodes: ["p"], on: ["s", "u"]),
+        (nodes: ["p"], on: ["s", "u"]), (nodes: ["r.left", "r.bottom.2"], on: ["v"]),
     ],
     friction: (angle: 5),
-    supports: [(node: "t.start", fix: [x, y, rotation])],
+    supports: [(node: "t.start", fix: [x, y, rotation]), (node: "k.right", fix: [x])],
     loads: [
+        Traction(along: "k.top", normal: -1, x: 0.5, y: 1, scale: [(0, 1)]), Force(node: "r.3", x: 1),
         Force(node: "b.end", x: 1, y: 2, scale: [(0, 0), (1, 2)]), Moment(node: "t.end", value: 3),
         Displacement(node: "a.all", component: y, value: 0.1), Displacement(node: "t.end", component: x, value: 0.1),
     ],

@@ -2,13 +2,29 @@
 //!
 //! Where every entry of every element goes is found once; assembling then only adds.
 
-use crate::fem::beam::{Element, MAX_DOFS, Section};
+use crate::fem::beam::{self, Section};
+use crate::fem::material::Material;
+use crate::fem::quad8::{self, Past};
 use crate::linalg::Pattern;
 use crate::scene::Model;
-use crate::scene::model::{BodyKind, Dofs};
+use crate::scene::model::{Beam, Body, BodyKind, Dofs, Solid};
+use crate::scene::spec::Update;
+use std::ops::Range;
 
 /// An entry of an element's matrix that has no place in the system, since it is restrained.
-const NOWHERE: usize = usize::MAX;
+const NOWHERE: u32 = u32::MAX;
+/// Most degrees of freedom of any element.
+const MAX_DOFS: usize = if beam::MAX_DOFS > quad8::DOFS {
+    beam::MAX_DOFS
+} else {
+    quad8::DOFS
+};
+
+/// An element of either kind.
+enum Element {
+    Beam(beam::Element),
+    Quad(quad8::Element),
+}
 
 /// An element and where it stands.
 struct Placed {
@@ -16,20 +32,41 @@ struct Placed {
     /// Degrees of freedom of the scene, in the element's order.
     dofs: Vec<usize>,
     /// Place in the array of values of each entry of the element's matrix, row by row.
-    slots: Vec<usize>,
+    slots: Vec<u32>,
+    /// Whether any of its degrees of freedom has no equation.
+    held: bool,
+    /// What it remembers, in the scene's history.
+    history: Range<usize>,
 }
 
 /// All elements of all bodies.
 pub struct Assembly {
     elements: Vec<Placed>,
+    /// Numbers that the elements placed so far remember.
+    history_len: usize,
     force: [f64; MAX_DOFS],
     tangent: Vec<f64>,
     u: [f64; MAX_DOFS],
+    before: [f64; MAX_DOFS],
+}
+
+/// How the degrees of freedom have moved.
+#[derive(Debug, Clone, Copy)]
+pub struct Moved<'a> {
+    /// Displacements.
+    pub u: &'a [f64],
+    /// Change that the degrees of freedom without an equation make in this major iteration.
+    pub step: &'a [f64],
+    /// Displacements at the last accepted increment.
+    pub before: &'a [f64],
+    /// What the elements remember of that increment: [`history_len`] numbers, all zero before the first.
+    pub history: &'a [f64],
 }
 
 /// What [`Assembly::assemble`] fills, all of it overwritten.
 pub struct Assembled<'a> {
     /// Internal force at each degree of freedom, restrained ones included (there it is what the support carries).
+    /// Infinite at an element that has no answer to its displacements.
     pub force: &'a mut [f64],
     /// Sum of the sizes of the element forces at each degree of freedom: the scale of `force`.
     pub size: &'a mut [f64],
@@ -42,43 +79,67 @@ pub struct Assembled<'a> {
 impl Assembly {
     /// Lays out the elements of a scene.
     pub fn new(model: &Model) -> Self {
-        let mut elements = Vec::new();
-        for body in &model.bodies {
-            let BodyKind::Beam(beam) = &body.kind;
-            let section = Section {
-                ea: beam.ea,
-                ei: beam.ei,
-                ga: beam.ga,
-            };
-            for (e, nodes) in beam.elements.iter().enumerate() {
-                let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
-                let element = Element::new(&positions, section);
-                let mut dofs: Vec<usize> = nodes
-                    .iter()
-                    .flat_map(|&n| (0..3).map(move |k| model.dofs.first[n] + k))
-                    .collect();
-                if let Some(first) = beam.first_shear {
-                    let points = element.gauss_points();
-                    dofs.extend((0..points).map(|p| first + e * points + p));
-                }
-                elements.push(Placed {
-                    element,
-                    dofs,
-                    slots: Vec::new(),
-                });
-            }
-        }
-        Assembly {
-            elements,
+        let mut assembly = Assembly {
+            elements: Vec::new(),
+            history_len: 0,
             force: [0.0; MAX_DOFS],
             tangent: vec![0.0; MAX_DOFS * MAX_DOFS],
             u: [0.0; MAX_DOFS],
+            before: [0.0; MAX_DOFS],
+        };
+        for body in &model.bodies {
+            match &body.kind {
+                BodyKind::Beam(beam) => assembly.add_beam(model, beam),
+                BodyKind::Solid(solid) => assembly.add_solid(model, solid),
+            }
         }
+        assembly
+    }
+
+    fn add_beam(&mut self, model: &Model, beam: &Beam) {
+        let section = Section {
+            ea: beam.ea,
+            ei: beam.ei,
+            ga: beam.ga,
+        };
+        for (e, nodes) in beam.elements.iter().enumerate() {
+            let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
+            let element = beam::Element::new(&positions, section);
+            let mut dofs = dofs_of(model, nodes, 3);
+            if let Some(first) = beam.first_shear {
+                let points = element.gauss_points();
+                dofs.extend((0..points).map(|p| first + e * points + p));
+            }
+            self.place(Element::Beam(element), dofs, 0);
+        }
+    }
+
+    fn add_solid(&mut self, model: &Model, solid: &Solid) {
+        for (nodes, &material) in solid.elements.iter().zip(&solid.material_of) {
+            let elastic = &solid.materials[material];
+            let positions = nodes.map(|n| model.nodes[n].at);
+            let element = quad8::Element::new(positions, Material::new(elastic), elastic.update);
+            let history = element.history_len();
+            self.place(Element::Quad(element), dofs_of(model, nodes, 2), history);
+        }
+    }
+
+    fn place(&mut self, element: Element, dofs: Vec<usize>, history: usize) {
+        let first = self.history_len;
+        self.history_len += history;
+        self.elements.push(Placed {
+            element,
+            dofs,
+            slots: Vec::new(),
+            held: true,
+            history: first..self.history_len,
+        });
     }
 
     /// Entries `(row, column)`, in equations, that the elements have; some repeat.
     pub fn entries(&self, dofs: &Dofs) -> Vec<(usize, usize)> {
-        let mut entries = Vec::new();
+        let most = self.elements.iter().map(|p| p.dofs.len().pow(2)).sum();
+        let mut entries = Vec::with_capacity(most);
         for placed in &self.elements {
             let equations = || placed.dofs.iter().filter_map(|&d| dofs.equation[d]);
             entries.extend(equations().flat_map(|i| equations().map(move |j| (i, j))));
@@ -88,55 +149,133 @@ impl Assembly {
 
     /// Finds the place of every entry in a pattern that has them all.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern) {
+        let slot = |i, j| {
+            let slot = pattern.slot(i, j)?;
+            u32::try_from(slot).ok()
+        };
         for placed in &mut self.elements {
             let equation = |d: &usize| dofs.equation[*d];
-            placed.slots = placed
+            placed.held = placed.dofs.iter().any(|d| equation(d).is_none());
+            placed.slots.clear();
+            let pairs = placed
                 .dofs
                 .iter()
-                .flat_map(|i| placed.dofs.iter().map(move |j| (equation(i), equation(j))))
-                .map(|pair| match pair {
-                    (Some(i), Some(j)) => pattern.slot(i, j).unwrap_or(NOWHERE),
-                    _ => NOWHERE,
-                })
-                .collect();
+                .flat_map(|i| placed.dofs.iter().map(move |j| (equation(i), equation(j))));
+            placed.slots.extend(pairs.map(|pair| match pair {
+                (Some(i), Some(j)) => slot(i, j).unwrap_or(NOWHERE),
+                _ => NOWHERE,
+            }));
         }
     }
 
-    /// Internal forces and tangent at displacements `u`; `step` is the change that the degrees of freedom without
-    /// an equation make in this major iteration.
-    pub fn assemble(&mut self, dofs: &Dofs, u: &[f64], step: &[f64], out: Assembled<'_>) {
+    /// Internal forces and tangent.
+    pub fn assemble(&mut self, dofs: &Dofs, moved: Moved<'_>, mut out: Assembled<'_>) {
         out.force.fill(0.0);
         out.size.fill(0.0);
         out.values.fill(0.0);
         out.coupling.fill(0.0);
         for placed in &self.elements {
             let n = placed.dofs.len();
-            let (local, force) = (&mut self.u[..n], &mut self.force[..n]);
-            let tangent = &mut self.tangent[..n * n];
-            for (local, &d) in local.iter_mut().zip(&placed.dofs) {
-                *local = u[d];
-            }
+            let (u, before) = (&mut self.u[..n], &mut self.before[..n]);
+            let (force, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
+            placed.gather(moved.u, u);
             force.fill(0.0);
             tangent.fill(0.0);
-            placed.element.add(local, force, tangent);
-            for (i, &d) in placed.dofs.iter().enumerate() {
-                out.force[d] += force[i];
-                out.size[d] += force[i].abs();
-                let row = &tangent[i * n..(i + 1) * n];
-                for (value, &slot) in row.iter().zip(&placed.slots[i * n..(i + 1) * n]) {
-                    if slot != NOWHERE {
-                        out.values[slot] += value;
+            match &placed.element {
+                Element::Beam(element) => element.add(u, force, tangent),
+                Element::Quad(element) => {
+                    let history = &moved.history[placed.history.clone()];
+                    if !history.is_empty() {
+                        placed.gather(moved.before, before);
+                    }
+                    let past = Past { u: before, history };
+                    if !element.add(&past, u, force, tangent) {
+                        placed.give_up(&mut out);
+                        continue;
                     }
                 }
-                let Some(equation) = dofs.equation[d] else {
-                    continue;
-                };
-                for (value, &other) in row.iter().zip(&placed.dofs) {
-                    if dofs.equation[other].is_none() {
-                        out.coupling[equation] += value * step[other];
-                    }
+            }
+            placed.scatter(force, tangent, &mut out);
+            if placed.held {
+                placed.couple(dofs, tangent, moved.step, out.coupling);
+            }
+        }
+    }
+
+    /// Renews what the elements remember, once displacements `u` are accepted; `before` are those accepted last.
+    pub fn advance(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {
+        let mut old = [0.0; quad8::MEMORY * quad8::POINTS];
+        for placed in self.elements.iter().filter(|p| !p.history.is_empty()) {
+            let Element::Quad(element) = &placed.element else {
+                continue;
+            };
+            let n = placed.dofs.len();
+            placed.gather(u, &mut self.u[..n]);
+            placed.gather(before, &mut self.before[..n]);
+            let history = &mut history[placed.history.clone()];
+            old.copy_from_slice(history);
+            let past = Past {
+                u: &self.before[..n],
+                history: &old,
+            };
+            element.advance(&past, &self.u[..n], history);
+        }
+    }
+}
+
+/// How many numbers the elements of a scene remember from increment to increment.
+pub fn history_len(model: &Model) -> usize {
+    let of = |body: &Body| match &body.kind {
+        BodyKind::Beam(_) => 0,
+        BodyKind::Solid(solid) => {
+            let remembers = |m: &&usize| solid.materials[**m].update == Update::Updated;
+            quad8::MEMORY * quad8::POINTS * solid.material_of.iter().filter(remembers).count()
+        }
+    };
+    model.bodies.iter().map(of).sum()
+}
+
+/// The first `count` degrees of freedom of each node.
+fn dofs_of(model: &Model, nodes: &[usize], count: usize) -> Vec<usize> {
+    let of_node = |&n: &usize| (0..count).map(move |k| model.dofs.first[n] + k);
+    nodes.iter().flat_map(of_node).collect()
+}
+
+impl Placed {
+    fn gather(&self, from: &[f64], to: &mut [f64]) {
+        for (to, &d) in to.iter_mut().zip(&self.dofs) {
+            *to = from[d];
+        }
+    }
+
+    fn scatter(&self, force: &[f64], tangent: &[f64], out: &mut Assembled<'_>) {
+        for (&d, force) in self.dofs.iter().zip(force) {
+            out.force[d] += force;
+            out.size[d] += force.abs();
+        }
+        for (value, &slot) in tangent.iter().zip(&self.slots) {
+            if slot != NOWHERE {
+                out.values[slot as usize] += value;
+            }
+        }
+    }
+
+    /// Forces due to the steps of degrees of freedom without an equation.
+    fn couple(&self, dofs: &Dofs, tangent: &[f64], step: &[f64], coupling: &mut [f64]) {
+        for (row, &d) in tangent.chunks_exact(self.dofs.len()).zip(&self.dofs) {
+            let Some(equation) = dofs.equation[d] else {
+                continue;
+            };
+            for (value, &other) in row.iter().zip(&self.dofs) {
+                if dofs.equation[other].is_none() {
+                    coupling[equation] += value * step[other];
                 }
             }
         }
+    }
+
+    /// No finite force balances anything here. The scale of forces stays finite, so that the residual does not.
+    fn give_up(&self, out: &mut Assembled<'_>) {
+        self.dofs.iter().for_each(|&d| out.force[d] = f64::INFINITY);
     }
 }

@@ -1,5 +1,7 @@
-//! The bodies: shape functions, quadrature, elements, and their assembly.
+//! The bodies: shape functions, quadrature, materials, elements, and their assembly.
 
 pub mod assembly;
 pub mod beam;
 pub mod lagrange;
+pub mod material;
+pub mod quad8;

@@ -22,6 +22,8 @@ const SCENES: &[Builtin] = scenes![
     "02-two-cantilevers-rough",
     "03-distant-cantilevers",
     "04-cantilever-rigid-circle",
+    "05-cantilever-elastic-block",
+    "05-cantilever-elastic-block-swapped",
     "osc-inclined-cantilever",
 ];
 

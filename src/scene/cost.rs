@@ -2,7 +2,8 @@
 
 use super::Scene;
 use super::compile::increments;
-use super::model::{BodyKind, Model, Surface};
+use super::model::{BodyKind, Elastic, Model, Solid, Surface};
+use super::spec::Update;
 use std::fmt;
 
 /// What a scene costs. It prints as a table for a person who is to decide whether that is what was meant.
@@ -52,6 +53,10 @@ impl Cost {
             .flat_map(|b| &b.nodes)
             .for_each(|&n| on_body[n] = true);
         let on_bodies = on_body.iter().filter(|on| **on).count();
+        let of_bodies: usize = (0..model.nodes.len())
+            .filter(|&n| on_body[n])
+            .map(|n| usize::from(model.dofs.count[n]))
+            .sum();
         let (translations, rotations) = (counted(0) + counted(1), counted(2));
         Cost {
             nodes: (model.nodes.len(), on_bodies),
@@ -59,7 +64,7 @@ impl Cost {
             rotations,
             shears: model.dofs.shear,
             interface: 2 * model.slaves.len(),
-            held: 3 * on_bodies - translations - rotations,
+            held: of_bodies - translations - rotations,
             bodies: model.bodies.iter().map(body_line).collect(),
             surfaces: model.surfaces.iter().map(surface_line).collect(),
             slaves: slaves_line(model),
@@ -80,7 +85,10 @@ fn plural(count: usize, one: &str) -> String {
 }
 
 fn body_line(body: &super::model::Body) -> String {
-    let BodyKind::Beam(beam) = &body.kind;
+    let beam = match &body.kind {
+        BodyKind::Beam(beam) => beam,
+        BodyKind::Solid(solid) => return solid_line(&body.name, solid),
+    };
     let per = beam.elements.first().map_or(0, Vec::len);
     let shear = match beam.ga {
         Some(ga) => format!("GA {ga}"),
@@ -90,6 +98,31 @@ fn body_line(body: &super::model::Body) -> String {
     format!(
         "{}: beam, {elements} of {per} nodes, EA {}, EI {}, {shear}",
         body.name, beam.ea, beam.ei
+    )
+}
+
+fn solid_line(name: &str, solid: &Solid) -> String {
+    use super::spec::{Law, Plane};
+    let elements = plural(solid.elements.len(), "element");
+    let made_of = |m: &Elastic| {
+        let law = match (m.law, m.update) {
+            (Law::NeoHookean, _) => "neo-Hookean",
+            (Law::Svk, Update::Total) => "St Venant-Kirchhoff",
+            (Law::Svk, Update::Updated) => "updated Lagrangian",
+        };
+        let plane = match m.plane {
+            Plane::Strain => "plane strain",
+            Plane::Stress => "plane stress",
+        };
+        format!(
+            "E {}, nu {}, {law}, {plane}, thickness {}",
+            m.young, m.poisson, m.thickness
+        )
+    };
+    let materials: Vec<String> = solid.materials.iter().map(made_of).collect();
+    format!(
+        "{name}: solid, {elements} of 8 nodes, {}",
+        materials.join("; ")
     )
 }
 
@@ -148,12 +181,18 @@ fn history_line(model: &Model) -> String {
 fn without(model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     for body in &model.bodies {
-        let BodyKind::Beam(beam) = &body.kind;
-        if beam.ga.is_none() {
-            lines.push(format!(
+        match &body.kind {
+            BodyKind::Beam(beam) if beam.ga.is_none() => lines.push(format!(
                 "no shear deformation of {}: GA is not named",
                 body.name
-            ));
+            )),
+            BodyKind::Solid(solid) if solid.materials.iter().all(|m| m.update == Update::Total) => {
+                lines.push(format!(
+                    "no memory of earlier increments in {}: update is total",
+                    body.name
+                ));
+            }
+            _ => {}
         }
     }
     for surface in model.surfaces.iter().filter(|surface| surface.rigid) {

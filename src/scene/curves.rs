@@ -145,6 +145,14 @@ pub(crate) fn through(
     Ok(made)
 }
 
+/// The Lagrange function i of m at t, for nodes at the parameters 0, 1, 2, …
+pub(crate) fn shape(m: usize, i: usize, t: f64) -> f64 {
+    let others = (0..m).filter(|j| *j != i);
+    others
+        .map(|j| (t - j as f64) / (i as f64 - j as f64))
+        .product()
+}
+
 /// The point of the Lagrange curve through equally spaced nodes, at `k / refine` intervals between nodes.
 fn on_curve(curve: &[Point], k: usize, refine: usize) -> Point {
     if k.is_multiple_of(refine) {
@@ -154,10 +162,7 @@ fn on_curve(curve: &[Point], k: usize, refine: usize) -> Point {
     let t = k as f64 / refine as f64;
     let mut at = (0.0, 0.0);
     for (i, node) in curve.iter().enumerate() {
-        let others = (0..curve.len()).filter(|j| *j != i);
-        let shape: f64 = others
-            .map(|j| (t - j as f64) / (i as f64 - j as f64))
-            .product();
+        let shape = shape(curve.len(), i, t);
         at = (at.0 + shape * node.0, at.1 + shape * node.1);
     }
     at

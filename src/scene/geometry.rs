@@ -83,7 +83,8 @@ fn slopes(m: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-fn slope(m: usize, i: usize, t: f64) -> f64 {
+/// Derivative of the Lagrange function i of m at t.
+pub(crate) fn slope(m: usize, i: usize, t: f64) -> f64 {
     let others = |skip: usize| (0..m).filter(move |j| *j != i && *j != skip);
     let factor = |j: usize| (t - j as f64) / (i as f64 - j as f64);
     others(i)

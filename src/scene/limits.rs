@@ -27,6 +27,8 @@ pub const TITLE: usize = 120;
 pub const MAGNITUDE: f64 = 1e12;
 /// Smallest and largest stiffness: their squares are still far from the ends of floating-point range.
 pub const STIFFNESS: (f64, f64) = (1e-30, 1e30);
+/// Poisson's ratio is below this.
+pub const POISSON: f64 = 0.5;
 /// Shortest distance between two neighbours in an element, in diagonals of the scene.
 pub const SHORTEST: f64 = 1e-9;
 

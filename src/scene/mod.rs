@@ -2,7 +2,7 @@
 //!
 //! - [`spec`]: the file as its author writes it; [`read`]: from text to that, [`locate`]: from that back to a line.
 //! - [`paths`]: every scalar of a scene by its path, to list and to set.
-//! - `compile`, with [`nodes`], `curves`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
+//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
 //! - [`cost`]: what a scene costs, and what it does without.
 //! - [`builtin`]: the scenes that the program carries.
 
@@ -17,6 +17,7 @@ pub mod paths;
 pub mod read;
 pub mod spec;
 
+mod blocks;
 mod compile;
 mod curves;
 mod geometry;

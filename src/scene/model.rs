@@ -7,7 +7,7 @@
 //! shear-rigid beams, one per Gauss point. `equation[d]` is the number of the unknown of degree of freedom d, or
 //! none where it is restrained or prescribed.
 
-use super::spec::{Axis, Component, Friction, Mode, Settings};
+use super::spec::{Axis, Component, Friction, Law, Mode, Plane, Settings, Update};
 
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,12 +35,12 @@ pub struct Model {
 /// A node in the reference configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// `ID.k` for the k-th node of a chain (from 1), or the id of a single node.
+    /// `ID.k` for the k-th node of a chain or block (from 1), or the id of a single node.
     pub name: String,
     pub at: [f64; 2],
 }
 
-/// A deformable body. More kinds will come; what holds for all stands in [`Body`].
+/// A deformable body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     pub name: String,
@@ -53,6 +53,44 @@ pub struct Body {
 #[derive(Debug, Clone, PartialEq)]
 pub enum BodyKind {
     Beam(Beam),
+    Solid(Solid),
+}
+
+impl BodyKind {
+    /// The lines of a drawing of it: a beam's elements, a solid's outline.
+    pub fn lines(&self) -> &[Vec<usize>] {
+        match self {
+            BodyKind::Beam(beam) => &beam.elements,
+            BodyKind::Solid(solid) => &solid.edges,
+        }
+    }
+}
+
+/// A continuum of 8-node quadrilaterals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Nodes of each element: the corners anticlockwise, then the middles of the sides that start at them.
+    pub elements: Vec<[usize; 8]>,
+    /// What it is made of.
+    pub materials: Vec<Elastic>,
+    /// Index into `materials` of each element.
+    pub material_of: Vec<usize>,
+    /// Elements of 3 nodes around it, anticlockwise from the lower left corner.
+    pub edges: Vec<Vec<usize>>,
+}
+
+/// An elastic continuum's numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elastic {
+    /// Young's modulus (force by area).
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    pub law: Law,
+    pub plane: Plane,
+    /// Thickness across the plane, undeformed (length).
+    pub thickness: f64,
+    pub update: Update,
 }
 
 /// A chain of m-node beam elements with one section.

@@ -5,9 +5,9 @@
 
 use super::error::{Path, at, nearest, quoted};
 use super::spec::{
-    AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, LoadSpec,
-    Material, Mode, MonitorSpec, Nodes, Point, Quantity, ResidualMethod, Scale, Settings,
-    SlipCount, Spec, Ties,
+    AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, Law, LoadSpec,
+    Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity, Region, ResidualMethod, Scale,
+    Settings, SlipCount, Spec, Ties, Update,
 };
 
 /// A value set from outside.
@@ -155,6 +155,14 @@ impl Place {
         }
     }
 
+    /// A part of a tuple, which has a name only here.
+    fn part(&self, name: &str, index: usize) -> Place {
+        Place {
+            name: format!("{}.{name}", self.name),
+            at: self.at.then(index),
+        }
+    }
+
     /// An element of a list that is called by its id.
     fn called(&self, id: &str, index: usize) -> Place {
         Place {
@@ -268,6 +276,9 @@ choices! {
     Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
     FrictionLimit { "lagged" => FrictionLimit::Lagged, "consistent" => FrictionLimit::Consistent }
     SlipCount { "increment" => SlipCount::Increment, "major" => SlipCount::Major }
+    Law { "svk" => Law::Svk, "neohookean" => Law::NeoHookean }
+    Plane { "strain" => Plane::Strain, "stress" => Plane::Stress }
+    Update { "total" => Update::Total, "updated" => Update::Updated }
     Ties { "keep" => Ties::Keep, "printed" => Ties::Printed }
     AtCycle { "stop" => AtCycle::Stop, "damp" => AtCycle::Damp }
     AtLimit { "stop" => AtLimit::Stop, "accept" => AtLimit::Accept }
@@ -290,18 +301,11 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
     }
     for (k, entry) in spec.materials.iter_mut().enumerate() {
         let place = root("materials").called(entry.id(), k);
-        let Material::Section { EA, EI, GA, .. } = entry;
-        visit(&place.field("EA"), Scalar::Number(EA));
-        visit(&place.field("EI"), Scalar::Number(EI));
-        visit(&place.field("GA"), Scalar::Optional(GA));
+        material(&place, entry, visit);
     }
     for (k, entry) in spec.bodies.iter_mut().enumerate() {
         let place = root("bodies").called(entry.id(), k);
-        let BodySpec::Beam {
-            along, material, ..
-        } = entry;
-        visit(&place.field("along"), Scalar::Text(along));
-        visit(&place.field("material"), Scalar::Text(material));
+        body(&place, entry, visit);
     }
     for (k, entry) in spec.surfaces.iter_mut().enumerate() {
         let place = root("surfaces").called(&entry.id, k);
@@ -359,11 +363,17 @@ fn point(place: &Place, point: &mut Point, visit: &mut Visit<'_>) {
         .into_iter()
         .enumerate()
     {
-        let part = Place {
-            name: format!("{}.{name}", place.name),
-            at: place.at.then(k),
-        };
-        visit(&part, Scalar::Number(value));
+        visit(&place.part(name, k), Scalar::Number(value));
+    }
+}
+
+/// Two counts, called like the parts of a point.
+fn pair(place: &Place, pair: &mut (usize, usize), visit: &mut Visit<'_>) {
+    for (k, (name, value)) in [("x", &mut pair.0), ("y", &mut pair.1)]
+        .into_iter()
+        .enumerate()
+    {
+        visit(&place.part(name, k), Scalar::Count(value));
     }
 }
 
@@ -412,6 +422,12 @@ fn nodes(place: &Place, entry: &mut Nodes, visit: &mut Visit<'_>) {
             points(&place.field("points"), list, visit);
             per_element
         }
+        Nodes::Block {
+            corners, elements, ..
+        } => {
+            points(&place.field("corners"), corners, visit);
+            return pair(&place.field("elements"), elements, visit);
+        }
         Nodes::Chain {
             of, per_element, ..
         } => {
@@ -420,6 +436,59 @@ fn nodes(place: &Place, entry: &mut Nodes, visit: &mut Visit<'_>) {
         }
     };
     visit(&place.field("per_element"), Scalar::Count(per));
+}
+
+#[allow(non_snake_case)]
+fn material(place: &Place, entry: &mut Material, visit: &mut Visit<'_>) {
+    match entry {
+        Material::Section { EA, EI, GA, .. } => {
+            visit(&place.field("EA"), Scalar::Number(EA));
+            visit(&place.field("EI"), Scalar::Number(EI));
+            visit(&place.field("GA"), Scalar::Optional(GA));
+        }
+        Material::Elastic {
+            E,
+            nu,
+            law,
+            plane,
+            thickness,
+            update,
+            ..
+        } => {
+            visit(&place.field("E"), Scalar::Number(E));
+            visit(&place.field("nu"), Scalar::Number(nu));
+            visit(&place.field("law"), Scalar::Choice(law));
+            visit(&place.field("plane"), Scalar::Choice(plane));
+            visit(&place.field("thickness"), Scalar::Number(thickness));
+            visit(&place.field("update"), Scalar::Choice(update));
+        }
+    }
+}
+
+fn body(place: &Place, entry: &mut BodySpec, visit: &mut Visit<'_>) {
+    match entry {
+        BodySpec::Beam {
+            along, material, ..
+        } => {
+            visit(&place.field("along"), Scalar::Text(along));
+            visit(&place.field("material"), Scalar::Text(material));
+        }
+        BodySpec::Solid {
+            mesh,
+            material,
+            regions,
+            ..
+        } => {
+            visit(&place.field("mesh"), Scalar::Text(mesh));
+            visit(&place.field("material"), Scalar::Text(material));
+            for (k, Region { from, to, material }) in regions.iter_mut().enumerate() {
+                let place = place.field("regions").index(k);
+                point(&place.field("from"), from, visit);
+                point(&place.field("to"), to, visit);
+                visit(&place.field("material"), Scalar::Text(material));
+            }
+        }
+    }
 }
 
 fn friction(place: &Place, friction: &mut Friction, visit: &mut Visit<'_>) {
@@ -451,6 +520,19 @@ fn load(place: &Place, entry: &mut LoadSpec, visit: &mut Visit<'_>) {
         LoadSpec::Moment { node, value, scale } => {
             visit(&place.field("node"), Scalar::Text(node));
             visit(&place.field("value"), Scalar::Number(value));
+            scale
+        }
+        LoadSpec::Traction {
+            along,
+            normal,
+            x,
+            y,
+            scale,
+        } => {
+            visit(&place.field("along"), Scalar::Text(along));
+            visit(&place.field("normal"), Scalar::Number(normal));
+            visit(&place.field("x"), Scalar::Number(x));
+            visit(&place.field("y"), Scalar::Number(y));
             scale
         }
         LoadSpec::Displacement {

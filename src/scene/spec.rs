@@ -59,7 +59,7 @@ fn one() -> usize {
 /// Nodes, one by one or in chains of m-node elements.
 ///
 /// A chain's nodes are called `ID.1`, `ID.2`, … in order; `ID.start`, `ID.end`, `ID@0.5` (at that fraction of the
-/// chain's parameter) and `ID.all` name them whatever the refinement.
+/// chain's parameter) and `ID.all` name them whatever the refinement. So do they for each edge of a block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Nodes {
@@ -91,6 +91,19 @@ pub enum Nodes {
         points: Vec<Point>,
         per_element: usize,
     },
+    /// A mesh of 8-node quadrilaterals on a block with four straight edges.
+    ///
+    /// Its edges are chains of 3-node elements, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
+    /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
+    /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
+    Block {
+        id: String,
+        /// Two opposite corners of an upright rectangle, lower left and upper right; or all four of a convex
+        /// quadrilateral, anticlockwise, the bottom edge first.
+        corners: Vec<Point>,
+        /// Number of elements along the bottom and along the left edge, before refinement.
+        elements: (usize, usize),
+    },
     /// A chain over nodes that exist already, which it shares (a rigid joint between beams). Not refined.
     Chain {
         id: String,
@@ -107,6 +120,7 @@ impl Nodes {
             | Nodes::Line { id, .. }
             | Nodes::Arc { id, .. }
             | Nodes::Through { id, .. }
+            | Nodes::Block { id, .. }
             | Nodes::Chain { id, .. } => id,
         }
     }
@@ -128,13 +142,72 @@ pub enum Material {
         #[serde(default)]
         GA: Option<f64>,
     },
+    /// An elastic continuum in the plane.
+    Elastic {
+        id: String,
+        /// Young's modulus, force by area.
+        E: f64,
+        /// Poisson's ratio, 0 <= nu < 0.5.
+        nu: f64,
+        /// Default: svk.
+        #[serde(default)]
+        law: Law,
+        /// Default: strain.
+        #[serde(default)]
+        plane: Plane,
+        /// Thickness across the plane, of the undeformed body. Default: 1.
+        #[serde(default = "unit")]
+        thickness: f64,
+        /// Default: total.
+        #[serde(default)]
+        update: Update,
+    },
+}
+
+fn unit() -> f64 {
+    1.0
+}
+
+/// How stress follows from strain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Law {
+    /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens and fails under large compression.
+    #[default]
+    Svk,
+    /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too.
+    NeoHookean,
+}
+
+/// What happens across the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Plane {
+    /// No strain: a long body.
+    #[default]
+    Strain,
+    /// No stress: a thin sheet.
+    Stress,
+}
+
+/// What strains and stresses are referred to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Update {
+    /// The undeformed shape: the answer does not depend on the increments.
+    #[default]
+    Total,
+    /// The shape at the last accepted increment, as in the paper: stress grows by the small-strain moduli times each
+    /// increment's strain, and the answer depends on the size of the increments (its Fig. 8). Law svk only.
+    Updated,
 }
 
 impl Material {
     /// Its id.
     pub fn id(&self) -> &str {
-        let Material::Section { id, .. } = self;
-        id
+        match self {
+            Material::Section { id, .. } | Material::Elastic { id, .. } => id,
+        }
     }
 }
 
@@ -148,13 +221,35 @@ pub enum BodySpec {
         along: String,
         material: String,
     },
+    /// A continuum on the mesh of a block.
+    Solid {
+        id: String,
+        /// Id of the block.
+        mesh: String,
+        material: String,
+        /// Parts of another material; where they overlap, the last one holds. Default: none.
+        #[serde(default)]
+        regions: Vec<Region>,
+    },
+}
+
+/// A part of a solid with a material of its own: the elements whose middle lies in an upright rectangle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Region {
+    /// Lower left corner.
+    pub from: Point,
+    /// Upper right corner.
+    pub to: Point,
+    pub material: String,
 }
 
 impl BodySpec {
     /// Its id.
     pub fn id(&self) -> &str {
-        let BodySpec::Beam { id, .. } = self;
-        id
+        match self {
+            BodySpec::Beam { id, .. } | BodySpec::Solid { id, .. } => id,
+        }
     }
 }
 
@@ -177,8 +272,8 @@ pub struct SurfaceSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlaveSpec {
-    /// Names of nodes; `ID.all` stands for every node of a chain, less those that cannot move over surfaces that
-    /// cannot move either.
+    /// Names of nodes; `ID.all` stands for every node of a chain, and a block's `ID.left` for those of its edge, less
+    /// those that cannot move over surfaces that cannot move either.
     pub nodes: Vec<String>,
     /// Surfaces among which each node finds its own element.
     pub on: Vec<String>,
@@ -272,6 +367,19 @@ pub enum LoadSpec {
     Moment {
         node: String,
         value: f64,
+        #[serde(default)]
+        scale: Scale,
+    },
+    /// A uniform dead load along a chain: on each unit of its undeformed length.
+    Traction {
+        along: String,
+        /// Along the outward normal of the undeformed chain, to the right of its walk. Default: 0.
+        #[serde(default)]
+        normal: f64,
+        #[serde(default)]
+        x: f64,
+        #[serde(default)]
+        y: f64,
         #[serde(default)]
         scale: Scale,
     },

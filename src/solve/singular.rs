@@ -4,7 +4,7 @@
 //! motions. What satisfies them all meets no resistance but that of the stresses already there.
 
 use crate::contact::projection::{Footing, tangent};
-use crate::scene::model::Model;
+use crate::scene::model::{BodyKind, Model};
 use crate::scene::{Mode, spec::Component};
 use crate::solve::event::{Motion, RigidMotion, Singular};
 use crate::solve::state::NodeState;
@@ -124,6 +124,10 @@ impl Frame<'_> {
                     let Some(dof) = self.model.dofs.dof(n, component) else {
                         continue;
                     };
+                    // The turn of a node that a solid shares with a beam is the beam's.
+                    if component == Component::Rotation && matches!(body.kind, BodyKind::Solid(_)) {
+                        continue;
+                    }
                     if self.model.dofs.equation[dof].is_none() {
                         let mut row = self.row();
                         self.add_component(&mut row, b, n, component, 1.0);
@@ -140,7 +144,12 @@ impl Frame<'_> {
                 let Some(first) = self.body_of(n).filter(|&first| first != b) else {
                     continue;
                 };
-                for component in [Component::X, Component::Y, Component::Rotation] {
+                // A solid's node does not know how it turns.
+                let stiff = [first, b]
+                    .iter()
+                    .all(|&b| matches!(self.model.bodies[b].kind, BodyKind::Beam(_)));
+                let components = [Component::X, Component::Y, Component::Rotation];
+                for &component in &components[..if stiff { 3 } else { 2 }] {
                     let mut row = self.row();
                     self.add_component(&mut row, first, n, component, 1.0);
                     self.add_component(&mut row, b, n, component, -1.0);

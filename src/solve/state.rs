@@ -4,6 +4,7 @@
 //! never having left. What can be computed again from it (geometry, stiffness, factors) is not in it.
 
 use crate::contact::projection::Spot;
+use crate::fem::assembly::history_len;
 use crate::scene::{Friction, Mode, Model, Settings};
 use crate::solve::event::{Failure, Forced, Position};
 use serde::{Deserialize, Serialize};
@@ -86,6 +87,9 @@ pub struct IncrementStart {
     pub leg: usize,
     pub u: Arc<Vec<f64>>,
     pub nodes: Vec<NodeState>,
+    /// What the elements remember of it ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub history: Vec<f64>,
 }
 
 /// What the user can turn during a run.
@@ -206,6 +210,7 @@ impl State {
             leg: 0,
             u: u.clone(),
             nodes: nodes.clone(),
+            history: vec![0.0; history_len(model)],
         };
         let aim = next_load_factor(&model.path, &start, controls.increment);
         State {

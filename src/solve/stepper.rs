@@ -543,6 +543,8 @@ impl Stepper {
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         start.leg = leg;
+        self.system
+            .advance(&self.state.u, &start.u, &mut start.history);
         Arc::make_mut(&mut start.u).copy_from_slice(&self.state.u);
         start.nodes.clone_from(&self.state.nodes);
         let last = leg + 1 == self.model.path.len();

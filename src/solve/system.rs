@@ -7,7 +7,7 @@
 use crate::contact::projection::{Footing, footing, tangent};
 use crate::contact::table1::{Equation, Known, Limit, Motion, equations, gone};
 use crate::contact::turning::{Variation, turning};
-use crate::fem::assembly::{Assembled, Assembly};
+use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
 use crate::scene::model::Model;
@@ -188,8 +188,13 @@ impl System {
             values: &mut self.stiffness,
             coupling: &mut self.coupling,
         };
-        self.assembly
-            .assemble(&model.dofs, &state.u, &self.step, out);
+        let moved = Moved {
+            u: &state.u,
+            step: &self.step,
+            before: &state.start.u,
+            history: &state.start.history,
+        };
+        self.assembly.assemble(&model.dofs, moved, out);
         self.measure_interfaces(model);
         self.balance(model, state);
         Ok(())
@@ -404,6 +409,11 @@ impl System {
             }
         }
         worst
+    }
+
+    /// Renews what the elements remember, once displacements `u` are accepted; `before` are those accepted last.
+    pub fn advance(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {
+        self.assembly.advance(u, before, history);
     }
 
     /// Norms of the last linearisation.

@@ -3,7 +3,6 @@
 
 use crate::contact::projection::tangent;
 use crate::fem::lagrange;
-use crate::scene::model::BodyKind;
 use crate::tui::app::{App, Camera};
 use crate::tui::canvas::{Canvas, Dot};
 use crate::tui::layout::Pane;
@@ -200,11 +199,7 @@ fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: rata
 }
 
 fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
-    let elements = || {
-        view.model.bodies.iter().flat_map(|body| match &body.kind {
-            BodyKind::Beam(beam) => beam.elements.iter(),
-        })
-    };
+    let elements = || view.model.bodies.iter().flat_map(|body| body.kind.lines());
     for element in elements() {
         let reference: Vec<Point> = element
             .iter()

@@ -1,11 +1,13 @@
 //! Materials, bodies, and the elements along chains.
 
+use super::super::blocks::EDGES;
+use super::super::curves::point;
 use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use super::super::geometry;
 use super::super::limits;
-use super::super::model::{Beam, Body, BodyKind};
-use super::super::nodes::{Names, unique};
-use super::super::spec::{BodySpec, Material, Spec};
+use super::super::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
+use super::super::nodes::{Entry, Names, unique};
+use super::super::spec::{BodySpec, Law, Material, Point, Region, Spec, Update};
 use std::collections::HashSet;
 
 /// Refuses materials without usable stiffnesses.
@@ -13,14 +15,68 @@ pub(super) fn materials(spec: &Spec) -> Result<(), Fault> {
     unique("materials", spec.materials.iter().map(Material::id))?;
     for (k, material) in spec.materials.iter().enumerate() {
         let here = at!["materials", k];
-        let Material::Section { EA, EI, GA, .. } = material;
-        limits::stiffness(&here.then("EA"), *EA, "EA")?;
-        limits::stiffness(&here.then("EI"), *EI, "EI")?;
-        if let Some(ga) = GA {
-            limits::stiffness(&here.then("GA"), *ga, "GA")?;
+        match material {
+            Material::Section { EA, EI, GA, .. } => {
+                limits::stiffness(&here.then("EA"), *EA, "EA")?;
+                limits::stiffness(&here.then("EI"), *EI, "EI")?;
+                if let Some(ga) = GA {
+                    limits::stiffness(&here.then("GA"), *ga, "GA")?;
+                }
+            }
+            Material::Elastic { .. } => elastic(&here, material)?,
         }
     }
     Ok(())
+}
+
+/// Refuses elastic constants that no material has.
+fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
+    let Some(made) = elastic_of(material) else {
+        return Ok(());
+    };
+    limits::stiffness(&here.then("E"), made.young, "E")?;
+    if !(0.0..limits::POISSON).contains(&made.poisson) {
+        let message = format!(
+            "nu is {:?}; it must be at least 0 and below 0.5, where a material cannot be compressed",
+            made.poisson
+        );
+        return Err(Fault::new(here.then("nu"), message));
+    }
+    let thickness = made.thickness;
+    limits::finite(&here.then("thickness"), thickness, "the thickness")?;
+    if thickness <= 0.0 {
+        let message = format!("the thickness is {thickness:?}; it must be positive");
+        return Err(Fault::new(here.then("thickness"), message));
+    }
+    if made.update == Update::Updated && made.law != Law::Svk {
+        let message = "the updated update has a law of its own, the moduli of svk for every increment; \
+                       take law: svk or update: total";
+        return Err(Fault::new(here.then("update"), message));
+    }
+    Ok(())
+}
+
+/// The elastic constants of a material that is no section.
+fn elastic_of(material: &Material) -> Option<Elastic> {
+    match *material {
+        Material::Section { .. } => None,
+        Material::Elastic {
+            E,
+            nu,
+            law,
+            plane,
+            thickness,
+            update,
+            ..
+        } => Some(Elastic {
+            young: E,
+            poisson: nu,
+            law,
+            plane,
+            thickness,
+            update,
+        }),
+    }
 }
 
 /// The bodies. Their shear unknowns are numbered later, with the others.
@@ -36,7 +92,29 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
     spec.bodies
         .iter()
         .enumerate()
-        .map(|(k, body)| beam(k, body, spec, names, &mut total))
+        .map(|(k, body)| match body {
+            BodySpec::Beam {
+                id,
+                along,
+                material,
+            } => beam(
+                &at!["bodies", k],
+                (id, along, material),
+                spec,
+                names,
+                &mut total,
+            ),
+            BodySpec::Solid { id, mesh, .. } => {
+                let here = at!["bodies", k];
+                Ok(Body {
+                    name: id.clone(),
+                    kind: BodyKind::Solid(solid(&here, mesh, body, spec, names, &mut total)?),
+                    nodes: names
+                        .block(mesh)
+                        .map_or(Vec::new(), |(e, _)| e.nodes.clone()),
+                })
+            }
+        })
         .collect()
 }
 
@@ -56,34 +134,36 @@ pub(super) fn elements(
     Ok(chain.elements())
 }
 
+/// The material with an id.
+fn material<'s>(here: &Path, spec: &'s Spec, id: &str) -> Result<&'s Material, Fault> {
+    let ids = || spec.materials.iter().map(Material::id);
+    spec.materials.iter().find(|m| m.id() == id).ok_or_else(|| {
+        let message = format!(
+            "no material called {}{} (materials: {})",
+            quoted(id),
+            did_you_mean(id, ids()),
+            some_of(ids())
+        );
+        Fault::new(here.clone(), message)
+    })
+}
+
 fn beam(
-    k: usize,
-    body: &BodySpec,
+    here: &Path,
+    (id, along, of): (&str, &str, &str),
     spec: &Spec,
     names: &Names,
     total: &mut usize,
 ) -> Result<Body, Fault> {
-    let BodySpec::Beam {
-        id,
-        along,
-        material,
-    } = body;
-    let here = at!["bodies", k];
     let elements = elements(&here.then("along"), names, along, total)?;
-    let ids = || spec.materials.iter().map(Material::id);
-    let Some(section) = spec.materials.iter().find(|m| m.id() == material) else {
-        let message = format!(
-            "no material called {}{} (materials: {})",
-            quoted(material),
-            did_you_mean(material, ids()),
-            some_of(ids())
-        );
-        return Err(Fault::new(here.then("material"), message));
+    let here = here.then("material");
+    let Material::Section { EA, EI, GA, .. } = material(&here, spec, of)? else {
+        let message = format!("material {of:?} is a continuum's; a beam needs a Section");
+        return Err(Fault::new(here, message));
     };
-    let Material::Section { EA, EI, GA, .. } = section;
     let mut seen = HashSet::new();
     Ok(Body {
-        name: id.clone(),
+        name: id.to_owned(),
         nodes: elements
             .iter()
             .flatten()
@@ -100,16 +180,127 @@ fn beam(
     })
 }
 
-/// Refuses bodies whose elements are no sound curves.
+/// The mesh of a block, and what each of its elements is made of.
+fn solid(
+    here: &Path,
+    mesh: &str,
+    body: &BodySpec,
+    spec: &Spec,
+    names: &Names,
+    total: &mut usize,
+) -> Result<Solid, Fault> {
+    let BodySpec::Solid {
+        material: of,
+        regions,
+        ..
+    } = body
+    else {
+        return Err(Fault::new(here.clone(), "the body is no solid"));
+    };
+    let path = here.then("mesh");
+    let (entry, grid) = names
+        .block(mesh)
+        .map_err(|message| Fault::new(path.clone(), message))?;
+    *total += 8 * grid.columns * grid.rows;
+    limits::element_nodes(&path, *total)?;
+    let elements: Vec<[usize; 8]> = grid
+        .elements()
+        .map(|element| element.map(|n| entry.nodes[n]))
+        .collect();
+    let mut made = Solid {
+        material_of: vec![0; elements.len()],
+        materials: vec![continuum(&here.then("material"), spec, of)?],
+        edges: edge_chains(names, mesh)
+            .flat_map(|chain| chain.elements())
+            .collect(),
+        elements,
+    };
+    for (k, region) in regions.iter().enumerate() {
+        apply(
+            &here.then("regions").then(k),
+            region,
+            spec,
+            &names.nodes,
+            &mut made,
+        )?;
+    }
+    Ok(made)
+}
+
+/// The edges of a block, anticlockwise.
+fn edge_chains<'n>(names: &'n Names, mesh: &str) -> impl Iterator<Item = &'n Entry> {
+    EDGES
+        .iter()
+        .filter_map(move |edge| names.chain(&format!("{mesh}.{edge}")).ok())
+}
+
+fn continuum(here: &Path, spec: &Spec, id: &str) -> Result<Elastic, Fault> {
+    elastic_of(material(here, spec, id)?).ok_or_else(|| {
+        let message = format!("material {id:?} is a beam's section; a solid needs Elastic");
+        Fault::new(here.clone(), message)
+    })
+}
+
+/// Gives the elements in a region its material.
+fn apply(
+    here: &Path,
+    region: &Region,
+    spec: &Spec,
+    nodes: &[Node],
+    solid: &mut Solid,
+) -> Result<(), Fault> {
+    let Region { from, to, material } = region;
+    let number = solid.materials.len();
+    solid
+        .materials
+        .push(continuum(&here.then("material"), spec, material)?);
+    for (corner, at) in [("from", from), ("to", to)] {
+        point(&here.then(corner), *at)?;
+    }
+    let mut none = true;
+    for (element, own) in solid.elements.iter().zip(&mut solid.material_of) {
+        if contains((*from, *to), middle(nodes, element)) {
+            (*own, none) = (number, false);
+        }
+    }
+    if none {
+        let message = format!(
+            "no element has its middle in the region from {from:?} to {to:?}; it goes from a lower left corner to \
+             an upper right one"
+        );
+        return Err(Fault::new(here.clone(), message));
+    }
+    Ok(())
+}
+
+/// Mean of an element's corners.
+fn middle(nodes: &[Node], element: &[usize; 8]) -> [f64; 2] {
+    let sum = |k: usize| element[..4].iter().map(|&n| nodes[n].at[k]).sum::<f64>();
+    [sum(0) / 4.0, sum(1) / 4.0]
+}
+
+fn contains((from, to): (Point, Point), [x, y]: [f64; 2]) -> bool {
+    (from.0..=to.0).contains(&x) && (from.1..=to.1).contains(&y)
+}
+
+/// Refuses bodies whose elements are no sound curves, or whose edges are none.
 pub(super) fn check_bodies(
     spec: &Spec,
     names: &Names,
     bodies: &[Body],
     length: f64,
 ) -> Result<(), Fault> {
-    for (body, BodySpec::Beam { along, .. }) in bodies.iter().zip(&spec.bodies) {
-        let BodyKind::Beam(beam) = &body.kind;
-        check_chain(names, along, &beam.elements, length)?;
+    for (body, named) in bodies.iter().zip(&spec.bodies) {
+        match (&body.kind, named) {
+            (BodyKind::Beam(beam), BodySpec::Beam { along, .. }) => {
+                check_chain(names, along, &beam.elements, length)?;
+            }
+            // What lies between the edges lies between sound curves.
+            (BodyKind::Solid(solid), BodySpec::Solid { mesh, .. }) => {
+                check_chain(names, mesh, &solid.edges, length)?;
+            }
+            _ => {}
+        }
     }
     Ok(())
 }
@@ -121,9 +312,8 @@ pub(super) fn check_chain(
     elements: &[Vec<usize>],
     length: f64,
 ) -> Result<(), Fault> {
-    // The chain was found when the elements were made.
     let at = names
-        .chain(along)
-        .map_or_else(|_| at!["nodes"], |chain| at!["nodes", chain.at]);
+        .place(along)
+        .map_or_else(|| at!["nodes"], |at| at!["nodes", at]);
     geometry::check_elements(&at, &names.nodes, elements, length)
 }

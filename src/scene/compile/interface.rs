@@ -193,6 +193,7 @@ pub(super) fn check_use(
         .for_each(|&n| used[n] = true);
     slaves.iter().for_each(|s| used[s.node] = true);
     for entry in names.entries() {
+        // A block's edges share its nodes, and it has an entry of its own.
         let shares = matches!(spec.nodes[entry.at], Nodes::Chain { .. });
         let idle = entry.nodes.iter().find(|&&n| !used[n]);
         if let (Some(&node), false) = (idle, shares) {

@@ -5,6 +5,7 @@ use super::super::limits;
 use super::super::model::{Body, BodyKind, Dofs, Factor, Load, Prescribed};
 use super::super::nodes::Names;
 use super::super::spec::{Component, LoadSpec, Point, Spec};
+use super::tractions;
 use std::collections::HashMap;
 
 /// The degrees of freedom while it is found out which are held, and by what.
@@ -20,11 +21,17 @@ const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Rotat
 
 impl Layout {
     /// Three degrees of freedom for each node on a beam, two for the others; nothing held yet.
-    pub(super) fn new(on_body: &[bool]) -> Self {
+    pub(super) fn new(on_body: Vec<bool>, bodies: &[Body]) -> Self {
+        let mut turns = vec![false; on_body.len()];
+        bodies
+            .iter()
+            .filter(|body| matches!(body.kind, BodyKind::Beam(_)))
+            .flat_map(|body| &body.nodes)
+            .for_each(|&n| turns[n] = true);
         let mut dofs = Dofs::default();
         let mut of = Vec::new();
-        for (node, &on) in on_body.iter().enumerate() {
-            let count = if on { 3 } else { 2 };
+        for (node, &turns) in turns.iter().enumerate() {
+            let count = if turns { 3 } else { 2 };
             dofs.first.push(of.len());
             dofs.count.push(count);
             of.extend(COMPONENTS.iter().take(count.into()).map(|c| (node, *c)));
@@ -32,7 +39,7 @@ impl Layout {
         Layout {
             dofs,
             of,
-            on_body: on_body.to_vec(),
+            on_body,
             held: HashMap::new(),
         }
     }
@@ -124,6 +131,22 @@ impl Layout {
                 LoadSpec::Moment { node, value, scale } => {
                     (node, vec![(Component::Rotation, "value", *value)], scale)
                 }
+                LoadSpec::Traction {
+                    along,
+                    normal,
+                    x,
+                    y,
+                    scale,
+                } => {
+                    let scale = factor(&at!["loads", k, "scale"], scale)?;
+                    let load = tractions::Load {
+                        along,
+                        normal: *normal,
+                        vector: [*x, *y],
+                    };
+                    made.extend(self.traction(&at!["loads", k], names, &load, &scale)?);
+                    continue;
+                }
                 LoadSpec::Displacement { .. } => continue,
             };
             let here = at!["loads", k];
@@ -142,6 +165,42 @@ impl Layout {
                     });
                 }
             }
+        }
+        Ok(made)
+    }
+
+    /// Forces of a traction at all nodes of its chain. What falls on a held degree of freedom goes into the support,
+    /// where it counts for the reaction.
+    fn traction(
+        &self,
+        here: &Path,
+        names: &Names,
+        load: &tractions::Load<'_>,
+        scale: &Factor,
+    ) -> Result<Vec<Load>, Fault> {
+        let fault = |message: String| Fault::new(here.then("along"), message);
+        let forces = tractions::forces(here, names, load)?;
+        if let Some((node, _)) = forces.iter().find(|(node, _)| !self.on_body[*node]) {
+            let name = &names.nodes[*node].name;
+            return Err(fault(format!(
+                "node {name:?} is on no body; a load there would act on nothing"
+            )));
+        }
+        let mut made = Vec::new();
+        for (node, force) in forces {
+            for (k, value) in force.into_iter().enumerate().filter(|(_, v)| *v != 0.0) {
+                made.push(Load {
+                    dof: self.dofs.first[node] + k,
+                    value,
+                    scale: scale.clone(),
+                });
+            }
+        }
+        if !made.is_empty() && made.iter().all(|load| self.held.contains_key(&load.dof)) {
+            return Err(fault(format!(
+                "every node of {:?} is held where this load acts; it does nothing",
+                load.along
+            )));
         }
         Ok(made)
     }
@@ -200,7 +259,9 @@ impl Layout {
             dofs.equations += usize::from(free);
         }
         for body in bodies {
-            let BodyKind::Beam(beam) = &mut body.kind;
+            let BodyKind::Beam(beam) = &mut body.kind else {
+                continue;
+            };
             if beam.ga.is_some() {
                 continue;
             }

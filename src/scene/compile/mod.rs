@@ -8,6 +8,7 @@ mod history;
 mod interface;
 mod layout;
 mod monitors;
+mod tractions;
 
 use super::error::{Fault, at};
 use super::geometry;
@@ -36,7 +37,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
     interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
-    let mut layout = Layout::new(&on_body);
+    let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
     let (loads, prescribed) = layout.loads(spec, &names)?;
     let dofs = layout.number(&mut bodies);
