@@ -244,3 +244,34 @@ fn both_residual_methods_and_both_t_max_end_in_the_same_state() {
         }
     }
 }
+
+#[test]
+fn condensed_and_whole_system_take_the_same_steps() {
+    for builtin in builtin::list() {
+        let set = [("history.increment", "0.1")];
+        let whole = run(&scene(builtin.name, &set));
+        let condensed = run(&scene(
+            builtin.name,
+            &[set[0], ("settings.solver", "condensed")],
+        ));
+        let name = builtin.name;
+        assert_eq!(whole.accepted.len(), condensed.accepted.len(), "{name}");
+        assert_eq!(
+            whole.failure.is_some(),
+            condensed.failure.is_some(),
+            "{name}"
+        );
+        for (a, b) in whole.accepted.iter().zip(&condensed.accepted) {
+            // Where a residual ends at the tolerance itself, round-off may cost one more.
+            assert!(a.majors.abs_diff(b.majors) <= 1, "{name} load {}", a.load);
+            for (monitor, value) in &a.monitors {
+                let apart = (value - b.monitors[monitor]).abs();
+                assert!(
+                    apart < 1e-8 * (1.0 + value.abs()),
+                    "{name} {monitor} load {}: {apart:e}",
+                    a.load
+                );
+            }
+        }
+    }
+}

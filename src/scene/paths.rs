@@ -7,7 +7,7 @@ use super::error::{Path, at, nearest, quoted};
 use super::spec::{
     AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, Law, LoadSpec,
     Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity, Region, ResidualMethod, Scale,
-    Settings, SlipCount, Spec, Ties, Update,
+    Settings, SlipCount, Solver, Spec, Ties, Update,
 };
 
 /// A value set from outside.
@@ -273,6 +273,7 @@ choices! {
     Component { "x" => Component::X, "y" => Component::Y, "rotation" => Component::Rotation }
     Axis { "x" => Axis::X, "y" => Axis::Y }
     ResidualMethod { "accumulate" => ResidualMethod::Accumulate, "stress" => ResidualMethod::Stress }
+    Solver { "augmented" => Solver::Augmented, "condensed" => Solver::Condensed }
     Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
     FrictionLimit { "lagged" => FrictionLimit::Lagged, "consistent" => FrictionLimit::Consistent }
     SlipCount { "increment" => SlipCount::Increment, "major" => SlipCount::Major }
@@ -555,6 +556,7 @@ fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
         &place.field("residual"),
         Scalar::Choice(&mut settings.residual),
     );
+    visit(&place.field("solver"), Scalar::Choice(&mut settings.solver));
     visit(
         &place.field("geometry"),
         Scalar::Choice(&mut settings.geometry),

@@ -413,6 +413,8 @@ pub struct History {
 pub struct Settings {
     /// How the total force of a slave node is found after a major iteration. Default: stress.
     pub residual: ResidualMethod,
+    /// What the minor iterations solve. Default: augmented.
+    pub solver: Solver,
     /// Whether the tangent knows that the contact geometry changes. Default: consistent.
     pub geometry: Geometry,
     /// How the sliding node's T_max enters the equations. Default: lagged.
@@ -439,6 +441,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             residual: ResidualMethod::default(),
+            solver: Solver::default(),
             geometry: Geometry::default(),
             t_max: FrictionLimit::default(),
             slip: SlipCount::default(),
@@ -462,6 +465,18 @@ pub enum ResidualMethod {
     /// Method 2: the interaction force at a slave node is the nodal force of the current stresses less the load.
     #[default]
     Stress,
+}
+
+/// What the minor iterations solve; both give the same to round-off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Solver {
+    /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
+    #[default]
+    Augmented,
+    /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
+    /// costs a dense solve of the size of the interface.
+    Condensed,
 }
 
 /// Whether the change of normal, projection and gap stands in the tangent of a major iteration.

@@ -1,9 +1,10 @@
 //! The two-level solver as a stepper: one call, one minor iteration, one event.
 //!
 //! - [`state`]: plain data from which everything goes on; [`stepper`]: the state machine over it.
-//! - [`system`]: the linearised equations of a major iteration; [`singular`]: why they have no solution.
+//! - [`system`]: the linearised equations of a major iteration, whole or condensed to the interface; [`singular`]: why they have no solution.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
+mod condensed;
 pub mod event;
 pub mod intervene;
 pub mod singular;

@@ -194,7 +194,7 @@ impl Stepper {
             let before = self.state.nodes[slave];
             let record = self.record(slave, &ties);
             let node = &mut self.state.nodes[slave];
-            let motion = self.system.relative_motion(&self.model, slave, &before);
+            let motion = self.system.relative_motion(slave);
             node.travel = if motion[0].abs() > f64::MIN_POSITIVE {
                 motion[1] / motion[0]
             } else {
@@ -228,9 +228,9 @@ impl Stepper {
         let node = &self.state.nodes[slave];
         let friction = &self.state.controls.friction[slave];
         let settings = &self.state.controls.settings;
-        let [d_n, d_t] = self.system.force_increment(&self.model, slave);
+        let [d_n, d_t] = self.system.force_increment(slave);
         let (f_n, f_t) = (node.f_n + d_n, node.f_t + d_t);
-        let motion = self.system.relative_motion(&self.model, slave, node);
+        let motion = self.system.relative_motion(slave);
         let footing = self.system.footing(slave);
         let start_gap = footing.map_or(f64::INFINITY, |f| f.gap);
         let here = motion[1]
@@ -383,6 +383,9 @@ impl Stepper {
 
     /// Updates displacements and forces, renews the geometry, and asks whether the increment is done.
     fn end_major(&mut self, settled: bool) -> Outcome {
+        if self.system.recover(&self.model) == Solved::Not {
+            return Outcome::Failed(Failure::Singular(self.diagnose()));
+        }
         self.update();
         let norms = self.norms();
         self.state.unsettled += u32::from(!settled);
@@ -439,7 +442,7 @@ impl Stepper {
             node.slip = if record.decision.before == Mode::Free {
                 0.0
             } else {
-                let motion = self.system.relative_motion(&self.model, s, node);
+                let motion = self.system.relative_motion(s);
                 let touched = self.system.footing(s).map_or(0.0, |f| {
                     if node.ratio == 0.0 {
                         0.0

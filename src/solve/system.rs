@@ -11,7 +11,8 @@ use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
 use crate::scene::model::Model;
-use crate::scene::spec::{Component, FrictionLimit, Geometry, SlipCount};
+use crate::scene::spec::{Component, FrictionLimit, Geometry, SlipCount, Solver};
+use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
 use crate::solve::state::{NodeState, State};
 use std::sync::Arc;
@@ -83,6 +84,7 @@ pub struct System {
     /// Current position of every node.
     pub positions: Vec<[f64; 2]>,
     interfaces: Vec<Interface>,
+    condensed: Condensed,
     stiffness: Vec<f64>,
     values: Vec<f64>,
     /// Internal force at each degree of freedom.
@@ -104,7 +106,7 @@ impl System {
     /// Lays out the system of a scene.
     pub fn new(model: &Model) -> Self {
         let (dofs, equations) = (model.dofs.len(), model.dofs.equations);
-        let interfaces = model
+        let interfaces: Vec<Interface> = model
             .slaves
             .iter()
             .map(|_| Interface {
@@ -125,6 +127,7 @@ impl System {
             reference: reference_force(model, &kind),
             kind,
             positions: vec![[0.0; 2]; model.nodes.len()],
+            condensed: Condensed::new(interfaces.len()),
             interfaces,
             stiffness: Vec::new(),
             values: Vec::new(),
@@ -158,6 +161,7 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
+        self.condensed.fresh = false;
         self.place(model, &state.u);
         for (interface, (node, slave)) in self
             .interfaces
@@ -446,51 +450,193 @@ impl System {
         self.interaction[dof]
     }
 
-    /// Solves the linearised system for a state's modes.
+    /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
+    /// bodies after [`System::recover`].
     pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
-        self.values.copy_from_slice(&self.stiffness);
-        let unknowns = model.dofs.equations;
-        for (rhs, (residual, coupling)) in self
-            .rhs
-            .iter_mut()
-            .zip(self.residual.iter().zip(&self.coupling))
-        {
-            *rhs = residual - coupling;
+        match state.controls.settings.solver {
+            Solver::Augmented => self.solve_augmented(model, state),
+            Solver::Condensed if model.slaves.is_empty() => self.solve_augmented(model, state),
+            Solver::Condensed => self.solve_condensed(model, state),
         }
+    }
+
+    fn solve_augmented(&mut self, model: &Model, state: &State) -> Solved {
+        self.condensed.fresh = false;
+        self.start_values();
+        let unknowns = model.dofs.equations;
         for s in 0..self.interfaces.len() {
             let rows = self.rows(s, state);
-            let interface = &self.interfaces[s];
-            let frame = interface.frame(&state.nodes[s]);
+            let frame = self.interfaces[s].frame(&state.nodes[s]);
             for (k, row) in rows.iter().enumerate() {
-                self.values[interface.block[2 * k]] = row.d_n;
-                self.values[interface.block[2 * k + 1]] = row.d_t;
-                let direction = match row.motion {
-                    Motion::None => [0.0; 2],
-                    Motion::Normal => frame[0],
-                    Motion::Tangential => frame[1],
-                };
-                let known = dot(direction, interface.prescribed);
-                self.rhs[unknowns + 2 * s + k] = row.value - known;
-                for link in &interface.links {
-                    let Some(slots) = link.slots else { continue };
-                    self.values[slots[2 * k]] += link.weight * direction[link.axis];
-                    self.values[slots[2 * k + 1]] += link.weight * frame[k][link.axis];
-                }
+                self.rhs[unknowns + 2 * s + k] = self.place_row(s, k, row, frame);
             }
         }
+        let solved = self.factor_and_solve();
+        for (s, node) in state.nodes.iter().enumerate() {
+            let row = unknowns + 2 * s;
+            self.condensed.forces[s] = [self.x[row], self.x[row + 1]];
+            self.condensed.motions[s] = self.motion_of_solution(model, s, node);
+        }
+        solved
+    }
+
+    /// Stiffness and out-of-balance forces, without any interface.
+    fn start_values(&mut self) {
+        self.values.copy_from_slice(&self.stiffness);
+        let balance = self.residual.iter().zip(&self.coupling);
+        for (rhs, (residual, coupling)) in self.rhs.iter_mut().zip(balance) {
+            *rhs = residual - coupling;
+        }
+    }
+
+    /// Enters an equation of a slave node, and the column of its force; returns the equation's right-hand side.
+    fn place_row(&mut self, s: usize, k: usize, row: &Equation, frame: [[f64; 2]; 2]) -> f64 {
+        let interface = &self.interfaces[s];
+        self.values[interface.block[2 * k]] = row.d_n;
+        self.values[interface.block[2 * k + 1]] = row.d_t;
+        let direction = match row.motion {
+            Motion::None => [0.0; 2],
+            Motion::Normal => frame[0],
+            Motion::Tangential => frame[1],
+        };
+        for link in &interface.links {
+            let Some(slots) = link.slots else { continue };
+            self.values[slots[2 * k]] += link.weight * direction[link.axis];
+            self.values[slots[2 * k + 1]] += link.weight * frame[k][link.axis];
+        }
+        row.value - dot(direction, interface.prescribed)
+    }
+
+    fn factor_and_solve(&mut self) -> Solved {
         let Some(factors) = &mut self.factors else {
             return Solved::Not;
         };
-        if factors.factor(&self.values).is_err() {
+        if factors.factor(&self.values).is_err() || factors.solve(&self.rhs, &mut self.x).is_err() {
             return Solved::Not;
         }
-        if factors.solve(&self.rhs, &mut self.x).is_err() {
-            return Solved::Not;
+        suspicion(factors.inverse_norm())
+    }
+
+    /// Solves for the interface alone, about a compliance of it that is made once a major iteration.
+    fn solve_condensed(&mut self, model: &Model, state: &State) -> Solved {
+        if !self.condensed.fresh {
+            match self.condense(model, state) {
+                Solved::Well => self.condensed.fresh = true,
+                other => return other,
+            }
         }
-        if factors.inverse_norm() > SUSPICIOUS_INVERSE {
-            Solved::Suspicious
-        } else {
-            Solved::Well
+        for s in 0..self.interfaces.len() {
+            let rows = self.rows(s, state);
+            let frame = self.interfaces[s].frame(&state.nodes[s]);
+            let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
+            for (k, row) in rows.iter().enumerate() {
+                self.condensed.place_row(2 * s, k, row, prescribed);
+            }
+        }
+        let condensed = &mut self.condensed;
+        condensed.gaps.copy_from_slice(&condensed.rhs);
+        let Some(dense) = &mut condensed.dense else {
+            return Solved::Not;
+        };
+        let Ok(norm) = dense.solve(&condensed.matrix, &mut condensed.gaps) else {
+            return Solved::Not;
+        };
+        for s in 0..self.interfaces.len() {
+            let frame = self.interfaces[s].frame(&state.nodes[s]);
+            let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
+            self.condensed.read(s, prescribed);
+        }
+        suspicion(norm)
+    }
+
+    /// Condenses the bodies to the interface: with every interface equation replaced by
+    /// `motion − ΔF / stiffness = z`, the forces are a linear function of z, found column by column.
+    ///
+    /// The springs of that stiffness make even a body regular that only its contacts hold; they drop out again when
+    /// z is solved for, exactly.
+    fn condense(&mut self, model: &Model, state: &State) -> Solved {
+        self.condensed.resize(self.interfaces.len());
+        self.start_values();
+        let unknowns = model.dofs.equations;
+        self.condensed.stiffness = self.spring(model);
+        let give = -1.0 / self.condensed.stiffness;
+        for (s, node) in state.nodes.iter().enumerate() {
+            let frame = self.interfaces[s].frame(node);
+            let springs = [
+                Equation {
+                    motion: Motion::Normal,
+                    d_n: give,
+                    d_t: 0.0,
+                    value: 0.0,
+                },
+                Equation {
+                    motion: Motion::Tangential,
+                    d_n: 0.0,
+                    d_t: give,
+                    value: 0.0,
+                },
+            ];
+            for (k, row) in springs.iter().enumerate() {
+                self.place_row(s, k, row, frame);
+                self.rhs[unknowns + 2 * s + k] = 0.0;
+            }
+        }
+        let solved = self.factor_and_solve();
+        if solved == Solved::Not {
+            return solved;
+        }
+        self.condensed.start.copy_from_slice(&self.x[unknowns..]);
+        let Some(factors) = &mut self.factors else {
+            return Solved::Not;
+        };
+        let count = 2 * self.interfaces.len();
+        for k in 0..count {
+            self.work.fill(0.0);
+            self.work[unknowns + k] = 1.0;
+            if factors.solve(&self.work, &mut self.x).is_err() {
+                return Solved::Not;
+            }
+            self.condensed.response[k * count..(k + 1) * count]
+                .copy_from_slice(&self.x[unknowns..]);
+        }
+        solved
+    }
+
+    /// Stiffness of the springs: that of the stiffest degree of freedom.
+    fn spring(&self, model: &Model) -> f64 {
+        let Some(factors) = &self.factors else {
+            return 1.0;
+        };
+        let diagonal = |e: usize| {
+            factors
+                .pattern()
+                .slot(e, e)
+                .map_or(0.0, |k| self.stiffness[k].abs())
+        };
+        let slaves = self
+            .interfaces
+            .iter()
+            .flat_map(|i| &i.links)
+            .filter_map(|l| model.dofs.equation[l.dof]);
+        let stiffest = slaves.map(diagonal).fold(0.0, f64::max);
+        if stiffest > 0.0 { stiffest } else { 1.0 }
+    }
+
+    /// Completes a solve: finds what it does to the bodies. Costs one back substitution where the bodies were
+    /// condensed, else nothing.
+    pub fn recover(&mut self, model: &Model) -> Solved {
+        if !self.condensed.fresh {
+            return Solved::Well;
+        }
+        self.start_values();
+        let unknowns = model.dofs.equations;
+        self.rhs[unknowns..].copy_from_slice(&self.condensed.gaps);
+        let Some(factors) = &mut self.factors else {
+            return Solved::Not;
+        };
+        match factors.solve(&self.rhs, &mut self.x) {
+            Ok(()) => Solved::Well,
+            Err(_) => Solved::Not,
         }
     }
 
@@ -532,13 +678,16 @@ impl System {
     }
 
     /// Increments ΔF_n, ΔF_t of a slave node in the last solve.
-    pub fn force_increment(&self, model: &Model, slave: usize) -> [f64; 2] {
-        let row = model.dofs.equations + 2 * slave;
-        [self.x[row], self.x[row + 1]]
+    pub fn force_increment(&self, slave: usize) -> [f64; 2] {
+        self.condensed.forces[slave]
     }
 
     /// Normal and tangential part of Δu_S* − Δu_S of a slave node in the last solve.
-    pub fn relative_motion(&self, model: &Model, slave: usize, node: &NodeState) -> [f64; 2] {
+    pub fn relative_motion(&self, slave: usize) -> [f64; 2] {
+        self.condensed.motions[slave]
+    }
+
+    fn motion_of_solution(&self, model: &Model, slave: usize, node: &NodeState) -> [f64; 2] {
         let interface = &self.interfaces[slave];
         let mut motion = [0.0; 2];
         for link in &interface.links {
@@ -613,6 +762,14 @@ impl Interface {
         for (place, (i, j)) in self.block.iter_mut().zip(block) {
             *place = slot(i, j).unwrap_or(*place);
         }
+    }
+}
+
+fn suspicion(inverse_norm: f64) -> Solved {
+    if inverse_norm > SUSPICIOUS_INVERSE {
+        Solved::Suspicious
+    } else {
+        Solved::Well
     }
 }
 
