@@ -11,7 +11,7 @@ use std::sync::Arc;
 use stickslip::contact::decision::{Decision, Numbers, Rule, Ties, decide};
 use stickslip::debug::command::{Command, Unit};
 use stickslip::debug::session::{Frame, Session};
-use stickslip::scene::model::{Beam, Body, BodyKind, Dofs, Node, Slave, Surface};
+use stickslip::scene::model::{Beam, Body, BodyKind, Dofs, Monitor, Node, Slave, Surface, Watched};
 use stickslip::scene::{Friction, Mode, Model, Scene, Settings};
 use stickslip::solve::event::{Cycle, Position};
 use stickslip::solve::{Event, Failure, Forced, NodeRecord, Norms, Outcome, State};
@@ -182,11 +182,13 @@ fn frames(model: &Model, event: Event) -> Vec<Frame> {
             state: start,
             event: None,
             intervention: None,
+            monitors: None,
         },
         Frame {
             state,
             event: Some(Arc::new(event)),
             intervention: None,
+            monitors: None,
         },
     ]
 }
@@ -289,23 +291,27 @@ fn the_small_screen_turns_its_page() {
     let view = view(&model, &frames);
     let mut app = app();
     let mut seen = Vec::new();
-    for _ in 0..4 {
+    for _ in 0..5 {
         seen.push(draw::text(&app, Some(&view), 80, 24));
         press(&mut app, &view, "Tab");
     }
-    for (screen, title) in
-        seen.iter()
-            .zip([" Decision ", " Decision ", " Residual by major", " Shape "])
-    {
+    let titles = [
+        " Decision ",
+        " Decision ",
+        " Residual by major",
+        " Shape ",
+        " Load ",
+    ];
+    for (screen, title) in seen.iter().zip(titles) {
         assert!(
             screen.contains(title) && screen.contains(" Slave nodes "),
             "{screen}"
         );
     }
-    assert!(seen[3].contains("Tab page 4/4"));
+    assert!(seen[3].contains("Tab page 4/5"));
     assert_eq!(
         draw::text(&app, Some(&view), 80, 24)
-            .matches("Shape")
+            .matches(" Load ")
             .count(),
         1,
         "the page stays when the table has the focus"
@@ -512,6 +518,102 @@ fn hundreds_of_nodes_scroll_with_the_selection() {
     assert_eq!(app.selected, 98);
 }
 
+/// Names in the table on the screen, from the top down.
+fn listed(app: &App, view: &View) -> Vec<String> {
+    let screen = draw::text(app, Some(view), 120, 40);
+    let rows = screen.lines().filter(|line| line.starts_with('┃'));
+    rows.filter_map(|row| {
+        row.split_whitespace()
+            .find(|word| word.starts_with("beam."))
+    })
+    .map(|name| name.trim_start_matches("beam.").to_string())
+    .collect()
+}
+
+#[test]
+fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
+    let mut model = model(5);
+    model.surfaces.push(model.surfaces[0].clone());
+    model.slaves[4].surfaces = vec![1];
+    let mut event = minor();
+    event.before.scale = 1.0;
+    let mut frames = frames(&model, event);
+    let view = view(&model, &frames);
+    let mut app = app();
+    press(&mut app, &view, "Down Down Down t");
+    // Of 4 and 5, free both, the gap over the length counts; of the others the force over the scale, or the slip.
+    assert_eq!(listed(&app, &view), ["3", "4", "2", "1", "5"]);
+    assert_eq!(app.selected, 3);
+    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Slave nodes  2/5  by margin "));
+    press(&mut app, &view, "Down");
+    assert_eq!(app.selected, 1, "the row below, whatever its number");
+    press(&mut app, &view, "T");
+    assert_eq!(listed(&app, &view), ["5", "1", "2", "4", "3"]);
+    press(&mut app, &view, "T t");
+    assert_eq!(listed(&app, &view), ["4", "1", "2", "3", "5"]);
+    press(&mut app, &view, "t v");
+    assert_eq!(listed(&app, &view), ["1", "2", "3", "4"]);
+    assert!(draw::text(&app, Some(&view), 80, 24).contains(" 2/4 active of 5 "));
+    press(&mut app, &view, "v");
+    assert_eq!(listed(&app, &view), ["1", "2", "3", "4"], "one surface");
+    press(&mut app, &view, "v End v");
+    assert_eq!(
+        listed(&app, &view),
+        ["1", "2", "3", "4", "5"],
+        "the selected one is kept"
+    );
+    press(&mut app, &view, "v");
+    assert_eq!(listed(&app, &view), ["5"], "the other surface");
+    press(&mut app, &view, ":");
+    type_text(&mut app, &view, "filter all");
+    press(&mut app, &view, "Enter :");
+    type_text(&mut app, &view, "sort lucky");
+    press(&mut app, &view, "Enter");
+    assert!(app.message.text.contains("none of scene, margin, gap"));
+    // What has no margin and no gap is last either way.
+    frames[1].event = None;
+    let view = self::view(&model, &frames);
+    for keys in ["t", "T", "t"] {
+        press(&mut app, &view, keys);
+        assert_eq!(listed(&app, &view), ["1", "2", "3", "4", "5"]);
+    }
+}
+
+#[test]
+fn the_load_is_drawn_over_a_monitor() {
+    let mut model = model(5);
+    for (name, dof) in [("tip y", 13), ("tip x", 12)] {
+        model.monitors.push(Monitor {
+            name: name.into(),
+            of: Watched::Displacement { dof },
+        });
+    }
+    let mut frames = frames(&model, minor());
+    for k in 1..=8 {
+        let mut done = frames[1].clone();
+        let mut event = minor();
+        event.load_factor = 0.1 * f64::from(k);
+        done.event = Some(Arc::new(event));
+        done.monitors = Some(Arc::new(vec![-0.01 * f64::from(k * k), 0.5]));
+        frames.push(done);
+    }
+    let mut view = view(&model, &frames);
+    let mut app = app();
+    press(&mut app, &view, "Shift-Tab");
+    insta::assert_snapshot!("by-hand-curve-80x24", draw::text(&app, Some(&view), 80, 24));
+    view.cursor = 4;
+    let back = draw::text(&app, Some(&view), 80, 24);
+    assert!(back.contains("● -9.000e-2  at load 0.3"), "{back}");
+    assert!(back.contains("-6.400e-1"), "the scale stays");
+    press(&mut app, &view, "y");
+    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Load over tip x  2/2 "));
+    press(&mut app, &view, "Tab");
+    let medium = draw::text(&app, Some(&view), 120, 40);
+    assert!(medium.contains(" Load over ") && !medium.contains(" Residual "));
+    view.cursor = 0;
+    assert!(draw::text(&app, Some(&view), 200, 60).contains("No increment is done yet."));
+}
+
 #[test]
 fn keys_become_commands() {
     let model = model(5);
@@ -683,6 +785,7 @@ fn no_size_of_the_screen_breaks_it() {
         "Esc z",
         "Tab z",
         "Esc Tab Tab z + Left",
+        "Esc Tab z y t v",
         "?",
         "Esc :",
         "Esc m",
@@ -750,6 +853,25 @@ fn the_first_scene_at_three_sizes() {
     }
     debugger.type_keys("e");
     insta::assert_snapshot!("first-explain-120x40", masked(&debugger.text(120, 40)));
+}
+
+#[test]
+fn the_curve_grows_by_accepted_increments_and_shrinks_on_the_way_back() {
+    let mut debugger = debugger("01-pinned-beam-rough-floor");
+    let points = |debugger: &Debugger| {
+        let session = debugger.session.as_ref().expect("a session");
+        session.curve(0)
+    };
+    assert_eq!(points(&debugger), [[0.0; 2]; 0]);
+    debugger.type_keys("3 f");
+    let three = points(&debugger);
+    assert_eq!(three.len(), 3);
+    debugger.type_keys("s");
+    assert_eq!(points(&debugger), three);
+    debugger.type_keys("S F");
+    assert_eq!(points(&debugger), three[..2]);
+    debugger.type_keys("f");
+    assert_eq!(points(&debugger), three);
 }
 
 #[test]
@@ -856,6 +978,23 @@ fn a_long_outcome_goes_on_in_further_lines() {
         screen.contains(" Decision ") && screen.contains("? help"),
         "{screen}"
     );
+}
+
+#[test]
+fn a_title_that_does_not_fit_says_so() {
+    let mut model = model(5);
+    model.title =
+        "A beam over a floor, pressed down and pulled along: 梁 and 床 all the way".into();
+    let frames = frames(&model, minor());
+    let view = view(&model, &frames);
+    let first = |width| {
+        let screen = draw::text(&app(), Some(&view), width, 24);
+        screen.lines().next().unwrap_or_default().to_string()
+    };
+    assert_eq!(first(30), " stickslip by-hand  A beam ov…");
+    assert!(first(80).ends_with(" and…"), "{}", first(80));
+    assert!(first(100).ends_with("all the way"));
+    assert_eq!(first(15), " stickslip by-…");
 }
 
 #[test]

@@ -74,6 +74,14 @@ pub enum Ui {
     Enlarge,
     Shrink,
     Fit,
+    /// Sort the slave nodes: like this, or in the next way.
+    Sort(Option<Sort>),
+    /// Sort them the other way round.
+    SortBackward,
+    /// Which slave nodes the table shows: these, or the next kind.
+    Filter(Option<Filter>),
+    /// Which monitor the curve shows: this one, or the next.
+    Monitor(Option<usize>),
     /// Ask for what an action still needs.
     Ask(Question),
     CommandLine,
@@ -98,6 +106,53 @@ pub enum Step {
     PageDown,
     First,
     Last,
+}
+
+/// How the table sorts the slave nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sort {
+    /// As the scene lists them.
+    Scene,
+    /// Closest to switching first.
+    Margin,
+    /// Deepest penetration first.
+    Gap,
+}
+
+impl Sort {
+    pub const ALL: [Sort; 3] = [Sort::Scene, Sort::Margin, Sort::Gap];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Sort::Scene => "scene",
+            Sort::Margin => "margin",
+            Sort::Gap => "gap",
+        }
+    }
+}
+
+/// Which slave nodes the table shows; the selected one is always there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Filter {
+    All,
+    /// Those that touch, or whose mode changes.
+    Active,
+    /// Those on the surface that the selected one is on.
+    Surface,
+}
+
+impl Filter {
+    pub const ALL: [Filter; 3] = [Filter::All, Filter::Active, Filter::Surface];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Filter::All => "all",
+            Filter::Active => "active",
+            Filter::Surface => "surface",
+        }
+    }
 }
 
 /// What an action can ask for.
@@ -182,6 +237,9 @@ enum Verb {
     },
     Node,
     Open,
+    Sort,
+    Filter,
+    Monitor,
     Do(Ui),
 }
 
@@ -239,6 +297,10 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "first", "", &["Home", "g"], "", "First node", Verb::Do(Ui::Move(Step::First))),
     entry(Group::Look, "last", "", &["End", "G"], "", "Last node", Verb::Do(Ui::Move(Step::Last))),
     entry(Group::Look, "node", "NAME", &["/"], "", "Select a slave node by its name or a part of it", Verb::Node),
+    entry(Group::Look, "sort", "[ORDER]", &["t"], "", "Sort the nodes: as in the scene, by margin (closest to switching first), by gap", Verb::Sort),
+    entry(Group::Look, "sort-backward", "", &["T"], "", "Sort the other way round, and back", Verb::Do(Ui::SortBackward)),
+    entry(Group::Look, "filter", "[WHICH]", &["v"], "", "Show all nodes, active ones (touching or changing), those on the selected one's surface", Verb::Filter),
+    entry(Group::Look, "monitor", "[NAME]", &["y"], "", "The load over the next monitor, or the one of that name", Verb::Monitor),
     entry(Group::Look, "explain", "", &["e"], "explain", "The decision on the selected node in full", Verb::Do(Ui::Explain)),
     entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
     entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
@@ -367,6 +429,16 @@ impl Entry {
             Verb::Node => return Ok(Action::Ui(Ui::Select(find(rest, context)?))),
             Verb::Open if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Scene))),
             Verb::Open => return Ok(Action::Ui(Ui::Open(rest.into()))),
+            Verb::Sort => {
+                let sort = one_of(&words, Sort::ALL, Sort::word)?;
+                return Ok(Action::Ui(Ui::Sort(sort)));
+            }
+            Verb::Filter => {
+                let filter = one_of(&words, Filter::ALL, Filter::word)?;
+                return Ok(Action::Ui(Ui::Filter(filter)));
+            }
+            Verb::Monitor if rest.is_empty() => return Ok(Action::Ui(Ui::Monitor(None))),
+            Verb::Monitor => return Ok(Action::Ui(Ui::Monitor(Some(monitor(rest, context)?)))),
             Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),
         };
         Ok(Action::Session(command))
@@ -387,7 +459,7 @@ impl Entry {
     /// File and scene names may hold blanks; elsewhere a word too many is a mistake.
     fn most_words(&self) -> usize {
         match self.verb {
-            Verb::Snapshot { .. } | Verb::Open => usize::MAX,
+            Verb::Snapshot { .. } | Verb::Open | Verb::Monitor => usize::MAX,
             _ => self.arguments.split_whitespace().count(),
         }
     }
@@ -462,6 +534,38 @@ fn chosen(word: Option<&str>, context: &Context) -> Result<usize, String> {
         None if context.selected < slaves(context)?.slaves.len() => Ok(context.selected),
         None => Err("this scene has no slave nodes".into()),
     }
+}
+
+/// The choice that a word, or its beginning, stands for; none without a word.
+fn one_of<T: Copy>(
+    words: &[&str],
+    all: [T; 3],
+    spell: fn(T) -> &'static str,
+) -> Result<Option<T>, String> {
+    let Some(word) = words.first() else {
+        return Ok(None);
+    };
+    let found = all.into_iter().find(|&one| spell(one).starts_with(word));
+    found.map(Some).ok_or_else(|| {
+        let [a, b, c] = all.map(spell);
+        format!("'{word}' is none of {a}, {b}, {c}")
+    })
+}
+
+/// The number of the monitor of this name.
+fn monitor(name: &str, context: &Context) -> Result<usize, String> {
+    let monitors = &slaves(context)?.monitors;
+    let found = monitors.iter().position(|monitor| monitor.name == name);
+    found.ok_or_else(|| match monitors.is_empty() {
+        true => "this scene has no monitors".into(),
+        false => {
+            let names: Vec<_> = monitors.iter().map(|m| m.name.as_str()).collect();
+            format!(
+                "no monitor is called '{name}'; there are {}",
+                names.join(", ")
+            )
+        }
+    })
 }
 
 fn slaves<'a>(context: &Context<'a>) -> Result<&'a Model, String> {
@@ -561,6 +665,12 @@ impl Entry {
                 .map(|value| value.to_string())
                 .collect(),
             (Verb::Open, 0) => context.scenes.to_vec(),
+            (Verb::Sort, 0) => Sort::ALL.map(|sort| sort.word().into()).into(),
+            (Verb::Filter, 0) => Filter::ALL.map(|filter| filter.word().into()).into(),
+            (Verb::Monitor, 0) => {
+                let monitors = context.model.into_iter().flat_map(|model| &model.monitors);
+                monitors.map(|monitor| monitor.name.clone()).collect()
+            }
             _ => Vec::new(),
         }
     }

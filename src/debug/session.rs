@@ -26,6 +26,8 @@ pub struct Frame {
     pub event: Option<Arc<Event>>,
     /// What the user changed here, if this frame is due to that and not to a minor iteration.
     pub intervention: Option<Intervention>,
+    /// Values of the scene's monitors, where this frame ends an accepted increment.
+    pub monitors: Option<Arc<Vec<f64>>>,
 }
 
 /// What a command led to, as a line for the user.
@@ -51,6 +53,7 @@ impl Session {
             state: crate::solve::Stepper::new(model.clone()).state().clone(),
             event: None,
             intervention: None,
+            monitors: None,
         };
         Session {
             scene,
@@ -150,11 +153,12 @@ impl Session {
 
     fn take(&mut self, message: Message) -> Option<Reply> {
         match message {
-            Message::Frame(state, event) => {
+            Message::Frame(state, event, monitors) => {
                 self.frames.push(Frame {
                     state: *state,
                     event: Some(event),
                     intervention: None,
+                    monitors,
                 });
                 self.cursor = self.frames.len() - 1;
                 None
@@ -231,6 +235,7 @@ impl Session {
             state,
             event,
             intervention: Some(intervention),
+            monitors: None,
         });
         self.cursor += 1;
         if forgotten > 0 {
@@ -350,6 +355,11 @@ impl Session {
         history
     }
 
+    /// A monitor against the load factor, at the end of every accepted increment up to the cursor.
+    pub fn curve(&self, monitor: usize) -> Vec<[f64; 2]> {
+        curve(&self.frames[..=self.cursor], monitor)
+    }
+
     fn told(&self) -> String {
         let frame = self.frame();
         match &frame.event {
@@ -357,6 +367,15 @@ impl Session {
             Some(event) => report::outcome(&self.model, event),
         }
     }
+}
+
+/// A monitor's value and the load factor at the end of every accepted increment among these frames.
+pub fn curve(frames: &[Frame], monitor: usize) -> Vec<[f64; 2]> {
+    let point = |frame: &Frame| {
+        let value = *frame.monitors.as_ref()?.get(monitor)?;
+        Some([value, frame.event.as_ref()?.load_factor])
+    };
+    frames.iter().filter_map(point).collect()
 }
 
 /// Whether a minor iteration that ended like this ends a motion by this unit.

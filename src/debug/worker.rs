@@ -18,8 +18,8 @@ pub struct Job {
 
 /// What the worker tells.
 pub enum Message {
-    /// A minor iteration and the state after it.
-    Frame(Box<State>, Arc<Event>),
+    /// A minor iteration and the state after it; where it ended an increment, the values of the scene's monitors too.
+    Frame(Box<State>, Arc<Event>, Option<Arc<Vec<f64>>>),
     /// The job is over.
     Done { interrupted: bool },
     /// The thread is gone.
@@ -104,8 +104,14 @@ fn work(stepper: &mut Stepper, job: &Job, news: &Sender<Message>, stop: &AtomicB
         if matches!(event.outcome, Outcome::Failed(_)) {
             left = 0;
         }
-        news.send(Message::Frame(Box::new(stepper.state().clone()), event))
-            .ok()?;
+        let state = Box::new(stepper.state().clone());
+        let accepted = matches!(event.outcome, Outcome::Increment { .. });
+        let monitors = accepted.then(|| {
+            let mut values = Vec::new();
+            stepper.monitors(&mut values);
+            Arc::new(values)
+        });
+        news.send(Message::Frame(state, event, monitors)).ok()?;
     }
     news.send(Message::Done { interrupted }).ok()
 }

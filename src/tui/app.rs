@@ -1,11 +1,12 @@
 //! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
 //! app and yields at most one [`Effect`], which the event loop carries out.
 
-use crate::debug::command::{self, Action, Command, Context, Question, Step, Ui};
+use crate::debug::command::{self, Action, Command, Context, Filter, Question, Sort, Step, Ui};
 use crate::scene::Mode;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
+use crate::tui::nodes;
 use crate::tui::number;
 use crate::tui::theme::{self, Theme};
 use crate::tui::view::View;
@@ -112,6 +113,14 @@ pub struct App {
     pub count: Option<u32>,
     pub message: Message,
     pub camera: Camera,
+    /// How the table sorts, whether the other way round, and which nodes it shows.
+    pub sort: Sort,
+    pub backward: bool,
+    pub filter: Filter,
+    /// Monitor of the load-displacement curve.
+    pub monitor: usize,
+    /// Which of the residual and the curve is shown where there is room for one.
+    pub chart: Pane,
     /// Scenes to choose from.
     pub offers: Vec<Offer>,
     /// Turns of the spinner.
@@ -143,6 +152,11 @@ impl App {
                 tone: Tone::Plain,
             },
             camera: Camera::ALL,
+            sort: Sort::Scene,
+            backward: false,
+            filter: Filter::All,
+            monitor: 0,
+            chart: Pane::Residual,
             offers,
             tick: 0,
             last: None,
@@ -169,6 +183,7 @@ impl App {
     pub fn opened(&mut self) {
         self.overlay = Overlay::None;
         self.selected = 0;
+        self.monitor = 0;
         self.camera = Camera::ALL;
         self.last = None;
         self.count = None;
@@ -184,6 +199,7 @@ impl App {
         Choice {
             focus: self.focus,
             page: self.page,
+            chart: self.chart,
             zoomed: self.zoomed,
             slaves,
             outcome,
@@ -316,6 +332,10 @@ impl App {
             Ui::Enlarge => self.camera = self.camera.zoomed(1.25),
             Ui::Shrink => self.camera = self.camera.zoomed(0.8),
             Ui::Fit => self.camera = Camera::ALL,
+            Ui::Sort(sort) => self.sort = sort.unwrap_or(next(&Sort::ALL, self.sort)),
+            Ui::SortBackward => self.backward = !self.backward,
+            Ui::Filter(filter) => self.filter = filter.unwrap_or(next(&Filter::ALL, self.filter)),
+            Ui::Monitor(monitor) => self.watch(monitor, view),
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
             Ui::Help => self.overlay = Overlay::Help { top: 0 },
@@ -332,6 +352,20 @@ impl App {
         if self.focus != Pane::Nodes {
             self.page = self.focus;
         }
+        if matches!(self.focus, Pane::Residual | Pane::Curve) {
+            self.chart = self.focus;
+        }
+    }
+
+    /// Shows a monitor's curve, or the next one's.
+    fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
+        let monitors = view.map_or(&[][..], |view| &view.model.monitors);
+        let next = (self.monitor + 1) % monitors.len().max(1);
+        self.monitor = monitor.unwrap_or(next);
+        match monitors.get(self.monitor) {
+            Some(monitor) => self.say(format!("load over {}", monitor.name)),
+            None => self.complain("this scene has no monitors"),
+        }
     }
 
     fn explain(&mut self) {
@@ -341,11 +375,15 @@ impl App {
     }
 
     fn step(&mut self, step: Step, count: isize, view: Option<&View>) {
-        let last = view.map_or(0, |view| view.model.slaves.len().saturating_sub(1));
+        let order = view.map_or(Vec::new(), |view| nodes::order(self, view));
+        let last = order.len().saturating_sub(1);
+        let here = order.iter().position(|slave| *slave == self.selected);
+        let row = |row: usize| order.get(row).copied().unwrap_or(0);
         let to = |by: isize| {
-            self.selected
-                .saturating_add_signed(by.saturating_mul(count))
-                .min(last)
+            let to = here
+                .unwrap_or(0)
+                .saturating_add_signed(by.saturating_mul(count));
+            row(to.min(last))
         };
         match (self.focus, step) {
             (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
@@ -356,8 +394,8 @@ impl App {
             (_, Step::Down) => self.selected = to(1),
             (_, Step::PageUp) => self.selected = to(-PAGE),
             (_, Step::PageDown) => self.selected = to(PAGE),
-            (_, Step::First) => self.selected = 0,
-            (_, Step::Last) => self.selected = last,
+            (_, Step::First) => self.selected = row(0),
+            (_, Step::Last) => self.selected = row(last),
             (_, Step::Left | Step::Right) => {}
         }
     }
@@ -500,6 +538,12 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         selected,
         scenes,
     }
+}
+
+/// What comes after one of several, round and round.
+fn next<T: Copy + PartialEq>(all: &[T], one: T) -> T {
+    let at = all.iter().position(|other| *other == one);
+    all[at.map_or(0, |at| (at + 1) % all.len())]
 }
 
 /// The digit that a key is.

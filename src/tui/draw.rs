@@ -5,11 +5,12 @@ use crate::tui::app::{App, Overlay};
 use crate::tui::layout::{self, Pane};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
-use crate::tui::{chooser, decision, footer, help, nodes, residual, shape, status};
+use crate::tui::{chooser, curve, decision, footer, help, nodes, residual, shape, status};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Widget};
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Draws everything. Without a view (no scene yet) there is only the chooser.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
@@ -43,6 +44,7 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
         Pane::Decision => decision::draw(buffer, area, app, view),
         Pane::Residual => residual::draw(buffer, area, app, view),
         Pane::Shape => shape::draw(buffer, area, app, view),
+        Pane::Curve => curve::draw(buffer, area, app, view),
     }
 }
 
@@ -66,6 +68,25 @@ pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme:
 pub fn lines(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
     for (row, line) in area.rows().zip(lines) {
         line.render(row, buffer);
+    }
+}
+
+/// A text that fits; what is cut off at the end shows as `…`.
+pub fn cut(text: &str, width: usize) -> String {
+    if text.width() <= width {
+        return text.into();
+    }
+    let mut room = width.saturating_sub(1);
+    let kept = text.chars().take_while(|letter| {
+        let wide = letter.width().unwrap_or(0);
+        let fits = wide <= room;
+        room = room.saturating_sub(wide);
+        fits
+    });
+    let kept: String = kept.collect();
+    match width {
+        0 => kept,
+        _ => format!("{}…", kept.trim_end()),
     }
 }
 

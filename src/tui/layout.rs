@@ -1,8 +1,8 @@
 //! Where everything stands on the screen.
 //!
 //! Three arrangements. Small (80x24): the table, and under it one more pane, which Tab changes. Medium (120x40):
-//! the table across, the decision over the residual on the left, the shape on the right. Large (200x60): two
-//! columns. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
+//! the table across, the decision over the residual (or the curve, whichever Tab came to last) on the left, the shape
+//! on the right. Large (200x60): two columns. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
 //! one pane at a time.
 
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -14,11 +14,18 @@ pub enum Pane {
     Decision,
     Residual,
     Shape,
+    Curve,
 }
 
 impl Pane {
     /// All, in the order of Tab.
-    pub const ALL: [Pane; 4] = [Pane::Nodes, Pane::Decision, Pane::Residual, Pane::Shape];
+    pub const ALL: [Pane; 5] = [
+        Pane::Nodes,
+        Pane::Decision,
+        Pane::Residual,
+        Pane::Shape,
+        Pane::Curve,
+    ];
 
     /// The pane so many places further on.
     pub fn turn(self, places: usize) -> Pane {
@@ -33,6 +40,8 @@ pub struct Choice {
     pub focus: Pane,
     /// The pane under the table on a small screen.
     pub page: Pane,
+    /// The residual or the curve, where there is room for one.
+    pub chart: Pane,
     /// Whether the pane with the focus has the screen for itself.
     pub zoomed: bool,
     /// Number of slave nodes, hence of the table's rows.
@@ -88,7 +97,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         _ if area.width >= 110 && body.height >= 30 => medium(body, choice),
         _ => small(body, choice),
     };
-    let paged = panes.len() < Pane::ALL.len() && !choice.zoomed;
+    let paged = panes.len() < Pane::ALL.len() - 1 && !choice.zoomed;
     Places {
         status,
         panes,
@@ -130,7 +139,7 @@ fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     vec![
         (Pane::Nodes, upper),
         (Pane::Decision, decision),
-        (Pane::Residual, residual),
+        (choice.chart, residual),
         (Pane::Shape, right),
     ]
 }
@@ -148,11 +157,14 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         Constraint::Min(0),
     ];
     let [nodes, decision, residual] = Layout::vertical(rows).areas(left);
+    let rows = [Constraint::Fill(3), Constraint::Fill(2)];
+    let [shape, curve] = Layout::vertical(rows).areas(right);
     vec![
         (Pane::Nodes, nodes),
         (Pane::Decision, decision),
         (Pane::Residual, residual),
-        (Pane::Shape, right),
+        (Pane::Shape, shape),
+        (Pane::Curve, curve),
     ]
 }
 
@@ -164,6 +176,7 @@ mod tests {
         let choice = Choice {
             focus: Pane::Nodes,
             page: Pane::Decision,
+            chart: Pane::Residual,
             zoomed: false,
             slaves,
             outcome: 1,
@@ -177,7 +190,7 @@ mod tests {
         for (width, height) in [(120, 40), (200, 60), (110, 36), (160, 46)] {
             for slaves in [0, 1, 9, 1000] {
                 let places = at(width, height, slaves);
-                assert_eq!(places.panes.len(), 4);
+                assert_eq!(places.panes.len(), if width < 160 { 4 } else { 5 });
                 assert!(!places.paged);
                 assert!(
                     places

@@ -10,6 +10,7 @@ pub mod app;
 pub mod canvas;
 pub mod chooser;
 pub mod commandline;
+pub mod curve;
 pub mod decision;
 pub mod draw;
 pub mod footer;

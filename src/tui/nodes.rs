@@ -1,6 +1,8 @@
 //! The slave-node table: what the shown minor iteration found at every slave node.
 
-use crate::contact::decision::Tested;
+use crate::contact::decision::{Rule, Tested};
+use crate::debug::command::{Filter, Sort};
+use crate::scene::Mode;
 use crate::solve::{Forced, NodeRecord};
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
@@ -86,10 +88,10 @@ impl Columns {
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let count = view.model.slaves.len();
     let selected = app.selected.min(count.saturating_sub(1));
-    let title = match count {
-        0 | 1 => "Slave nodes".into(),
-        _ => format!("Slave nodes  {}/{count}", selected + 1),
-    };
+    let order = order(app, view);
+    let at = order.iter().position(|slave| *slave == selected);
+    let at = at.unwrap_or(0);
+    let title = title(at, order.len(), count, app);
     let inner = draw::frame(buffer, area, &title, app.focus == Pane::Nodes, &app.theme);
     if count == 0 {
         draw::lines(
@@ -108,13 +110,97 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .unwrap_or(0);
     let columns = Columns::fit(inner.width as usize, longest.clamp(4, 20));
     let rows = (inner.height as usize).saturating_sub(1);
-    let top = first_row(selected, rows, count);
+    let top = first_row(at, rows, order.len());
     let mut lines = vec![headings(&columns, app)];
     lines.extend(
-        (top..count.min(top + rows))
-            .map(|slave| row(slave, slave == selected, &columns, app, view)),
+        order
+            .iter()
+            .skip(top)
+            .take(rows)
+            .map(|&slave| row(slave, slave == selected, &columns, app, view)),
     );
     draw::lines(buffer, inner, &lines);
+}
+
+/// Heading: which node of how many shown, which those are, and how they are sorted.
+fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
+    if count < 2 {
+        return "Slave nodes".into();
+    }
+    let mut title = format!("Slave nodes  {}/{shown}", at + 1);
+    title += &match app.filter {
+        Filter::All => String::new(),
+        Filter::Active => format!(" active of {count}"),
+        Filter::Surface => format!(" on this surface of {count}"),
+    };
+    title += match app.sort {
+        Sort::Scene => "",
+        Sort::Margin => "  by margin",
+        Sort::Gap => "  by gap",
+    };
+    if app.backward {
+        title += "  backward";
+    }
+    title
+}
+
+/// The slave nodes that the table shows, in its order. The selected one is always among them.
+pub fn order(app: &App, view: &View) -> Vec<usize> {
+    let count = view.model.slaves.len();
+    let selected = app.selected.min(count.saturating_sub(1));
+    let wanted = |slave: usize| match app.filter {
+        Filter::All => true,
+        Filter::Active => {
+            view.mode(slave) != Mode::Free || view.mode_before(slave) != view.mode(slave)
+        }
+        Filter::Surface => surface(slave, view) == surface(selected, view),
+    };
+    let mut order: Vec<usize> = (0..count)
+        .filter(|&slave| slave == selected || wanted(slave))
+        .collect();
+    let key = |slave: usize| match app.sort {
+        Sort::Scene => Some(slave as f64),
+        Sort::Margin => margin(slave, view),
+        Sort::Gap => gap(slave, view),
+    };
+    // Nodes that have no such number are last whichever way the others are sorted.
+    let mut keyed: Vec<(Option<f64>, usize)> =
+        order.drain(..).map(|slave| (key(slave), slave)).collect();
+    keyed.sort_by(|(a, _), (b, _)| match (a, b) {
+        (Some(a), Some(b)) if app.backward => b.total_cmp(a),
+        (Some(a), Some(b)) => a.total_cmp(b),
+        _ => b.is_some().cmp(&a.is_some()),
+    });
+    order.extend(keyed.into_iter().map(|(_, slave)| slave));
+    order
+}
+
+/// The surface that a node is on, or the first that it may touch.
+fn surface(slave: usize, view: &View) -> Option<usize> {
+    let spot = view.frame().state.nodes.get(slave)?.spot;
+    let first = || view.model.slaves[slave].surfaces.first().copied();
+    spot.map(|spot| spot.surface).or_else(first)
+}
+
+/// How close a node is to switching: the least of its margins, forces over the scene's force and lengths over its
+/// length.
+fn margin(slave: usize, view: &View) -> Option<f64> {
+    let (event, record) = (view.event()?, view.record(slave)?);
+    let tests = record.decision.tests.iter().flatten();
+    let size = |tested| match tested {
+        Tested::NormalForce | Tested::ShearForce => event.before.scale,
+        Tested::Slip | Tested::Gap => view.model.length,
+    };
+    tests
+        .map(|test| (test.margin / size(test.tested)).abs())
+        .filter(|margin| !margin.is_nan())
+        .min_by(f64::total_cmp)
+}
+
+fn gap(slave: usize, view: &View) -> Option<f64> {
+    let record = view.record(slave)?;
+    let known = record.decision.rule != Rule::OffSurface && !record.gap.is_nan();
+    known.then_some(record.gap)
 }
 
 /// First row shown, such that the selection stands in the middle where it can.

@@ -10,6 +10,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Draws the status.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
@@ -25,7 +26,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     // The position is what a screen of one line must show.
     let mut lines = vec![position(app, view)];
     if area.height > 2 {
-        lines.insert(0, scene(app, view));
+        lines.insert(0, scene(app, view, area.width as usize));
     }
     lines.extend(outcome(app, view, area.width));
     draw::lines(buffer, area, &lines);
@@ -39,11 +40,17 @@ pub fn outcome_lines(app: &App, view: &View, width: u16) -> u16 {
     outcome(app, view, width).len().min(OUTCOME) as u16
 }
 
-fn scene<'a>(app: &App, view: &View<'a>) -> Line<'a> {
+fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
+    const PROGRAM: &str = " stickslip ";
+    let name = draw::cut(view.name, width.saturating_sub(PROGRAM.width()));
+    let room = width.saturating_sub(PROGRAM.width() + name.width());
     Line::from(vec![
-        Span::styled(" stickslip ", app.theme.faint),
-        Span::styled(view.name, app.theme.heading),
-        Span::styled(format!("  {}", view.model.title), app.theme.faint),
+        Span::styled(PROGRAM, app.theme.faint),
+        Span::styled(name, app.theme.heading),
+        Span::styled(
+            draw::cut(&format!("  {}", view.model.title), room),
+            app.theme.faint,
+        ),
     ])
 }
 
