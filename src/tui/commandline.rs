@@ -197,7 +197,7 @@ mod tests {
                 line.text().to_string()
             })
             .collect();
-        assert_eq!(seen, ["minors", "majors", "minors"]);
+        assert_eq!(seen, ["minors", "majors", "monitor"]);
         line.complete(-1, &context);
         assert_eq!(line.text(), "majors");
     }
