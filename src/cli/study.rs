@@ -212,7 +212,7 @@ fn tell_table(plan: &Plan, runs: &[Run]) {
         row.push(run.minors().to_string());
         row.push(short(run.last().load));
         for name in monitors() {
-            let value = run.last().value(&Quantity::Monitor(name.clone()));
+            let value = run.value(run.last(), &Quantity::Monitor(name.clone()));
             row.push(value.map_or_else(String::new, short));
         }
         row.push(run.unsettled().to_string());

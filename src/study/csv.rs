@@ -38,6 +38,8 @@ fn header(plan: &Plan) -> String {
 
 /// The rows of one run. Writing to a string does not fail.
 fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
+    let place = |name: &String| run.monitors.iter().position(|own| own == name);
+    let places: Vec<Option<usize>> = plan.monitors.iter().map(place).collect();
     for row in &run.rows {
         let status = match row.unsettled {
             0 => "converged",
@@ -48,9 +50,9 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
             "{leading}{status},{},{:?},{},{},{}",
             row.increment, row.load, row.majors, row.minors, row.unsettled
         );
-        for name in &plan.monitors {
+        for place in &places {
             text.push(',');
-            if let Some((_, value)) = row.monitors.iter().find(|(own, _)| own == name) {
+            if let Some(value) = place.and_then(|k| row.monitors.get(k)) {
                 let _ = write!(text, "{value:?}");
             }
         }

@@ -1,7 +1,7 @@
 //! The results of a study as curves: the form of the paper's figures.
 
 use super::plan::Plan;
-use super::plot::{Chart, Curve, End as CurveEnd};
+use super::plot::{Axis, Chart, Curve, End as CurveEnd};
 use super::read::Quantity;
 use super::result::{End, Run};
 
@@ -69,15 +69,20 @@ pub fn short(value: f64) -> String {
     }
 }
 
-fn axis(quantity: &Quantity) -> String {
-    match quantity {
-        Quantity::Increment => "increment",
+fn axis(quantity: &Quantity) -> Axis {
+    let name = match quantity {
         Quantity::Load => "load factor",
         Quantity::Majors => "major iterations of the increment",
         Quantity::Minors => "minor iterations of the increment",
-        Quantity::Monitor(name) => name,
+        other => other.name(),
+    };
+    Axis {
+        name: name.to_owned(),
+        counts: matches!(
+            quantity,
+            Quantity::Increment | Quantity::Majors | Quantity::Minors
+        ),
     }
-    .to_owned()
 }
 
 /// From the start of the history on, where the quantities have a value there.
@@ -87,7 +92,7 @@ fn points(plan: &Plan, run: &Run) -> Vec<(f64, f64)> {
     start
         .into_iter()
         .chain(&run.rows)
-        .filter_map(|row| Some((row.value(&plan.x)?, row.value(&plan.y)?)))
+        .filter_map(|row| Some((run.value(row, &plan.x)?, run.value(row, &plan.y)?)))
         .filter(|(x, y)| x.is_finite() && y.is_finite())
         .collect()
 }

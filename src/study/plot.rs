@@ -13,11 +13,19 @@ use std::sync::OnceLock;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     pub title: String,
-    pub x: String,
-    pub y: String,
+    pub x: Axis,
+    pub y: Axis,
     pub curves: Vec<Curve>,
     /// Lines below the chart that say what it was made from; long ones are broken.
     pub footer: Vec<String>,
+}
+
+/// What a chart runs along.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Axis {
+    pub name: String,
+    /// It counts something: it starts at zero and has whole numbers only.
+    pub counts: bool,
 }
 
 /// One line with markers, and a line of the legend.
@@ -290,20 +298,21 @@ fn curves<DB: DrawingBackend>(
     layout: &Layout,
 ) -> Result<(), Failure<DB>> {
     let all = || chart.curves.iter().flat_map(|c| &c.points);
-    let (x, y) = (bounds(all().map(|p| p.0)), bounds(all().map(|p| p.1)));
+    let x = bounds(&chart.x, all().map(|p| p.0));
+    let y = bounds(&chart.y, all().map(|p| p.1));
     let mut plot = ChartBuilder::on(area)
         .margin(layout.pixels(MARGIN))
         .x_label_area_size(layout.pixels(3.4 * LABEL))
         .y_label_area_size(layout.pixels(4.8 * LABEL))
         .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
     plot.configure_mesh()
-        .x_desc(&chart.x)
-        .y_desc(&chart.y)
+        .x_desc(&chart.x.name)
+        .y_desc(&chart.y.name)
         .x_labels(9)
         .y_labels(9)
         .max_light_lines(0)
-        .x_label_formatter(&|x| short(*x))
-        .y_label_formatter(&|y| short(*y))
+        .x_label_formatter(&|at| tick(&chart.x, *at, x.1 - x.0))
+        .y_label_formatter(&|at| tick(&chart.y, *at, y.1 - y.0))
         .label_style(layout.font(TICK))
         .axis_desc_style(layout.font(LABEL))
         .axis_style(BLACK.stroke_width(layout.pixels(1.0) as u32))
@@ -393,8 +402,9 @@ fn sample<DB: DrawingBackend>(
 }
 
 /// The range of an axis, with some air.
-fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let all = values.fold(None, |all: Option<(f64, f64)>, v| {
+fn bounds(axis: &Axis, values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let zero = axis.counts.then_some(0.0);
+    let all = values.chain(zero).fold(None, |all: Option<(f64, f64)>, v| {
         Some(all.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
     });
     let (low, high) = all.unwrap_or((0.0, 1.0));
@@ -402,7 +412,18 @@ fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
         0.0 => 0.5 * low.abs().max(1.0),
         range => 0.04 * range,
     };
-    (low - air, high + air)
+    (if axis.counts { 0.0 } else { low - air }, high + air)
+}
+
+/// The number at a tick of an axis of that length.
+fn tick(axis: &Axis, at: f64, length: f64) -> String {
+    // Ticks are summed up: zero is missed by round-off.
+    const ZERO: f64 = 1e-9;
+    let at = if at.abs() < ZERO * length { 0.0 } else { at };
+    match axis.counts && at.fract() != 0.0 {
+        true => String::new(),
+        false => short(at),
+    }
 }
 
 fn colour(k: usize) -> RGBColor {

@@ -282,6 +282,7 @@ fn message(error: &ron::Error) -> String {
             expected.join(", ")
         ),
         E::MissingStructField { field, .. } => format!("the study has no {field}"),
+        E::ExpectedComma => "a comma or a closing bracket is missing".to_owned(),
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
         other => {
             let text = other.to_string();

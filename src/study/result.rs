@@ -7,6 +7,8 @@ use std::fmt;
 /// A run, as far as it went.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
+    /// Names of the scene's monitors.
+    pub monitors: Vec<String>,
     /// The load factor and the monitors before the first increment.
     pub start: Row,
     /// One row per accepted increment.
@@ -24,8 +26,8 @@ pub struct Row {
     pub minors: u64,
     /// Loops that were cut off by a limit whose being reached is accepted.
     pub unsettled: u32,
-    /// Values of the monitors of this run's own scene; see [`Run::value`].
-    pub monitors: Vec<(String, f64)>,
+    /// Values of the run's monitors.
+    pub monitors: Vec<f64>,
 }
 
 /// How a run ended.
@@ -91,23 +93,21 @@ impl fmt::Display for Reason {
     }
 }
 
-impl Row {
-    /// The value of a quantity; none where the scene has no such monitor.
-    pub fn value(&self, quantity: &Quantity) -> Option<f64> {
+impl Run {
+    /// The value of a quantity in a row of this run; none where the scene has no such monitor.
+    pub fn value(&self, row: &Row, quantity: &Quantity) -> Option<f64> {
         match quantity {
-            Quantity::Increment => Some(f64::from(self.increment)),
-            Quantity::Load => Some(self.load),
-            Quantity::Majors => Some(f64::from(self.majors)),
-            Quantity::Minors => Some(self.minors as f64),
+            Quantity::Increment => Some(f64::from(row.increment)),
+            Quantity::Load => Some(row.load),
+            Quantity::Majors => Some(f64::from(row.majors)),
+            Quantity::Minors => Some(row.minors as f64),
             Quantity::Monitor(name) => {
-                let found = self.monitors.iter().find(|(monitor, _)| monitor == name);
-                found.map(|(_, value)| *value)
+                let k = self.monitors.iter().position(|monitor| monitor == name)?;
+                row.monitors.get(k).copied()
             }
         }
     }
-}
 
-impl Run {
     /// The state that the run got to: its last accepted increment, or the start.
     pub fn last(&self) -> &Row {
         self.rows.last().unwrap_or(&self.start)

@@ -51,8 +51,10 @@ pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, R
 /// If the scene will not open, which the plan has tried.
 pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
     let model = Arc::new(case.open()?.model);
+    let monitors = model.monitors.iter().map(|m| m.name.clone()).collect();
     let mut stepper = Stepper::new(model);
     let mut run = Run {
+        monitors,
         start: row(&mut stepper, 0, 0, 0),
         rows: Vec::new(),
         end: End::NotRun,
@@ -98,15 +100,14 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
 
 /// What the stepper stands at: the start of an increment.
 fn row(stepper: &mut Stepper, majors: u32, minors: u64, unsettled: u32) -> Row {
-    let mut values = Vec::new();
-    stepper.monitors(&mut values);
-    let names = stepper.model().monitors.iter().map(|m| m.name.clone());
+    let mut monitors = Vec::new();
+    stepper.monitors(&mut monitors);
     Row {
         increment: 0,
         load: stepper.state().start.load_factor,
         majors,
         minors,
         unsettled,
-        monitors: names.zip(values).collect(),
+        monitors,
     }
 }
