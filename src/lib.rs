@@ -8,6 +8,7 @@
 //! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.
 //! - [`solve`]: the stepper: increments, major iterations, minor iterations, one per call.
 //! - [`debug`]: the debugger without a terminal: session, commands, snapshots.
+//! - [`study`]: many runs of a scene, as a table and as a figure.
 //! - [`cli`] and [`tui`]: the two front ends.
 
 pub mod cli;
@@ -17,4 +18,5 @@ pub mod fem;
 pub mod linalg;
 pub mod scene;
 pub mod solve;
+pub mod study;
 pub mod tui;

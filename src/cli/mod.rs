@@ -12,6 +12,7 @@ mod record;
 mod replay;
 mod run;
 mod sink;
+mod study;
 mod table;
 
 use crate::debug::files::FileError;
@@ -94,6 +95,8 @@ enum Command {
     Replay(replay::Args),
     /// Compares two snapshots, node by node
     Diff(diff::Args),
+    /// Solves a scene with many settings and compares
+    Study(study::Args),
 }
 
 /// A scene, and what is changed in it.
@@ -138,7 +141,7 @@ pub fn main() -> ExitCode {
     };
     if !matches!(
         cli.command,
-        None | Some(Command::Run(_) | Command::Record(_))
+        None | Some(Command::Run(_) | Command::Record(_) | Command::Study(_))
     ) {
         // These have nothing to put away.
         interrupt::end_at_once();
@@ -151,6 +154,7 @@ pub fn main() -> ExitCode {
         Some(Command::Record(args)) => record::main(args),
         Some(Command::Replay(args)) => replay::main(args),
         Some(Command::Diff(args)) => diff::main(args),
+        Some(Command::Study(args)) => study::main(args),
     };
     ended
         .unwrap_or_else(|error| {

@@ -28,6 +28,7 @@ pub use error::SceneError;
 pub use model::Model;
 pub use spec::{Friction, Mode, Settings, Spec};
 
+pub(crate) use compile::increments;
 use error::Fault;
 use nodes::Names;
 use paths::Override;

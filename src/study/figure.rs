@@ -1,0 +1,145 @@
+//! The results of a study as curves: the form of the paper's figures.
+
+use super::plan::Plan;
+use super::plot::{Axis, Chart, Curve, End as CurveEnd};
+use super::read::Quantity;
+use super::result::{End, Run};
+
+/// The chart of a study: a curve per run, over the plan's axes.
+pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
+    let names = short_names(&plan.columns);
+    let curves = plan
+        .cases
+        .iter()
+        .zip(runs)
+        .filter(|(_, run)| run.end != End::NotRun)
+        .map(|(case, run)| Curve {
+            label: label(&names, &case.values),
+            points: points(plan, run),
+            end: match &run.end {
+                End::Finished | End::NotRun => CurveEnd::Whole,
+                End::Failed(failed) => CurveEnd::Failed(format!(
+                    "{} in increment {}, load {}",
+                    failed.reason,
+                    failed.increment,
+                    short(failed.load)
+                )),
+                End::Interrupted => CurveEnd::Stopped("interrupted".to_owned()),
+            },
+        })
+        .collect();
+    Chart {
+        title: plan.title.clone(),
+        x: axis(&plan.x),
+        y: axis(&plan.y),
+        curves,
+        footer: footer(plan, runs),
+    }
+}
+
+/// What tells a run from the others: `increment=0.02, geometry=frozen`. Empty where there is only one.
+pub fn label(names: &[String], values: &[String]) -> String {
+    let pairs = names.iter().zip(values);
+    let pairs = pairs.map(|(name, value)| match name.as_str() {
+        "scene" => value.clone(),
+        _ => format!("{name}={value}"),
+    });
+    pairs.collect::<Vec<_>>().join(", ")
+}
+
+/// The last step of each path where that is enough to tell them apart, else the whole paths.
+pub fn short_names(paths: &[String]) -> Vec<String> {
+    let last = |path: &String| path.rsplit('.').next().unwrap_or(path).to_owned();
+    let short: Vec<String> = paths.iter().map(last).collect();
+    let unique = |name: &String| short.iter().filter(|other| *other == name).count() == 1;
+    match short.iter().all(unique) {
+        true => short,
+        false => paths.to_vec(),
+    }
+}
+
+/// A number for a person: six digits at most.
+pub fn short(value: f64) -> String {
+    // Rounded in decimal, and printed as short as that reads back.
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    match rounded {
+        0.0 => "0".to_owned(),
+        x if (1e-4..1e7).contains(&x.abs()) => x.to_string(),
+        x => format!("{x:e}"),
+    }
+}
+
+fn axis(quantity: &Quantity) -> Axis {
+    let name = match quantity {
+        Quantity::Load => "load factor",
+        Quantity::Majors => "major iterations of the increment",
+        Quantity::Minors => "minor iterations of the increment",
+        other => other.name(),
+    };
+    Axis {
+        name: name.to_owned(),
+        counts: matches!(
+            quantity,
+            Quantity::Increment | Quantity::Majors | Quantity::Minors
+        ),
+    }
+}
+
+/// From the start of the history on, where the quantities have a value there.
+fn points(plan: &Plan, run: &Run) -> Vec<(f64, f64)> {
+    let counts = |q: &Quantity| matches!(q, Quantity::Majors | Quantity::Minors);
+    let start = (!counts(&plan.x) && !counts(&plan.y)).then_some(&run.start);
+    start
+        .into_iter()
+        .chain(&run.rows)
+        .filter_map(|row| Some((run.value(row, &plan.x)?, run.value(row, &plan.y)?)))
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .collect()
+}
+
+/// What the chart was made from, and by what.
+fn footer(plan: &Plan, runs: &[Run]) -> Vec<String> {
+    let study = &plan.study;
+    let mut made = format!("Scene: {}", study.scenes.join(", "));
+    if study.scenes.first() != Some(&study.name) {
+        made = format!("Study: {}. {made}", study.name);
+    }
+    for (path, value) in &study.set {
+        made += &format!("; {path}={value}");
+    }
+    for vary in &study.vary {
+        made += &format!("; {} over {}", vary.path, vary.values.join(", "));
+    }
+    let failed = runs.iter().filter(|run| run.failed().is_some()).count();
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let by = format!(
+        "{} runs, {failed} of them failed. stickslip {} on {}/{}, {cores} cores",
+        runs.len(),
+        env!("CARGO_PKG_VERSION"),
+        std::env::consts::OS,
+        std::env::consts::ARCH,
+    );
+    vec![made, by]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_short_where_that_is_clear() {
+        let own = |names: &[&str]| names.iter().map(|n| n.to_string()).collect::<Vec<_>>();
+        let short = short_names(&own(&["history.increment", "settings.majors"]));
+        assert_eq!(short, ["increment", "majors"]);
+        let long = own(&["slaves[0].friction.angle", "friction.angle"]);
+        assert_eq!(short_names(&long), long);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(short(0.1 + 0.2), "0.3");
+        assert_eq!(short(-0.0), "0");
+        assert_eq!(short(1.0 / 3.0), "0.333333");
+        assert_eq!(short(1.2e-9), "1.2e-9");
+    }
+}

@@ -1,0 +1,243 @@
+//! The product of all settings of a study, with every case found sound before any is run.
+
+use super::read::{Quantity, Study, Vary};
+use crate::scene::error::{SceneError, did_you_mean, some_of};
+use crate::scene::{Scene, increments, paths};
+use std::sync::Arc;
+
+/// More runs than this are a slip of the finger.
+const MOST_CASES: usize = 100_000;
+
+/// What is run.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    pub study: Study,
+    pub title: String,
+    /// What differs between the cases: `scene` if there are several, then the varied paths.
+    pub columns: Vec<String>,
+    pub cases: Vec<Case>,
+    /// Names of all monitors, in the order in which the scenes first have them.
+    pub monitors: Vec<String>,
+    pub x: Quantity,
+    pub y: Quantity,
+}
+
+/// One run of a study.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// A value per column of the plan.
+    pub values: Vec<String>,
+    /// Name of the scene, and its text.
+    scene: String,
+    text: Arc<str>,
+    /// All settings, path by path.
+    settings: Vec<(String, String)>,
+    /// Increments from start to end of the history.
+    pub increments: u64,
+}
+
+impl Case {
+    /// The scene with the settings of this case.
+    ///
+    /// # Errors
+    /// None that the plan has not refused already.
+    pub fn open(&self) -> Result<Scene, SceneError> {
+        Scene::from_text(&self.scene, &self.text, &self.settings)
+    }
+}
+
+impl Plan {
+    /// Lays a study out.
+    ///
+    /// # Errors
+    /// If a scene, a path or a value will not do, in any of the cases, or an axis is nothing that the scenes have.
+    pub fn new(study: Study) -> Result<Plan, SceneError> {
+        check_values(&study)?;
+        let mut plan = Plan {
+            title: study.title.clone(),
+            columns: columns(&study),
+            cases: Vec::new(),
+            monitors: Vec::new(),
+            x: Quantity::Increment,
+            y: study.y.clone().unwrap_or(Quantity::Load),
+            study,
+        };
+        for name in plan.study.scenes.clone() {
+            plan.lay_out(&name)?;
+        }
+        plan.x = match (&plan.study.x, plan.monitors.first()) {
+            (Some(x), _) => x.clone(),
+            (None, Some(first)) => Quantity::Monitor(first.clone()),
+            (None, None) => Quantity::Increment,
+        };
+        for axis in [&plan.x, &plan.y] {
+            plan.check_axis(axis)?;
+        }
+        Ok(plan)
+    }
+
+    /// Increments of all cases together.
+    pub fn increments(&self) -> u64 {
+        self.cases.iter().map(|case| case.increments).sum()
+    }
+
+    /// Adds the cases of one scene.
+    fn lay_out(&mut self, name: &str) -> Result<(), SceneError> {
+        let base = Scene::open(name, &[])?;
+        let set = expanded(&base, &self.study.set);
+        let text: Arc<str> = base.text.as_str().into();
+        if self.title.is_empty() {
+            self.title.clone_from(&base.spec.title);
+        }
+        for settings in product(&self.study.vary) {
+            let mut values = Vec::with_capacity(self.columns.len());
+            if self.study.scenes.len() > 1 {
+                values.push(name.to_owned());
+            }
+            values.extend(settings.iter().map(|(_, value)| value.clone()));
+            let mut all = set.clone();
+            all.extend(expanded(&base, &settings));
+            let mut case = Case {
+                values,
+                scene: base.name.clone(),
+                text: text.clone(),
+                settings: all,
+                increments: 0,
+            };
+            let model = case.open()?.model;
+            case.increments = increments(&model.path, model.increment) as u64;
+            for monitor in model.monitors {
+                if !self.monitors.contains(&monitor.name) {
+                    self.monitors.push(monitor.name);
+                }
+            }
+            self.cases.push(case);
+        }
+        Ok(())
+    }
+
+    fn check_axis(&self, axis: &Quantity) -> Result<(), SceneError> {
+        let Quantity::Monitor(name) = axis else {
+            return Ok(());
+        };
+        if self.monitors.contains(name) {
+            return Ok(());
+        }
+        let known = || {
+            let words = ["load", "increment", "majors", "minors"];
+            words
+                .into_iter()
+                .chain(self.monitors.iter().map(String::as_str))
+        };
+        let message = format!(
+            "there is no {name:?} to draw{}; there are {}",
+            did_you_mean(name, known()),
+            some_of(known())
+        );
+        Err(SceneError::whole(&self.study.name, message))
+    }
+}
+
+fn columns(study: &Study) -> Vec<String> {
+    let scene = (study.scenes.len() > 1).then(|| "scene".to_owned());
+    let paths = study.vary.iter().map(|vary| vary.path.clone());
+    scene.into_iter().chain(paths).collect()
+}
+
+/// Refuses what would run nothing, the same thing twice, or for ever.
+fn check_values(study: &Study) -> Result<(), SceneError> {
+    let wrong = |message: String| Err(SceneError::whole(&study.name, message));
+    let mut cases = study.scenes.len();
+    for (k, vary) in study.vary.iter().enumerate() {
+        let Vary { path, values } = vary;
+        if study.vary[..k].iter().any(|other| other.path == *path) {
+            return wrong(format!("{path} is varied twice"));
+        }
+        if values.is_empty() {
+            return wrong(format!("{path} has no values to vary over"));
+        }
+        if let Some(value) = (1..values.len()).find(|&j| values[..j].contains(&values[j])) {
+            return wrong(format!("{path} has the value {} twice", values[value]));
+        }
+        cases = cases.saturating_mul(values.len());
+    }
+    if cases > MOST_CASES {
+        return wrong(format!(
+            "the product has {cases} runs; at most {MOST_CASES} can be had"
+        ));
+    }
+    Ok(())
+}
+
+/// All combinations of values, path by path; the last path changes fastest.
+fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
+    let mut all = vec![Vec::new()];
+    for Vary { path, values } in vary {
+        all = all
+            .iter()
+            .flat_map(|head: &Vec<(String, String)>| {
+                values.iter().map(|value| {
+                    let mut settings = head.clone();
+                    settings.push((path.clone(), value.clone()));
+                    settings
+                })
+            })
+            .collect();
+    }
+    all
+}
+
+/// Settings with each `*` replaced by all steps that fit. A pattern that nothing fits stays, for the scene to refuse.
+fn expanded(scene: &Scene, settings: &[(String, String)]) -> Vec<(String, String)> {
+    let mut all = Vec::new();
+    for (pattern, value) in settings {
+        let before = all.len();
+        if pattern.contains('*') {
+            let fitting = paths::list(&scene.spec).into_iter().map(|l| l.path);
+            all.extend(
+                fitting
+                    .filter(|path| fits(pattern, path))
+                    .map(|path| (path, value.clone())),
+            );
+        }
+        if all.len() == before {
+            all.push((pattern.clone(), value.clone()));
+        }
+    }
+    all
+}
+
+/// Whether a path is that of a pattern in which `*` stands for one step between points.
+fn fits(pattern: &str, path: &str) -> bool {
+    let (pattern, path): (Vec<_>, Vec<_>) =
+        (pattern.split('.').collect(), path.split('.').collect());
+    pattern.len() == path.len()
+        && pattern
+            .iter()
+            .zip(&path)
+            .all(|(wanted, step)| *wanted == "*" || wanted == step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_star_is_one_step() {
+        assert!(fits("materials.*.update", "materials.lower.update"));
+        assert!(!fits("materials.*.update", "materials.lower.E"));
+        assert!(!fits("materials.*", "materials.lower.E"));
+    }
+
+    #[test]
+    fn the_last_path_changes_fastest() {
+        let vary = |path: &str, values: &[&str]| Vary {
+            path: path.into(),
+            values: values.iter().map(|v| v.to_string()).collect(),
+        };
+        let all = product(&[vary("a", &["1", "2"]), vary("b", &["x", "y"])]);
+        let values: Vec<String> = all.iter().map(|c| c[0].1.clone() + &c[1].1).collect();
+        assert_eq!(values, ["1x", "1y", "2x", "2y"]);
+        assert_eq!(product(&[]).len(), 1);
+    }
+}

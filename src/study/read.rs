@@ -1,0 +1,327 @@
+//! A study as its author writes it.
+//!
+//! ```ron
+//! (
+//!     title: "Effect of the increment",
+//!     scene: "02-two-cantilevers-rough",             // or scenes: ["…", "…"]
+//!     vary: [("history.increment", [0.05, 0.1]), ("settings.residual", ["stress", "accumulate"])],
+//!     set: [("settings.majors", 100)],               // for all runs
+//!     x: "u_x", y: "load",                           // the axes of the figure
+//!     about: "What to look for.",
+//! )
+//! ```
+//!
+//! Paths are those of `check --paths`; a `*` in one stands for any one step of it (`materials.*.update`), and sets all
+//! that fit to the same value.
+
+use super::builtin;
+use crate::scene::error::{Path, SceneError, Step, did_you_mean};
+use crate::scene::locate::locate;
+use crate::scene::read::{options, text};
+use ron::error::SpannedError;
+use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, Visitor};
+use serde_path_to_error::Segment;
+use std::fmt;
+
+/// What is to be run, before anybody has looked whether the scenes have it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Study {
+    /// Path of the file, or name of the built-in study or scene.
+    pub name: String,
+    /// Empty: the scene's.
+    pub title: String,
+    pub about: String,
+    /// Scenes as `Scene::open` takes them, one at least.
+    pub scenes: Vec<String>,
+    /// What differs from run to run; the last one changes fastest.
+    pub vary: Vec<Vary>,
+    /// What is set for all runs: path and value.
+    pub set: Vec<(String, String)>,
+    /// Horizontal axis; none is the first monitor.
+    pub x: Option<Quantity>,
+    /// Vertical axis; none is the load factor.
+    pub y: Option<Quantity>,
+}
+
+/// One setting and the values that it takes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Vary {
+    pub path: String,
+    pub values: Vec<String>,
+}
+
+/// A number that every accepted increment has.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Quantity {
+    Increment,
+    Load,
+    Majors,
+    Minors,
+    /// A monitor of the scene, by its name.
+    Monitor(String),
+}
+
+impl Quantity {
+    /// The quantity of that name; what is none of the words is a monitor.
+    pub fn named(name: &str) -> Quantity {
+        match name {
+            "increment" => Quantity::Increment,
+            "load" => Quantity::Load,
+            "majors" => Quantity::Majors,
+            "minors" => Quantity::Minors,
+            monitor => Quantity::Monitor(monitor.to_owned()),
+        }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Quantity::Increment => "increment",
+            Quantity::Load => "load",
+            Quantity::Majors => "majors",
+            Quantity::Minors => "minors",
+            Quantity::Monitor(name) => name,
+        }
+    }
+}
+
+impl Study {
+    /// A study of one scene as it stands, with nothing varied yet.
+    pub fn of_scene(name: &str) -> Study {
+        Study {
+            name: name.to_owned(),
+            scenes: vec![name.to_owned()],
+            ..Study::default()
+        }
+    }
+
+    /// Opens a study file, a built-in study, or a scene to be varied; a file wins over what is built in.
+    ///
+    /// # Errors
+    /// If there is nothing of that name, or it is a study that cannot be read. Scenes are not read yet.
+    pub fn open(name: &str) -> Result<Study, SceneError> {
+        if std::path::Path::new(name).exists() {
+            let text = text(name)?;
+            return if is_study(&text) {
+                Study::from_text(name, &text).map(|study| study.beside(name))
+            } else {
+                Ok(Study::of_scene(name))
+            };
+        }
+        if let Some(builtin) = builtin::find(name) {
+            return Study::from_text(builtin.name, builtin.text);
+        }
+        if crate::scene::builtin::find(name).is_some() {
+            return Ok(Study::of_scene(name));
+        }
+        Err(SceneError::whole(name, nothing_there(name)))
+    }
+
+    /// Reads a study from a text; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// If it cannot be read, with line and column.
+    pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
+        let mut file = parse(name, text)?;
+        if let Some(scene) = file.scene.take() {
+            file.scenes.insert(0, scene);
+        }
+        if file.scenes.is_empty() {
+            let message = "a study needs a scene: \"NAME\", or scenes: [\"NAME\", \"NAME\"]";
+            return Err(SceneError::whole(name, message));
+        }
+        let values = |words: Vec<Word>| words.into_iter().map(|word| word.0).collect();
+        Ok(Study {
+            name: name.to_owned(),
+            title: file.title,
+            about: file.about,
+            scenes: file.scenes,
+            vary: file
+                .vary
+                .into_iter()
+                .map(|(path, words)| Vary {
+                    path,
+                    values: values(words),
+                })
+                .collect(),
+            set: file.set.into_iter().map(|(path, w)| (path, w.0)).collect(),
+            x: file.x.as_deref().map(Quantity::named),
+            y: file.y.as_deref().map(Quantity::named),
+        })
+    }
+
+    /// Varies one setting more, or with other values than before.
+    pub fn vary(&mut self, vary: Vary) {
+        match self.vary.iter_mut().find(|old| old.path == vary.path) {
+            Some(old) => *old = vary,
+            None => self.vary.push(vary),
+        }
+    }
+
+    /// Scenes that lie beside the study's file are found from everywhere.
+    fn beside(mut self, file: &str) -> Study {
+        if let Some(folder) = std::path::Path::new(file).parent() {
+            for scene in &mut self.scenes {
+                let path = folder.join(&*scene);
+                if path.is_file() {
+                    *scene = path.to_string_lossy().into_owned();
+                }
+            }
+        }
+        self
+    }
+}
+
+/// The file, field by field.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    title: String,
+    #[serde(default)]
+    about: String,
+    #[serde(default)]
+    scene: Option<String>,
+    #[serde(default)]
+    scenes: Vec<String>,
+    #[serde(default)]
+    vary: Vec<(String, Vec<Word>)>,
+    #[serde(default)]
+    set: Vec<(String, Word)>,
+    #[serde(default)]
+    x: Option<String>,
+    #[serde(default)]
+    y: Option<String>,
+}
+
+/// A value of a setting: a number, a flag, or a text; settings take all of them as text.
+struct Word(String);
+
+impl<'de> Deserialize<'de> for Word {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Word, D::Error> {
+        deserializer.deserialize_any(WordVisitor)
+    }
+}
+
+struct WordVisitor;
+
+impl Visitor<'_> for WordVisitor {
+    type Value = Word;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number, true, false, or a text in quotes")
+    }
+
+    fn visit_bool<E>(self, flag: bool) -> Result<Word, E> {
+        Ok(Word(flag.to_string()))
+    }
+
+    fn visit_i64<E>(self, number: i64) -> Result<Word, E> {
+        Ok(Word(number.to_string()))
+    }
+
+    fn visit_u64<E>(self, number: u64) -> Result<Word, E> {
+        Ok(Word(number.to_string()))
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<Word, E> {
+        match number.is_finite() {
+            true => Ok(Word(format!("{number:?}"))),
+            false => Err(E::custom("the number is beyond all bounds")),
+        }
+    }
+
+    fn visit_str<E>(self, text: &str) -> Result<Word, E> {
+        Ok(Word(text.to_owned()))
+    }
+
+    fn visit_unit<E: serde::de::Error>(self) -> Result<Word, E> {
+        Err(E::custom("words stand in quotes here, as \"frozen\""))
+    }
+}
+
+fn parse(name: &str, text: &str) -> Result<File, SceneError> {
+    let options = options();
+    let mut reader = ron::Deserializer::from_str_with_options(text, &options)
+        .map_err(|e| unreadable(name, &e, String::new()))?;
+    let file = serde_path_to_error::deserialize::<_, File>(&mut reader).map_err(|e| {
+        let path = plain(e.path()).to_string();
+        unreadable(name, &reader.span_error(e.into_inner()), path)
+    })?;
+    reader
+        .end()
+        .map_err(|e| unreadable(name, &reader.span_error(e), String::new()))?;
+    // A text that is all of a study and one thing twice is none.
+    if file.scene.is_some() && !file.scenes.is_empty() {
+        let twice = ron::Error::custom("a study has either scene or scenes");
+        return Err(unreadable(name, &reader.span_error(twice), String::new()));
+    }
+    Ok(file)
+}
+
+fn unreadable(name: &str, error: &SpannedError, path: String) -> SceneError {
+    let start = error.span.start;
+    SceneError {
+        file: name.to_owned(),
+        at: Some((start.line, start.col)),
+        set: None,
+        path,
+        message: message(&error.code),
+    }
+}
+
+/// ron's message, in words for an author who is no programmer where that helps.
+fn message(error: &ron::Error) -> String {
+    use ron::Error as E;
+    match error {
+        E::NoSuchStructField {
+            expected, found, ..
+        } => format!(
+            "a study has no field {found:?}{} (fields: {})",
+            did_you_mean(found, expected.iter().copied()),
+            expected.join(", ")
+        ),
+        E::MissingStructField { field, .. } => format!("the study has no {field}"),
+        E::ExpectedComma => "a comma or a closing bracket is missing".to_owned(),
+        E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
+        other => {
+            let text = other.to_string();
+            let mut letters = text.chars();
+            letters.next().map_or_else(String::new, |first| {
+                first.to_lowercase().chain(letters).collect()
+            })
+        }
+    }
+}
+
+/// The path without names of variants.
+fn plain(path: &serde_path_to_error::Path) -> Path {
+    let step = |segment: &Segment| match segment {
+        Segment::Seq { index } => Some(Step::Index(*index)),
+        Segment::Map { key } => Some(Step::Key(key.clone())),
+        Segment::Enum { .. } | Segment::Unknown => None,
+    };
+    Path(path.iter().filter_map(step).collect())
+}
+
+/// Whether a text is a study: it names scenes, or varies something, which no scene does. It need not be sound.
+fn is_study(text: &str) -> bool {
+    let whole = locate(text, &Path::default());
+    ["scene", "scenes", "vary"]
+        .iter()
+        .any(|field| locate(text, &Path(vec![Step::from(*field)])) != whole)
+}
+
+fn nothing_there(name: &str) -> String {
+    let studies: Vec<&str> = builtin::list().iter().map(|s| s.name).collect();
+    let scenes: Vec<&str> = crate::scene::builtin::list()
+        .iter()
+        .map(|s| s.name)
+        .collect();
+    format!(
+        "there is no such file, and no built-in study or scene of that name{} (studies: {}; scenes: {})",
+        did_you_mean(name, studies.iter().chain(&scenes).copied()),
+        studies.join(", "),
+        scenes.join(", ")
+    )
+}

@@ -1,0 +1,140 @@
+//! What one run of a study came to.
+
+use super::read::Quantity;
+use crate::solve::Failure;
+use std::fmt;
+
+/// A run, as far as it went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Names of the scene's monitors.
+    pub monitors: Vec<String>,
+    /// The load factor and the monitors before the first increment.
+    pub start: Row,
+    /// One row per accepted increment.
+    pub rows: Vec<Row>,
+    pub end: End,
+}
+
+/// One accepted increment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    pub increment: u32,
+    pub load: f64,
+    pub majors: u32,
+    /// All minor iterations, also those of majors that were tried again.
+    pub minors: u64,
+    /// Loops that were cut off by a limit whose being reached is accepted.
+    pub unsettled: u32,
+    /// Values of the run's monitors.
+    pub monitors: Vec<f64>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum End {
+    /// At the end of the history.
+    Finished,
+    /// An increment failed.
+    Failed(Failed),
+    /// Somebody wanted it to end.
+    Interrupted,
+    /// Somebody wanted all to end before it began.
+    NotRun,
+}
+
+/// Where and why a run failed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Failed {
+    pub reason: Reason,
+    pub increment: u32,
+    /// The load factor that was tried.
+    pub load: f64,
+    pub major: u32,
+    /// Minor iterations that the increment took until then.
+    pub minors: u64,
+    pub unsettled: u32,
+}
+
+/// Why an increment failed, in a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reason {
+    MinorCycle,
+    MinorLimit,
+    MajorLimit,
+    Singular,
+    Diverged,
+    Jammed,
+}
+
+impl From<&Failure> for Reason {
+    fn from(failure: &Failure) -> Reason {
+        match failure {
+            Failure::Cycle(_) => Reason::MinorCycle,
+            Failure::MinorLimit { .. } => Reason::MinorLimit,
+            Failure::MajorLimit { .. } => Reason::MajorLimit,
+            Failure::Singular(_) => Reason::Singular,
+            Failure::Diverged { .. } => Reason::Diverged,
+            Failure::Jammed { .. } => Reason::Jammed,
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Reason::MinorCycle => "minor-cycle",
+            Reason::MinorLimit => "minor-limit",
+            Reason::MajorLimit => "major-limit",
+            Reason::Singular => "singular",
+            Reason::Diverged => "diverged",
+            Reason::Jammed => "jammed",
+        })
+    }
+}
+
+impl Run {
+    /// The value of a quantity in a row of this run; none where the scene has no such monitor.
+    pub fn value(&self, row: &Row, quantity: &Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::Increment => Some(f64::from(row.increment)),
+            Quantity::Load => Some(row.load),
+            Quantity::Majors => Some(f64::from(row.majors)),
+            Quantity::Minors => Some(row.minors as f64),
+            Quantity::Monitor(name) => {
+                let k = self.monitors.iter().position(|monitor| monitor == name)?;
+                row.monitors.get(k).copied()
+            }
+        }
+    }
+
+    /// The state that the run got to: its last accepted increment, or the start.
+    pub fn last(&self) -> &Row {
+        self.rows.last().unwrap_or(&self.start)
+    }
+
+    /// Where it failed, if it did.
+    pub fn failed(&self) -> Option<&Failed> {
+        match &self.end {
+            End::Failed(failed) => Some(failed),
+            _ => None,
+        }
+    }
+
+    /// Major iterations in all, those of an increment that failed included.
+    pub fn majors(&self) -> u64 {
+        let accepted: u64 = self.rows.iter().map(|row| u64::from(row.majors)).sum();
+        accepted + self.failed().map_or(0, |failed| u64::from(failed.major))
+    }
+
+    /// Minor iterations in all, those of an increment that failed included.
+    pub fn minors(&self) -> u64 {
+        let accepted: u64 = self.rows.iter().map(|row| row.minors).sum();
+        accepted + self.failed().map_or(0, |failed| failed.minors)
+    }
+
+    /// Increments that were accepted although a loop of theirs had not settled.
+    pub fn unsettled(&self) -> usize {
+        self.rows.iter().filter(|row| row.unsettled > 0).count()
+    }
+}

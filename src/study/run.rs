@@ -1,0 +1,113 @@
+//! The cases of a plan, side by side: each on one thread, so that its bits are those of a run alone.
+
+use super::plan::{Case, Plan};
+use super::result::{End, Failed, Reason, Row, Run};
+use crate::scene::SceneError;
+use crate::solve::{Outcome, Stepper};
+use rayon::prelude::*;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+/// A scene is read by recursion; as much stack as a program starts with is enough for all that it accepts.
+const STACK: usize = 8 << 20;
+
+/// Who watches a study from outside. Both are called from all threads.
+pub struct Watch<'a> {
+    /// Whether the study is to end now.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+    /// An increment was accepted, or that many will never be, because their run has ended.
+    pub done: &'a (dyn Fn(u64) + Sync),
+}
+
+/// Why a study could not be run.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    #[error("no threads to run on: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+/// Runs all cases of a plan on a number of threads. The results are in the order of the plan.
+///
+/// # Errors
+/// If there are no threads to be had. What fails in a run is its result.
+pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, RunError> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs.get().min(plan.cases.len().max(1)))
+        .stack_size(STACK)
+        .build()?;
+    let runs: Result<Vec<Run>, SceneError> = pool.install(|| {
+        // One by one: cases differ much in what they cost, and the first ones are to be done first.
+        let cases = plan.cases.par_iter().with_max_len(1);
+        cases.map(|case| one(case, watch)).collect()
+    });
+    Ok(runs?)
+}
+
+/// Runs one case to the end of its history, to its first failure, or to where it is stopped.
+///
+/// # Errors
+/// If the scene will not open, which the plan has tried.
+pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
+    let model = Arc::new(case.open()?.model);
+    let monitors = model.monitors.iter().map(|m| m.name.clone()).collect();
+    let mut stepper = Stepper::new(model);
+    let mut run = Run {
+        monitors,
+        start: row(&mut stepper, 0, 0, 0),
+        rows: Vec::new(),
+        end: End::NotRun,
+    };
+    let mut minors = 0;
+    run.end = loop {
+        if (watch.stop)() {
+            break match run.rows.is_empty() && minors == 0 {
+                true => End::NotRun,
+                false => End::Interrupted,
+            };
+        }
+        let Some(event) = stepper.step() else {
+            break End::Finished;
+        };
+        minors += 1;
+        let (at, outcome) = (event.position, &event.outcome);
+        match outcome {
+            Outcome::Failed(failure) => {
+                break End::Failed(Failed {
+                    reason: Reason::from(failure),
+                    increment: at.increment,
+                    load: event.load_factor,
+                    major: at.major,
+                    minors,
+                    unsettled: stepper.state().unsettled,
+                });
+            }
+            Outcome::Increment { unsettled, .. } => {
+                let unsettled = *unsettled;
+                let mut row = row(&mut stepper, at.major, minors, unsettled);
+                row.increment = at.increment;
+                run.rows.push(row);
+                minors = 0;
+                (watch.done)(1);
+            }
+            _ => {}
+        }
+    };
+    (watch.done)(case.increments.saturating_sub(run.rows.len() as u64));
+    Ok(run)
+}
+
+/// What the stepper stands at: the start of an increment.
+fn row(stepper: &mut Stepper, majors: u32, minors: u64, unsettled: u32) -> Row {
+    let mut monitors = Vec::new();
+    stepper.monitors(&mut monitors);
+    Row {
+        increment: 0,
+        load: stepper.state().start.load_factor,
+        majors,
+        minors,
+        unsettled,
+        monitors,
+    }
+}
