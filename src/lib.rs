@@ -4,7 +4,7 @@
 //!
 //! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
 //! - [`linalg`]: the only file that knows faer. Sparsity patterns, factors, checked solves.
-//! - [`fem`]: the bodies. Shape functions, beams, assembly of internal forces and tangent.
+//! - [`fem`]: the bodies. Shape functions, beams, quadrilaterals, materials, assembly of internal forces and tangent.
 //! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.
 //! - [`solve`]: the stepper: increments, major iterations, minor iterations, one per call.
 //! - [`debug`]: the debugger without a terminal: session, commands, snapshots.
