@@ -241,3 +241,25 @@ fn nonsense_is_refused_and_changes_nothing() {
         assert_eq!(stepper.state(), &before);
     }
 }
+
+#[test]
+fn cohesion_adds_to_friction_and_both_limit_the_tangential_force() {
+    let set = [
+        ("friction.cohesion", "0.01"),
+        ("slaves[0].start", "fixed"),
+        ("history.path[2]", "0.24"),
+    ];
+    let run = run(&scene("01-pinned-beam-rough-floor", &set));
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let mut slid = 0;
+    for a in &run.accepted {
+        let (f_n, f_t) = (a.monitors["contact_y"], a.monitors["contact_x"]);
+        let limit = f_n * 30f64.to_radians().tan() + 0.01;
+        assert!(f_t <= limit + 1e-9, "load {}: {f_t} {limit}", a.load);
+        if a.event.nodes[0].decision.next == Mode::Sliding {
+            slid += 1;
+            assert!((f_t - limit).abs() < 1e-9, "load {}: {f_t} {limit}", a.load);
+        }
+    }
+    assert!(slid > 20, "{slid}");
+}
