@@ -212,7 +212,8 @@ impl Session {
         }
         for _ in 0..count {
             let stops = |frame: &Frame| match (unit, &frame.event) {
-                (Unit::Minor, _) | (_, None) => true,
+                (Unit::Minor, _) => true,
+                (_, None) => false,
                 (Unit::Run, Some(event)) => matches!(event.outcome, Outcome::Failed(_)),
                 (_, Some(event)) => frame.intervention.is_none() && ends(unit, &event.outcome),
             };

@@ -32,8 +32,6 @@ const SAME: f64 = 1e-12;
 const STILL: f64 = 1e-8;
 /// A major iteration is not damped below this part of its load.
 const SMALLEST_PART: f64 = 1e-6;
-/// Inequalities closer than this times the tolerance, relatively, tie.
-const TIE: f64 = 1.0;
 
 /// The solver: a state, and the workspace that is made from it.
 pub struct Stepper {
@@ -90,12 +88,6 @@ impl Stepper {
     /// Current norms and whether they could be computed: those about which the next minor iteration is linearised.
     pub fn norms(&mut self) -> Option<Norms> {
         self.linearise().then(|| self.system.norms())
-    }
-
-    /// Current position of every node.
-    pub fn positions(&mut self) -> &[[f64; 2]] {
-        self.system.place(&self.model, &self.state.u);
-        &self.system.positions
     }
 
     /// One minor iteration. None when the history is done.
@@ -178,8 +170,8 @@ impl Stepper {
     fn ties(&self) -> Ties {
         let settings = &self.state.controls.settings;
         Ties {
-            force: TIE * settings.tolerance * self.system.norms().scale,
-            length: TIE * settings.tolerance * self.model.length,
+            force: settings.tolerance * self.system.norms().scale,
+            length: settings.tolerance * self.model.length,
             keep: settings.ties == spec::Ties::Keep,
         }
     }
