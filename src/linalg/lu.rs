@@ -1,103 +1,15 @@
-//! Sparse linear systems: patterns, factors, checked solves. The only file that names faer.
+//! Sparse LU with partial pivoting, scaled, refined and checked.
 //!
 //! The augmented system of eqn (9) mixes stiffnesses of very different size with constraint rows of size one and,
-//! where friction stands in the matrix, is unsymmetric. So it is scaled row by row and column by column and
-//! factored by sparse LU with partial pivoting; the symbolic part is kept as long as the pattern stands. faer
-//! reports a singular matrix as success and returns infinities, so every solve is checked here.
+//! where friction stands in the matrix, is unsymmetric. So it is scaled row by row and column by column; the symbolic
+//! part is kept as long as the pattern stands.
 
+use super::{Pattern, SolveError, fill_probe, largest, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
-use faer::linalg::lu::partial_pivoting::solve::{solve_in_place, solve_in_place_scratch};
-use faer::perm::PermRef;
+use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::lu::{LuRef, NumericLu, SymbolicLu, factorize_symbolic_lu};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, MatRef, Par};
+use faer::{Conj, MatMut, Par};
 use std::sync::Arc;
-
-/// Where a square sparse matrix has entries: compressed columns, rows ascending in each.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pattern {
-    n: usize,
-    col_ptr: Vec<usize>,
-    row_idx: Vec<usize>,
-}
-
-impl Pattern {
-    /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, repeated or not.
-    pub fn new(n: usize, mut entries: Vec<(usize, usize)>) -> Self {
-        entries.sort_unstable_by_key(|&(row, col)| (col, row));
-        entries.dedup();
-        let mut col_ptr = vec![0; n + 1];
-        for &(_, col) in &entries {
-            col_ptr[col + 1] += 1;
-        }
-        for col in 0..n {
-            col_ptr[col + 1] += col_ptr[col];
-        }
-        Pattern {
-            n,
-            col_ptr,
-            row_idx: entries.into_iter().map(|(row, _)| row).collect(),
-        }
-    }
-
-    /// Number of rows and of columns.
-    pub fn size(&self) -> usize {
-        self.n
-    }
-
-    /// Number of stored entries.
-    pub fn entries(&self) -> usize {
-        self.row_idx.len()
-    }
-
-    /// Index of an entry in the array of values, if the pattern has it.
-    pub fn slot(&self, row: usize, col: usize) -> Option<usize> {
-        let start = self.col_ptr[col];
-        self.row_idx[start..self.col_ptr[col + 1]]
-            .binary_search(&row)
-            .ok()
-            .map(|k| start + k)
-    }
-
-    /// All entries as `(row, column)`, in the order of the values.
-    pub fn iter(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.n).flat_map(move |col| {
-            self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]]
-                .iter()
-                .map(move |&row| (row, col))
-        })
-    }
-
-    /// y = A x.
-    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for (col, &xc) in x.iter().enumerate() {
-            for k in self.col_ptr[col]..self.col_ptr[col + 1] {
-                y[self.row_idx[k]] += values[k] * xc;
-            }
-        }
-    }
-
-    /// y = |A| |x|: the size of the terms that [`Pattern::multiply`] adds up, the scale of its round-off.
-    pub fn multiply_abs(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for (col, &xc) in x.iter().enumerate() {
-            for k in self.col_ptr[col]..self.col_ptr[col + 1] {
-                y[self.row_idx[k]] += (values[k] * xc).abs();
-            }
-        }
-    }
-}
-
-/// Why a system could not be solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SolveError {
-    /// A pivot vanished, or the solution is not finite or does not satisfy the equations.
-    Singular,
-    /// No memory for the factors.
-    OutOfMemory,
-}
 
 /// Number of equilibration sweeps; each takes the square root out of the spread of the rows' and columns' sizes.
 const SWEEPS: usize = 4;
@@ -285,132 +197,12 @@ impl Factors {
     }
 }
 
-/// Factors of a small dense matrix, with all that is needed to make them again without allocating.
-///
-/// Rows are scaled by their largest entry, since some hold forces and others lengths.
-pub struct DenseFactors {
-    n: usize,
-    /// Column by column; the matrix, then its factors.
-    values: Vec<f64>,
-    row_scale: Vec<f64>,
-    perm: Vec<usize>,
-    perm_inverse: Vec<usize>,
-    memory: MemBuffer,
-    probe: Vec<f64>,
-}
-
-impl DenseFactors {
-    /// Room for an n by n matrix.
-    ///
-    /// # Errors
-    /// [`SolveError::OutOfMemory`].
-    pub fn new(n: usize) -> Result<Self, SolveError> {
-        let request = lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default())
-            .or(solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
-        Ok(DenseFactors {
-            n,
-            values: vec![0.0; n * n],
-            row_scale: vec![1.0; n],
-            perm: vec![0; n],
-            perm_inverse: vec![0; n],
-            memory: MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?,
-            probe: vec![0.0; n],
-        })
-    }
-
-    /// Solves A x = b for the matrix with these values (column by column); x replaces b. Returns an estimate of the
-    /// norm of the scaled inverse, as [`Factors::inverse_norm`] does.
-    ///
-    /// # Errors
-    /// [`SolveError::Singular`] if x is not finite.
-    pub fn solve(&mut self, values: &[f64], b: &mut [f64]) -> Result<f64, SolveError> {
-        let n = self.n;
-        self.values.copy_from_slice(values);
-        self.row_scale.fill(0.0);
-        for (k, value) in values.iter().enumerate() {
-            self.row_scale[k % n] = self.row_scale[k % n].max(value.abs());
-        }
-        for scale in &mut self.row_scale {
-            *scale = if *scale > 0.0 { 1.0 / *scale } else { 1.0 };
-        }
-        for (k, value) in self.values.iter_mut().enumerate() {
-            *value *= self.row_scale[k % n];
-        }
-        for (b, scale) in b.iter_mut().zip(&self.row_scale) {
-            *b *= scale;
-        }
-        lu_in_place(
-            MatMut::from_column_major_slice_mut(&mut self.values, n, n),
-            &mut self.perm,
-            &mut self.perm_inverse,
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-            Default::default(),
-        );
-        fill_probe(&mut self.probe);
-        let mut probe = std::mem::take(&mut self.probe);
-        self.apply_inverse(&mut probe);
-        self.apply_inverse(b);
-        let norm = largest(&probe);
-        self.probe = probe;
-        if b.iter().all(|x| x.is_finite()) {
-            Ok(norm)
-        } else {
-            Err(SolveError::Singular)
-        }
-    }
-
-    fn apply_inverse(&mut self, x: &mut [f64]) {
-        let n = self.n;
-        let factors = MatRef::from_column_major_slice(&self.values, n, n);
-        solve_in_place(
-            factors,
-            factors,
-            PermRef::new_checked(&self.perm, &self.perm_inverse, n),
-            MatMut::from_column_major_slice_mut(x, n, 1),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-        );
-    }
-}
-
-/// A fixed vector of all frequencies, with entries between 1 and 2 in size.
-fn fill_probe(probe: &mut [f64]) {
-    for (i, p) in probe.iter_mut().enumerate() {
-        *p = 1.0 + (1.618_033_988_749_895 * i as f64).fract();
-        if i % 2 == 1 {
-            *p = -*p;
-        }
-    }
-}
-
-/// Largest size of an entry; infinite where one is not finite.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0_f64, |m, v| {
-        if v.is_finite() {
-            m.max(v.abs())
-        } else {
-            f64::INFINITY
-        }
-    })
-}
-
 fn inverse_root(size: f64) -> f64 {
     if size > 0.0 && size.is_finite() {
         1.0 / size.sqrt()
     } else {
         1.0
     }
-}
-
-fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
-    SymbolicSparseColMatRef::new_checked(
-        pattern.n,
-        pattern.n,
-        &pattern.col_ptr,
-        None,
-        &pattern.row_idx,
-    )
 }
 
 #[cfg(test)]
@@ -436,24 +228,6 @@ mod tests {
             assert!((x - e).abs() <= 1e-12 * e.abs(), "{x} {e}");
         }
         assert!(factors.inverse_norm() < 1e6);
-    }
-
-    #[test]
-    fn a_dense_system_is_solved_and_a_singular_one_told() {
-        let mut dense = DenseFactors::new(3).unwrap();
-        let a = [0.0, 2e8, 1.0, 1e-4, 1.0, 3.0, 2e-4, 0.0, -1.0];
-        let exact = [1.0, -2.0, 0.5];
-        let mut b: Vec<f64> = (0..3)
-            .map(|i| (0..3).map(|j| a[3 * j + i] * exact[j]).sum())
-            .collect();
-        assert!(dense.solve(&a, &mut b).unwrap() < 1e6);
-        assert!(
-            b.iter().zip(exact).all(|(x, e)| (x - e).abs() < 1e-12),
-            "{b:?}"
-        );
-        let singular = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 1.0, 1.0];
-        let norm = dense.solve(&singular, &mut [1.0, 1.0, 1.0]);
-        assert!(norm.is_err() || norm.is_ok_and(|n| n > 1e12));
     }
 
     #[test]
