@@ -22,13 +22,14 @@ pub struct DenseFactors {
 }
 
 impl DenseFactors {
-    /// Room for an n by n matrix.
+    /// Room for an n by n matrix, and for solving with this many right-hand sides at a time.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
-    pub fn new(n: usize) -> Result<Self, SolveError> {
-        let request = lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default())
-            .or(solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
+    pub fn new(n: usize, columns: usize) -> Result<Self, SolveError> {
+        let request = lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default()).or(
+            solve_in_place_scratch::<usize, f64>(n, columns.max(1), Par::Seq),
+        );
         Ok(DenseFactors {
             n,
             values: vec![0.0; n * n],
@@ -40,26 +41,23 @@ impl DenseFactors {
         })
     }
 
-    /// Solves A x = b for the matrix with these values (column by column); x replaces b. Returns an estimate of the
-    /// norm of the scaled inverse, as [`Factors::inverse_norm`] does.
-    ///
-    /// # Errors
-    /// [`SolveError::Singular`] if x is not finite.
-    pub fn solve(&mut self, values: &[f64], b: &mut [f64]) -> Result<f64, SolveError> {
+    /// Factors the matrix with these values, column by column.
+    pub fn factor(&mut self, values: &[f64]) {
         let n = self.n;
         self.values.copy_from_slice(values);
         self.row_scale.fill(0.0);
-        for (k, value) in values.iter().enumerate() {
-            self.row_scale[k % n] = self.row_scale[k % n].max(value.abs());
+        for column in values.chunks_exact(n.max(1)) {
+            for (scale, value) in self.row_scale.iter_mut().zip(column) {
+                *scale = scale.max(value.abs());
+            }
         }
         for scale in &mut self.row_scale {
             *scale = if *scale > 0.0 { 1.0 / *scale } else { 1.0 };
         }
-        for (k, value) in self.values.iter_mut().enumerate() {
-            *value *= self.row_scale[k % n];
-        }
-        for (b, scale) in b.iter_mut().zip(&self.row_scale) {
-            *b *= scale;
+        for column in self.values.chunks_exact_mut(n.max(1)) {
+            for (value, scale) in column.iter_mut().zip(&self.row_scale) {
+                *value *= scale;
+            }
         }
         lu_in_place(
             MatMut::from_column_major_slice_mut(&mut self.values, n, n),
@@ -69,27 +67,45 @@ impl DenseFactors {
             MemStack::new(&mut self.memory),
             Default::default(),
         );
-        fill_probe(&mut self.probe);
-        let mut probe = std::mem::take(&mut self.probe);
-        self.apply_inverse(&mut probe);
+    }
+
+    /// Solves A X = B for the columns of B, one after the other in `b`; X replaces B.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] if X is not finite.
+    pub fn solve(&mut self, b: &mut [f64]) -> Result<(), SolveError> {
+        for column in b.chunks_exact_mut(self.n.max(1)) {
+            for (b, scale) in column.iter_mut().zip(&self.row_scale) {
+                *b *= scale;
+            }
+        }
         self.apply_inverse(b);
-        let norm = largest(&probe);
-        self.probe = probe;
         if b.iter().all(|x| x.is_finite()) {
-            Ok(norm)
+            Ok(())
         } else {
             Err(SolveError::Singular)
         }
     }
 
+    /// An estimate of the norm of the scaled inverse, as [`super::Factors::inverse_norm`] makes it.
+    pub fn inverse_norm(&mut self) -> f64 {
+        let mut probe = std::mem::take(&mut self.probe);
+        fill_probe(&mut probe);
+        self.apply_inverse(&mut probe);
+        let norm = largest(&probe);
+        self.probe = probe;
+        norm
+    }
+
     fn apply_inverse(&mut self, x: &mut [f64]) {
         let n = self.n;
         let factors = MatRef::from_column_major_slice(&self.values, n, n);
+        let columns = x.len().checked_div(n).unwrap_or(0);
         solve_in_place(
             factors,
             factors,
             PermRef::new_checked(&self.perm, &self.perm_inverse, n),
-            MatMut::from_column_major_slice_mut(x, n, 1),
+            MatMut::from_column_major_slice_mut(x, n, columns),
             Par::Seq,
             MemStack::new(&mut self.memory),
         );
@@ -102,19 +118,22 @@ mod tests {
 
     #[test]
     fn a_dense_system_is_solved_and_a_singular_one_told() {
-        let mut dense = DenseFactors::new(3).unwrap();
+        let mut dense = DenseFactors::new(3, 2).unwrap();
         let a = [0.0, 2e8, 1.0, 1e-4, 1.0, 3.0, 2e-4, 0.0, -1.0];
         let exact = [1.0, -2.0, 0.5];
         let mut b: Vec<f64> = (0..3)
             .map(|i| (0..3).map(|j| a[3 * j + i] * exact[j]).sum())
             .collect();
-        assert!(dense.solve(&a, &mut b).unwrap() < 1e6);
+        b.extend(b.clone().iter().map(|b| -2.0 * b));
+        dense.factor(&a);
+        dense.solve(&mut b).unwrap();
+        assert!(dense.inverse_norm() < 1e6);
         assert!(
-            b.iter().zip(exact).all(|(x, e)| (x - e).abs() < 1e-12),
+            (0..6).all(|k| (b[k] - exact[k % 3] * [1.0, -2.0][k / 3]).abs() < 1e-12),
             "{b:?}"
         );
         let singular = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 1.0, 1.0];
-        let norm = dense.solve(&singular, &mut [1.0, 1.0, 1.0]);
-        assert!(norm.is_err() || norm.is_ok_and(|n| n > 1e12));
+        dense.factor(&singular);
+        assert!(dense.inverse_norm() > 1e12 || dense.solve(&mut [1.0, 1.0, 1.0]).is_err());
     }
 }

@@ -5,12 +5,14 @@
 //! ΔF are then a dense system for z, of two unknowns a slave node, whatever the size of the bodies.
 
 use crate::contact::table1::{Equation, Motion};
-use crate::linalg::DenseFactors;
+use crate::linalg::{DenseFactors, SolveError};
 
 /// The condensed interface of a major iteration, and the last minor iteration's answer.
 pub struct Condensed {
     /// Whether `start` and `response` belong to the present linearisation.
     pub fresh: bool,
+    /// Estimated norm of the inverse of what was factored to get there.
+    pub norm: f64,
     /// Stiffness k of the springs.
     pub stiffness: f64,
     /// ΔF at z = 0: normal and tangential of each slave node in turn.
@@ -23,7 +25,7 @@ pub struct Condensed {
     pub rhs: Vec<f64>,
     /// z of the last minor iteration.
     pub gaps: Vec<f64>,
-    pub dense: Option<DenseFactors>,
+    dense: Option<DenseFactors>,
     /// ΔF_n, ΔF_t of each slave node in the last minor iteration.
     pub forces: Vec<[f64; 2]>,
     /// Normal and tangential relative motion of each slave node in it, prescribed motion included.
@@ -35,6 +37,7 @@ impl Condensed {
     pub fn new(slaves: usize) -> Self {
         Condensed {
             fresh: false,
+            norm: 0.0,
             stiffness: 1.0,
             start: Vec::new(),
             response: Vec::new(),
@@ -48,10 +51,13 @@ impl Condensed {
     }
 
     /// Makes room for the condensed matrices.
-    pub fn resize(&mut self, slaves: usize) {
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`].
+    pub fn resize(&mut self, slaves: usize) -> Result<(), SolveError> {
         let count = 2 * slaves;
-        if self.dense.is_some() || count == 0 {
-            return;
+        if self.dense.is_some() {
+            return Ok(());
         }
         for vector in [&mut self.start, &mut self.rhs, &mut self.gaps] {
             vector.resize(count, 0.0);
@@ -59,7 +65,22 @@ impl Condensed {
         for matrix in [&mut self.response, &mut self.matrix] {
             matrix.resize(count * count, 0.0);
         }
-        self.dense = DenseFactors::new(count).ok();
+        self.dense = Some(DenseFactors::new(count, 1)?);
+        Ok(())
+    }
+
+    /// Solves the entered equations for z; returns an estimate of the norm of their matrix' inverse.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] where they have no solution.
+    pub fn solve(&mut self) -> Result<f64, SolveError> {
+        self.gaps.copy_from_slice(&self.rhs);
+        let Some(dense) = &mut self.dense else {
+            return Err(SolveError::Singular);
+        };
+        dense.factor(&self.matrix);
+        dense.solve(&mut self.gaps)?;
+        Ok(dense.inverse_norm())
     }
 
     /// Enters equation k (0 normal, 1 tangential) of the slave node whose first row is `first`; `prescribed` is the

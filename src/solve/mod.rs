@@ -1,11 +1,14 @@
 //! The two-level solver as a stepper: one call, one minor iteration, one event.
 //!
 //! - [`state`]: plain data from which everything goes on; [`stepper`]: the state machine over it.
-//! - [`system`]: the linearised equations of a major iteration, whole or condensed to the interface; [`singular`]: why they have no solution.
+//! - [`system`]: the linearised equations of a major iteration; `interface`: a slave node's part of them; `bodies`: the
+//!   bodies condensed; `condensed`: the interface alone; [`singular`]: why there is no solution.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
+mod bodies;
 mod condensed;
 pub mod event;
+mod interface;
 pub mod intervene;
 pub mod singular;
 pub mod state;

@@ -12,8 +12,10 @@ use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
 use crate::scene::model::Model;
 use crate::scene::spec::{Component, FrictionLimit, Geometry, SlipCount, Solver};
+use crate::solve::bodies::{Bodies, condensable};
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
+use crate::solve::interface::Interface;
 use crate::solve::state::{NodeState, State};
 use std::sync::Arc;
 
@@ -35,20 +37,6 @@ pub enum Solved {
     Not,
 }
 
-/// What moves, in a slave node's equations: one Cartesian displacement with its share in u_S* − u_S.
-#[derive(Debug, Clone, Copy)]
-struct Link {
-    dof: usize,
-    axis: usize,
-    weight: f64,
-    /// Derivative of the share by ξ.
-    slope: f64,
-    variation: Variation,
-    /// Places of (normal row, dof), (dof, normal column), (tangential row, dof), (dof, tangential column); none
-    /// where the degree of freedom has no equation.
-    slots: Option<[usize; 4]>,
-}
-
 /// What the equation of a degree of freedom balances.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
@@ -58,26 +46,28 @@ enum Kind {
     Shear,
 }
 
-/// A slave node's part of the system.
-struct Interface {
-    footing: Option<Footing>,
-    links: Vec<Link>,
-    /// Place of (link i, link j), row by row, for the geometric tangent; none where either has no equation.
-    pairs: Vec<Option<usize>>,
-    /// Places of the 2 by 2 block of ΔF_n, ΔF_t.
-    block: [usize; 4],
-    /// Whether the normal and the tangential motion have any coefficient on an unknown.
-    moves: [bool; 2],
-    /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.
-    prescribed: [f64; 2],
-    carried: [bool; 2],
+/// What the stiffness is laid out for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Layout {
+    /// Bodies and interface in one matrix.
+    Whole,
+    /// The bodies alone, to be condensed.
+    Bodies,
 }
 
 /// The linearised system about a state.
 pub struct System {
     assembly: Assembly,
-    factors: Option<Factors>,
+    /// What `stiffness` is laid out for.
+    layout: Option<Layout>,
+    whole: Option<Factors>,
+    bodies: Option<Bodies>,
+    /// Whether the scene's bodies may be condensed by [`Bodies`].
+    condensable: bool,
+    /// The elements that `whole` has places for.
     pairing: Vec<Option<(usize, usize)>>,
+    /// n and t of every slave node in the last condensation.
+    frames: Vec<[[f64; 2]; 2]>,
     kind: Vec<Kind>,
     /// Largest force that the loads reach over the history.
     reference: f64,
@@ -106,24 +96,17 @@ impl System {
     /// Lays out the system of a scene.
     pub fn new(model: &Model) -> Self {
         let (dofs, equations) = (model.dofs.len(), model.dofs.equations);
-        let interfaces: Vec<Interface> = model
-            .slaves
-            .iter()
-            .map(|_| Interface {
-                footing: None,
-                links: Vec::new(),
-                pairs: Vec::new(),
-                block: [0; 4],
-                moves: [true; 2],
-                prescribed: [0.0; 2],
-                carried: [false; 2],
-            })
-            .collect();
+        let interfaces: Vec<Interface> =
+            model.slaves.iter().map(|_| Interface::default()).collect();
         let kind = kinds(model);
         System {
             assembly: Assembly::new(model),
-            factors: None,
+            layout: None,
+            whole: None,
+            bodies: None,
+            condensable: condensable(model),
             pairing: Vec::new(),
+            frames: Vec::new(),
             reference: reference_force(model, &kind),
             kind,
             positions: vec![[0.0; 2]; model.nodes.len()],
@@ -161,6 +144,20 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
+        let condensed = state.controls.settings.solver == Solver::Condensed;
+        if condensed && self.condensable {
+            self.linearise_in(Layout::Bodies, model, state)
+        } else {
+            self.linearise_in(Layout::Whole, model, state)
+        }
+    }
+
+    fn linearise_in(
+        &mut self,
+        layout: Layout,
+        model: &Model,
+        state: &State,
+    ) -> Result<(), SolveError> {
         self.condensed.fresh = false;
         self.place(model, &state.u);
         for (interface, (node, slave)) in self
@@ -177,7 +174,10 @@ impl System {
                 )
             });
         }
-        self.bind(model, state)?;
+        match layout {
+            Layout::Whole => self.bind_whole(model, state)?,
+            Layout::Bodies => self.bind_bodies(model, state)?,
+        }
         self.external.fill(0.0);
         for load in &model.loads {
             self.external[load.dof] += load.value * load.scale.at(state.aim);
@@ -199,43 +199,84 @@ impl System {
             history: &state.start.history,
         };
         self.assembly.assemble(&model.dofs, moved, out);
+        if let (Layout::Bodies, Some(bodies)) = (layout, &mut self.bodies) {
+            bodies.turning.fill(0.0);
+        }
         self.measure_interfaces(model);
         self.balance(model, state);
         Ok(())
     }
 
     /// Renews the pattern where a slave node has found another element with unknowns; rigid ones have no entries.
-    fn bind(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
-        let changed = self.factors.is_none()
+    fn bind_whole(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
+        let changed = self.whole.is_none()
             || state
                 .nodes
                 .iter()
                 .zip(&self.pairing)
                 .any(|(node, pair)| pairing(model, node) != *pair);
+        self.link(model, state);
         if changed {
             self.pairing.clear();
             self.pairing
                 .extend(state.nodes.iter().map(|node| pairing(model, node)));
-        }
-        for ((interface, node), slave) in self
-            .interfaces
-            .iter_mut()
-            .zip(&state.nodes)
-            .zip(&model.slaves)
-        {
-            interface.link(model, node, slave.node);
-        }
-        if changed {
             self.analyse(model)?;
         }
-        let Some(factors) = &self.factors else {
+        let Some(factors) = &self.whole else {
             return Ok(());
         };
-        let pattern = factors.pattern();
+        if changed || self.layout != Some(Layout::Whole) {
+            let size = factors.pattern().size();
+            self.assembly.bind(&model.dofs, factors.pattern());
+            self.stiffness.resize(factors.pattern().entries(), 0.0);
+            self.values.resize(factors.pattern().entries(), 0.0);
+            for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
+                buffer.resize(size, 0.0);
+            }
+            self.layout = Some(Layout::Whole);
+        }
         for (s, interface) in self.interfaces.iter_mut().enumerate() {
-            interface.find_slots(model, pattern, model.dofs.equations + 2 * s);
+            interface.find_slots(model, factors.pattern(), model.dofs.equations + 2 * s);
         }
         Ok(())
+    }
+
+    /// The bodies' own pattern never changes.
+    fn bind_bodies(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
+        self.link(model, state);
+        if self.bodies.is_none() {
+            self.bodies = Some(Bodies::new(model, self.assembly.entries(&model.dofs))?);
+        }
+        let Some(bodies) = &self.bodies else {
+            return Ok(());
+        };
+        if self.layout != Some(Layout::Bodies) {
+            self.assembly.bind(&model.dofs, bodies.pattern());
+            self.stiffness.resize(bodies.pattern().entries(), 0.0);
+            for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
+                buffer.resize(model.dofs.equations, 0.0);
+            }
+            self.layout = Some(Layout::Bodies);
+        }
+        for interface in &mut self.interfaces {
+            interface.find_unknowns(model, bodies);
+        }
+        Ok(())
+    }
+
+    fn link(&mut self, model: &Model, state: &State) {
+        let slaves = state.nodes.iter().zip(&model.slaves);
+        for (interface, (node, slave)) in self.interfaces.iter_mut().zip(slaves) {
+            interface.link(model, node, slave.node);
+        }
+    }
+
+    /// The pattern that `stiffness` has its values in.
+    fn pattern(&self) -> Option<&Arc<Pattern>> {
+        match self.layout? {
+            Layout::Whole => self.whole.as_ref().map(Factors::pattern),
+            Layout::Bodies => self.bodies.as_ref().map(Bodies::pattern),
+        }
     }
 
     fn analyse(&mut self, model: &Model) -> Result<(), SolveError> {
@@ -258,15 +299,7 @@ impl System {
             }
         }
         let size = equations + 2 * self.interfaces.len();
-        let pattern = Arc::new(Pattern::new(size, entries));
-        self.assembly.bind(&model.dofs, &pattern);
-        for buffer in [&mut self.stiffness, &mut self.values] {
-            buffer.resize(pattern.entries(), 0.0);
-        }
-        for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
-            buffer.resize(size, 0.0);
-        }
-        self.factors = Some(Factors::new(pattern)?);
+        self.whole = Some(Factors::new(Arc::new(Pattern::new(size, entries)))?);
         Ok(())
     }
 
@@ -295,6 +328,10 @@ impl System {
         if state.controls.settings.geometry == Geometry::Frozen {
             return;
         }
+        let matrix = match (self.layout, &mut self.bodies) {
+            (Some(Layout::Bodies), Some(bodies)) => &mut bodies.turning,
+            _ => &mut self.stiffness,
+        };
         for (interface, node) in self.interfaces.iter_mut().zip(&state.nodes) {
             let Some((footing, curve)) = interface.footing.and_then(|f| Some((f, f.curve?))) else {
                 continue;
@@ -315,7 +352,7 @@ impl System {
                 for (j, col) in interface.links.iter().enumerate() {
                     let value = turning(&footing, &curve, force, &row.variation, &col.variation);
                     match interface.pairs[i * count + j] {
-                        Some(slot) => self.stiffness[slot] -= value,
+                        Some(slot) => matrix[slot] -= value,
                         None => self.coupling[equation] -= value * self.step[col.dof],
                     }
                 }
@@ -371,7 +408,7 @@ impl System {
 
     /// Round-off of the internal forces: the machine precision times |K| |u|.
     fn round_off(&mut self, model: &Model, u: &[f64]) -> f64 {
-        let Some(factors) = &self.factors else {
+        let Some(pattern) = self.pattern().cloned() else {
             return 0.0;
         };
         self.x.fill(0.0);
@@ -380,9 +417,7 @@ impl System {
                 self.x[*e] = u[d];
             }
         }
-        factors
-            .pattern()
-            .multiply_abs(&self.stiffness, &self.x, &mut self.work);
+        pattern.multiply_abs(&self.stiffness, &self.x, &mut self.work);
         let mut worst = 0.0_f64;
         for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
             if let (Kind::Force { lever }, Some(e)) = (kind, equation) {
@@ -455,7 +490,6 @@ impl System {
     pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
         match state.controls.settings.solver {
             Solver::Augmented => self.solve_augmented(model, state),
-            Solver::Condensed if model.slaves.is_empty() => self.solve_augmented(model, state),
             Solver::Condensed => self.solve_condensed(model, state),
         }
     }
@@ -483,6 +517,10 @@ impl System {
     /// Stiffness and out-of-balance forces, without any interface.
     fn start_values(&mut self) {
         self.values.copy_from_slice(&self.stiffness);
+        self.start_rhs();
+    }
+
+    fn start_rhs(&mut self) {
         let balance = self.residual.iter().zip(&self.coupling);
         for (rhs, (residual, coupling)) in self.rhs.iter_mut().zip(balance) {
             *rhs = residual - coupling;
@@ -508,7 +546,7 @@ impl System {
     }
 
     fn factor_and_solve(&mut self) -> Solved {
-        let Some(factors) = &mut self.factors else {
+        let Some(factors) = &mut self.whole else {
             return Solved::Not;
         };
         if factors.factor(&self.values).is_err() || factors.solve(&self.rhs, &mut self.x).is_err() {
@@ -520,99 +558,95 @@ impl System {
     /// Solves for the interface alone, about a compliance of it that is made once a major iteration.
     fn solve_condensed(&mut self, model: &Model, state: &State) -> Solved {
         if !self.condensed.fresh {
-            match self.condense(model, state) {
-                Solved::Well => self.condensed.fresh = true,
-                other => return other,
-            }
+            self.condensed.norm = match self.condense(model, state) {
+                Ok(norm) => norm,
+                Err(_) => return Solved::Not,
+            };
+            self.condensed.fresh = true;
         }
         for s in 0..self.interfaces.len() {
             let rows = self.rows(s, state);
-            let frame = self.interfaces[s].frame(&state.nodes[s]);
+            let frame = self.frames[s];
             let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
             for (k, row) in rows.iter().enumerate() {
                 self.condensed.place_row(2 * s, k, row, prescribed);
             }
         }
-        let condensed = &mut self.condensed;
-        condensed.gaps.copy_from_slice(&condensed.rhs);
-        let Some(dense) = &mut condensed.dense else {
+        let Ok(norm) = self.condensed.solve() else {
             return Solved::Not;
         };
-        let Ok(norm) = dense.solve(&condensed.matrix, &mut condensed.gaps) else {
-            return Solved::Not;
-        };
-        for s in 0..self.interfaces.len() {
-            let frame = self.interfaces[s].frame(&state.nodes[s]);
+        for (s, frame) in self.frames.iter().enumerate() {
             let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
             self.condensed.read(s, prescribed);
         }
-        suspicion(norm)
+        suspicion(norm.max(self.condensed.norm))
     }
 
-    /// Condenses the bodies to the interface: with every interface equation replaced by
-    /// `motion − ΔF / stiffness = z`, the forces are a linear function of z, found column by column.
+    /// Condenses the bodies to the interface; returns an estimate of the norm of the inverse of what was factored.
     ///
-    /// The springs of that stiffness make even a body regular that only its contacts hold; they drop out again when
-    /// z is solved for, exactly.
-    fn condense(&mut self, model: &Model, state: &State) -> Solved {
-        self.condensed.resize(self.interfaces.len());
+    /// Bodies that [`Bodies`] cannot factor in this state are factored with the interface, and with pivoting.
+    fn condense(&mut self, model: &Model, state: &State) -> Result<f64, SolveError> {
+        self.condensed.resize(self.interfaces.len())?;
+        self.frames.clear();
+        let nodes = self.interfaces.iter().zip(&state.nodes);
+        self.frames.extend(nodes.map(|(i, node)| i.frame(node)));
+        if self.layout == Some(Layout::Bodies) {
+            self.condensed.stiffness = self.spring(model);
+            self.start_rhs();
+            if let Some(bodies) = &mut self.bodies
+                && let Ok(norm) = bodies.condense(
+                    &self.stiffness,
+                    &self.rhs,
+                    &self.interfaces,
+                    &self.frames,
+                    &mut self.condensed,
+                )
+            {
+                return Ok(norm);
+            }
+            self.linearise_in(Layout::Whole, model, state)?;
+            self.turn(model, state);
+        }
+        self.condensed.stiffness = self.spring(model);
+        self.condense_whole(model)
+    }
+
+    /// Condenses with every interface equation replaced by `motion − ΔF / stiffness = z`: the forces are then a linear
+    /// function of z, found column by column.
+    fn condense_whole(&mut self, model: &Model) -> Result<f64, SolveError> {
         self.start_values();
         let unknowns = model.dofs.equations;
-        self.condensed.stiffness = self.spring(model);
         let give = -1.0 / self.condensed.stiffness;
-        for (s, node) in state.nodes.iter().enumerate() {
-            let frame = self.interfaces[s].frame(node);
-            let springs = [
-                Equation {
-                    motion: Motion::Normal,
-                    d_n: give,
-                    d_t: 0.0,
-                    value: 0.0,
-                },
-                Equation {
-                    motion: Motion::Tangential,
-                    d_n: 0.0,
-                    d_t: give,
-                    value: 0.0,
-                },
-            ];
-            for (k, row) in springs.iter().enumerate() {
-                self.place_row(s, k, row, frame);
+        for s in 0..self.interfaces.len() {
+            for (k, row) in springs(give).iter().enumerate() {
+                self.place_row(s, k, row, self.frames[s]);
                 self.rhs[unknowns + 2 * s + k] = 0.0;
             }
         }
-        let solved = self.factor_and_solve();
-        if solved == Solved::Not {
-            return solved;
-        }
-        self.condensed.start.copy_from_slice(&self.x[unknowns..]);
-        let Some(factors) = &mut self.factors else {
-            return Solved::Not;
+        let Some(factors) = &mut self.whole else {
+            return Err(SolveError::Singular);
         };
+        factors.factor(&self.values)?;
+        factors.solve(&self.rhs, &mut self.x)?;
+        let norm = factors.inverse_norm();
+        self.condensed.start.copy_from_slice(&self.x[unknowns..]);
         let count = 2 * self.interfaces.len();
         for k in 0..count {
             self.work.fill(0.0);
             self.work[unknowns + k] = 1.0;
-            if factors.solve(&self.work, &mut self.x).is_err() {
-                return Solved::Not;
-            }
+            factors.solve(&self.work, &mut self.x)?;
             self.condensed.response[k * count..(k + 1) * count]
                 .copy_from_slice(&self.x[unknowns..]);
         }
-        solved
+        Ok(norm)
     }
 
     /// Stiffness of the springs: that of the stiffest degree of freedom.
     fn spring(&self, model: &Model) -> f64 {
-        let Some(factors) = &self.factors else {
+        let Some(pattern) = self.pattern() else {
             return 1.0;
         };
-        let diagonal = |e: usize| {
-            factors
-                .pattern()
-                .slot(e, e)
-                .map_or(0.0, |k| self.stiffness[k].abs())
-        };
+        let diagonal = |e: usize| pattern.slot(e, e).map_or(0.0, |k| self.stiffness[k].abs());
         let slaves = self
             .interfaces
             .iter()
@@ -628,13 +662,17 @@ impl System {
         if !self.condensed.fresh {
             return Solved::Well;
         }
-        self.start_values();
-        let unknowns = model.dofs.equations;
-        self.rhs[unknowns..].copy_from_slice(&self.condensed.gaps);
-        let Some(factors) = &mut self.factors else {
-            return Solved::Not;
+        let done = match (self.layout, &mut self.bodies, &mut self.whole) {
+            (Some(Layout::Bodies), Some(bodies), _) => {
+                bodies.recover(&self.condensed.gaps, &mut self.x)
+            }
+            (_, _, Some(factors)) => {
+                self.rhs[model.dofs.equations..].copy_from_slice(&self.condensed.gaps);
+                factors.solve(&self.rhs, &mut self.x)
+            }
+            _ => Err(SolveError::Singular),
         };
-        match factors.solve(&self.rhs, &mut self.x) {
+        match done {
             Ok(()) => Solved::Well,
             Err(_) => Solved::Not,
         }
@@ -703,66 +741,22 @@ impl System {
     }
 }
 
-impl Interface {
-    /// n and t, frozen; where there is no surface, those that the node had.
-    fn frame(&self, node: &NodeState) -> [[f64; 2]; 2] {
-        let normal = self.footing.map_or(node.normal, |f| f.normal);
-        [normal, tangent(normal)]
-    }
-
-    /// Lists the displacements of S and S*.
-    fn link(&mut self, model: &Model, node: &NodeState, slave: usize) {
-        self.links.clear();
-        let mut add = |n: usize, weight: f64, slope: f64| {
-            let first = model.dofs.first[n];
-            self.links.extend((0..2).map(|axis| Link {
-                dof: first + axis,
-                axis,
-                weight,
-                slope,
-                variation: Variation::default(),
-                slots: None,
-            }));
-        };
-        add(slave, -1.0, 0.0);
-        if let (Some(spot), Some(footing)) = (node.spot, &self.footing) {
-            let nodes = &model.surfaces[spot.surface].elements[spot.element];
-            let shares = footing.shape.iter().zip(&footing.shape_slope);
-            for (&n, (&weight, &slope)) in nodes.iter().zip(shares) {
-                add(n, weight, slope);
-            }
-        }
-    }
-
-    fn find_slots(&mut self, model: &Model, pattern: &Pattern, row: usize) {
-        let slot = |i, j| pattern.slot(i, j);
-        for link in &mut self.links {
-            link.slots = model.dofs.equation[link.dof].and_then(|e| {
-                Some([
-                    slot(row, e)?,
-                    slot(e, row)?,
-                    slot(row + 1, e)?,
-                    slot(e, row + 1)?,
-                ])
-            });
-        }
-        let equations = |l: &Link| model.dofs.equation[l.dof];
-        self.pairs.clear();
-        for i in self.links.iter().map(equations) {
-            let pair = |j: Option<usize>| slot(i?, j?);
-            self.pairs
-                .extend(self.links.iter().map(equations).map(pair));
-        }
-        let block = [
-            (row, row),
-            (row, row + 1),
-            (row + 1, row),
-            (row + 1, row + 1),
-        ];
-        for (place, (i, j)) in self.block.iter_mut().zip(block) {
-            *place = slot(i, j).unwrap_or(*place);
-        }
-    }
+/// `motion − ΔF / stiffness = 0` in both directions, for `give` = −1 / stiffness.
+fn springs(give: f64) -> [Equation; 2] {
+    [
+        Equation {
+            motion: Motion::Normal,
+            d_n: give,
+            d_t: 0.0,
+            value: 0.0,
+        },
+        Equation {
+            motion: Motion::Tangential,
+            d_n: 0.0,
+            d_t: give,
+            value: 0.0,
+        },
+    ]
 }
 
 fn suspicion(inverse_norm: f64) -> Solved {
