@@ -170,10 +170,21 @@ impl Stepper {
     fn ties(&self) -> Ties {
         let settings = &self.state.controls.settings;
         Ties {
-            force: settings.tolerance * self.system.norms().scale,
+            force: settings.tolerance * self.force_scale(),
             length: settings.tolerance * self.model.length,
             keep: settings.ties == spec::Ties::Keep,
         }
+    }
+
+    /// Size of forces: where displacements are prescribed, none may act before the first solve but at the interface.
+    fn force_scale(&self) -> f64 {
+        let nodes = self.state.nodes.iter().enumerate();
+        nodes.fold(self.system.norms().scale, |scale, (slave, node)| {
+            let [d_n, d_t] = self.system.force_increment(slave);
+            scale
+                .max((node.f_n + d_n).abs())
+                .max((node.f_t + d_t).abs())
+        })
     }
 
     /// Checks every node's mode against Table 2 and records it; true where modes and T_max have settled.
@@ -344,7 +355,7 @@ impl Stepper {
 
     /// Whether the next minor iteration starts from where an earlier one of this major did.
     fn find_cycle(&self, minor: u32) -> Option<Cycle> {
-        let force = SAME * self.system.norms().scale;
+        let force = SAME * self.force_scale();
         if let Some(round) = self.state.trail.round(&self.state.nodes, force, SAME) {
             let period = round.len() as u32;
             let pattern = |s: usize| {
