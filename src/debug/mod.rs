@@ -4,6 +4,7 @@
 //! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
 //! - [`report`]: what happened, in words.
 
+pub mod census;
 pub mod command;
 pub mod differences;
 pub mod files;

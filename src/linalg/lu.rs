@@ -34,6 +34,9 @@ pub struct Factors {
 }
 
 impl Factors {
+    /// Most right-hand sides that [`Factors::solve_block`] takes at a time.
+    pub const BLOCK: usize = 32;
+
     /// Analyses a pattern.
     ///
     /// # Errors
@@ -44,7 +47,7 @@ impl Factors {
             .map_err(|_| SolveError::OutOfMemory)?;
         let request = symbolic
             .factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default())
-            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+            .or(symbolic.solve_in_place_scratch::<f64>(Self::BLOCK, Par::Seq));
         let memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
         let entries = pattern.entries();
         Ok(Factors {
@@ -112,6 +115,40 @@ impl Factors {
         }
         self.correction = correction;
         if x.iter().all(|v| v.is_finite()) && self.backward_error(b, x) <= BACKWARD_LIMIT {
+            Ok(())
+        } else {
+            Err(SolveError::Singular)
+        }
+    }
+
+    /// Solves A X = B for at most [`Factors::BLOCK`] columns of B, one after the other in `x`; X replaces B. Neither
+    /// refined nor checked but for being finite: meant for the many columns of a response, beside one checked solve.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] if X is not finite.
+    pub fn solve_block(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
+        if !self.ready {
+            return Err(SolveError::Singular);
+        }
+        let n = self.pattern.n;
+        for column in x.chunks_exact_mut(n) {
+            for (x, s) in column.iter_mut().zip(&self.row_scale) {
+                *x *= s;
+            }
+        }
+        let columns = x.len() / n;
+        LuRef::new_unchecked(&self.symbolic, &self.numeric).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(x, n, columns),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+        for column in x.chunks_exact_mut(n) {
+            for (x, s) in column.iter_mut().zip(&self.col_scale) {
+                *x *= s;
+            }
+        }
+        if x.iter().all(|x| x.is_finite()) {
             Ok(())
         } else {
             Err(SolveError::Singular)

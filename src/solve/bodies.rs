@@ -16,7 +16,7 @@
 
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors};
 use crate::scene::model::{BodyKind, Model};
-use crate::solve::condensed::Condensed;
+use crate::solve::condensed::Relation;
 use crate::solve::interface::Interface;
 use std::sync::Arc;
 
@@ -115,7 +115,7 @@ impl Bodies {
         residual: &[f64],
         interfaces: &[Interface],
         frames: &[[[f64; 2]; 2]],
-        out: &mut Condensed,
+        out: &mut Relation,
     ) -> Result<f64, SolveError> {
         let k = out.stiffness;
         self.shift = k;
@@ -177,7 +177,7 @@ impl Bodies {
     }
 
     /// ΔF at z = 0, and its change by z.
-    fn respond(&self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], out: &mut Condensed) {
+    fn respond(&self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], out: &mut Relation) {
         let (c, k) = (self.equations.len(), out.stiffness);
         let motion = |interface: &Interface, direction: &[f64; 2], u: &[f64]| {
             let share = interface.links.iter().map(|link| {

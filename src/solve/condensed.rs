@@ -6,23 +6,85 @@
 
 use crate::contact::table1::{Equation, Motion};
 use crate::linalg::{DenseFactors, SolveError};
+use serde::{Deserialize, Serialize};
 
-/// The condensed interface of a major iteration, and the last minor iteration's answer.
-pub struct Condensed {
-    /// Whether `start` and `response` belong to the present linearisation.
-    pub fresh: bool,
-    /// Estimated norm of the inverse of what was factored to get there.
-    pub norm: f64,
+/// How the interface of the condensed bodies answers; normal and tangential components of each slave node in turn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Relation {
     /// Stiffness k of the springs.
     pub stiffness: f64,
-    /// ΔF at z = 0: normal and tangential of each slave node in turn.
+    /// ΔF at z = 0.
     pub start: Vec<f64>,
     /// Change of ΔF by z, column by column.
     pub response: Vec<f64>,
+}
+
+impl Relation {
+    /// Number of z.
+    pub fn count(&self) -> usize {
+        self.start.len()
+    }
+
+    /// Writes row `2 slave + k` of the matrix that an equation (k: 0 normal, 1 tangential) of a slave node makes in z,
+    /// and returns its right-hand side; `prescribed` is the relative motion, along n and t, that no unknown takes part
+    /// in.
+    pub fn place_row(
+        &self,
+        slave: usize,
+        k: usize,
+        row: &Equation,
+        prescribed: [f64; 2],
+        matrix: &mut [f64],
+    ) -> f64 {
+        let count = self.count();
+        let moving = match row.motion {
+            Motion::None => None,
+            Motion::Normal => Some(0),
+            Motion::Tangential => Some(1),
+        };
+        // motion = z + ΔF / k, so that the factors of ΔF are these.
+        let mut factor = [row.d_n, row.d_t];
+        let mut value = row.value;
+        if let Some(component) = moving {
+            factor[component] += 1.0 / self.stiffness;
+            value -= prescribed[component];
+        }
+        let here = 2 * slave;
+        let columns = matrix.chunks_exact_mut(count);
+        for (column, response) in columns.zip(self.response.chunks_exact(count)) {
+            column[here + k] = factor[0] * response[here] + factor[1] * response[here + 1];
+        }
+        if let Some(component) = moving {
+            matrix[(here + component) * count + here + k] += 1.0;
+        }
+        value - factor[0] * self.start[here] - factor[1] * self.start[here + 1]
+    }
+
+    /// ΔF_n, ΔF_t of a slave node, and its normal and tangential relative motion, for these z.
+    pub fn answer(&self, z: &[f64], slave: usize, prescribed: [f64; 2]) -> [[f64; 2]; 2] {
+        let (mut forces, mut motions) = ([0.0; 2], prescribed);
+        for component in 0..2 {
+            let row = 2 * slave + component;
+            let answers = self.response.iter().skip(row).step_by(self.count());
+            let change: f64 = answers.zip(z).map(|(response, z)| response * z).sum();
+            forces[component] = self.start[row] + change;
+            motions[component] += z[row] + forces[component] / self.stiffness;
+        }
+        [forces, motions]
+    }
+}
+
+/// The condensed interface of a major iteration, and the last minor iteration's answer.
+pub struct Condensed {
+    /// Whether `relation` belongs to the present linearisation.
+    pub fresh: bool,
+    /// Estimated norm of the inverse of what was factored to get there.
+    pub norm: f64,
+    pub relation: Relation,
     /// Table 1's equations in z, column by column.
-    pub matrix: Vec<f64>,
+    matrix: Vec<f64>,
     /// Their right-hand sides.
-    pub rhs: Vec<f64>,
+    rhs: Vec<f64>,
     /// z of the last minor iteration.
     pub gaps: Vec<f64>,
     dense: Option<DenseFactors>,
@@ -38,9 +100,11 @@ impl Condensed {
         Condensed {
             fresh: false,
             norm: 0.0,
-            stiffness: 1.0,
-            start: Vec::new(),
-            response: Vec::new(),
+            relation: Relation {
+                stiffness: 1.0,
+                start: Vec::new(),
+                response: Vec::new(),
+            },
             matrix: Vec::new(),
             rhs: Vec::new(),
             gaps: Vec::new(),
@@ -59,14 +123,20 @@ impl Condensed {
         if self.dense.is_some() {
             return Ok(());
         }
-        for vector in [&mut self.start, &mut self.rhs, &mut self.gaps] {
+        for vector in [&mut self.relation.start, &mut self.rhs, &mut self.gaps] {
             vector.resize(count, 0.0);
         }
-        for matrix in [&mut self.response, &mut self.matrix] {
+        for matrix in [&mut self.relation.response, &mut self.matrix] {
             matrix.resize(count * count, 0.0);
         }
         self.dense = Some(DenseFactors::new(count, 1)?);
         Ok(())
+    }
+
+    /// Enters equation k (0 normal, 1 tangential) of a slave node; see [`Relation::place_row`].
+    pub fn place_row(&mut self, slave: usize, k: usize, row: &Equation, prescribed: [f64; 2]) {
+        let relation = &self.relation;
+        self.rhs[2 * slave + k] = relation.place_row(slave, k, row, prescribed, &mut self.matrix);
     }
 
     /// Solves the entered equations for z; returns an estimate of the norm of their matrix' inverse.
@@ -83,47 +153,9 @@ impl Condensed {
         Ok(dense.inverse_norm())
     }
 
-    /// Enters equation k (0 normal, 1 tangential) of the slave node whose first row is `first`; `prescribed` is the
-    /// relative motion, along n and t, that no unknown takes part in.
-    pub fn place_row(&mut self, first: usize, k: usize, row: &Equation, prescribed: [f64; 2]) {
-        let count = self.rhs.len();
-        let moving = match row.motion {
-            Motion::None => None,
-            Motion::Normal => Some(0),
-            Motion::Tangential => Some(1),
-        };
-        // motion = z + ΔF / k, so that the factors of ΔF are these.
-        let mut factor = [row.d_n, row.d_t];
-        let mut value = row.value;
-        if let Some(component) = moving {
-            factor[component] += 1.0 / self.stiffness;
-            value -= prescribed[component];
-        }
-        let (at, here) = (first + k, [first, first + 1]);
-        for column in 0..count {
-            let response = &self.response[column * count..(column + 1) * count];
-            self.matrix[column * count + at] =
-                factor[0] * response[here[0]] + factor[1] * response[here[1]];
-        }
-        if let Some(component) = moving {
-            self.matrix[here[component] * count + at] += 1.0;
-        }
-        self.rhs[at] = value - factor[0] * self.start[here[0]] - factor[1] * self.start[here[1]];
-    }
-
     /// Reads a slave node's force and motion off the solution z.
     pub fn read(&mut self, slave: usize, prescribed: [f64; 2]) {
-        let count = self.rhs.len();
-        for (component, prescribed) in prescribed.iter().enumerate() {
-            let row = 2 * slave + component;
-            let answer = self
-                .gaps
-                .iter()
-                .enumerate()
-                .map(|(column, z)| self.response[column * count + row] * z);
-            let force = self.start[row] + answer.sum::<f64>();
-            self.forces[slave][component] = force;
-            self.motions[slave][component] = self.gaps[row] + force / self.stiffness + prescribed;
-        }
+        [self.forces[slave], self.motions[slave]] =
+            self.relation.answer(&self.gaps, slave, prescribed);
     }
 }

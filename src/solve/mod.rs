@@ -6,8 +6,9 @@
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
 mod bodies;
-mod condensed;
+pub mod condensed;
 pub mod event;
+pub mod frozen;
 mod interface;
 pub mod intervene;
 pub mod singular;

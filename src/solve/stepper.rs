@@ -17,6 +17,7 @@ use crate::scene::{Mode, Model, spec};
 use crate::solve::event::{
     Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular,
 };
+use crate::solve::frozen::Frozen;
 use crate::solve::intervene::Intervention;
 use crate::solve::singular;
 use crate::solve::state::{IncrementStart, NodeState, State, Status};
@@ -88,6 +89,14 @@ impl Stepper {
     /// Current norms and whether they could be computed: those about which the next minor iteration is linearised.
     pub fn norms(&mut self) -> Option<Norms> {
         self.linearise().then(|| self.system.norms())
+    }
+
+    /// The frozen interface problem of the present major iteration; none where the bodies cannot be condensed.
+    pub fn frozen(&mut self) -> Option<Frozen> {
+        if !self.linearise() {
+            return None;
+        }
+        self.system.frozen(&self.model, &self.state).ok()
     }
 
     /// One minor iteration. None when the history is done.

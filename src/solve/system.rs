@@ -10,11 +10,12 @@ use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
-use crate::scene::model::Model;
+use crate::scene::model::{Body, BodyKind, Model};
 use crate::scene::spec::{Component, FrictionLimit, Geometry, SlipCount, Solver};
 use crate::solve::bodies::{Bodies, condensable};
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
+use crate::solve::frozen::{Frozen, FrozenNode};
 use crate::solve::interface::Interface;
 use crate::solve::state::{NodeState, State};
 use std::sync::Arc;
@@ -73,6 +74,8 @@ pub struct System {
     kind: Vec<Kind>,
     /// Largest force that the loads reach over the history.
     reference: f64,
+    /// Stiffness of the softest body as a whole.
+    softest: f64,
     /// Current position of every node.
     pub positions: Vec<[f64; 2]>,
     interfaces: Vec<Interface>,
@@ -91,6 +94,8 @@ pub struct System {
     rhs: Vec<f64>,
     x: Vec<f64>,
     work: Vec<f64>,
+    /// Right-hand sides of a condensation, some at a time.
+    block: Vec<f64>,
     norms: Norms,
 }
 
@@ -110,6 +115,7 @@ impl System {
             pairing: Vec::new(),
             frames: Vec::new(),
             reference: reference_force(model, &kind),
+            softest: softest_body(model),
             kind,
             positions: vec![[0.0; 2]; model.nodes.len()],
             condensed: Condensed::new(interfaces.len()),
@@ -126,6 +132,7 @@ impl System {
             rhs: Vec::new(),
             x: Vec::new(),
             work: Vec::new(),
+            block: Vec::new(),
             norms: Norms::default(),
         }
     }
@@ -571,7 +578,7 @@ impl System {
             let frame = self.frames[s];
             let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
             for (k, row) in rows.iter().enumerate() {
-                self.condensed.place_row(2 * s, k, row, prescribed);
+                self.condensed.place_row(s, k, row, prescribed);
             }
         }
         let Ok(norm) = self.condensed.solve() else {
@@ -587,6 +594,43 @@ impl System {
         suspicion(self.condensed.norm)
     }
 
+    /// The interface problem of the last linearisation, to be looked at by itself; costs a condensation, unless the
+    /// minor iterations have made it already.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the bodies cannot be condensed.
+    pub fn frozen(&mut self, model: &Model, state: &State) -> Result<Frozen, SolveError> {
+        if !self.condensed.fresh {
+            self.condensed.norm = self.condense(model, state)?;
+            self.condensed.fresh = true;
+        }
+        let relation = self.condensed.relation.clone();
+        let nodes = state.nodes.iter().enumerate().map(|(slave, node)| {
+            let interface = &self.interfaces[slave];
+            FrozenNode {
+                slave,
+                gap: interface.footing.map_or(f64::INFINITY, |f| f.gap),
+                f_n: node.f_n,
+                f_t: node.f_t,
+                slip: node.slip,
+                friction: state.controls.friction[slave],
+                moves: interface.moves,
+                prescribed: self.frames[slave].map(|d| dot(d, interface.prescribed)),
+            }
+        });
+        let largest = relation.start.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        Ok(Frozen {
+            nodes: nodes.collect(),
+            force: if self.norms.scale > 0.0 {
+                self.norms.scale
+            } else {
+                largest
+            },
+            length: model.length,
+            relation,
+        })
+    }
+
     /// Condenses the bodies to the interface; returns an estimate of the norm of the inverse of what was factored.
     ///
     /// Bodies that [`Bodies`] cannot factor in this state are factored with the interface, and with pivoting.
@@ -596,7 +640,7 @@ impl System {
         let nodes = self.interfaces.iter().zip(&state.nodes);
         self.frames.extend(nodes.map(|(i, node)| i.frame(node)));
         if self.layout == Some(Layout::Bodies) {
-            self.condensed.stiffness = self.spring(model);
+            self.condensed.relation.stiffness = self.spring(model);
             self.start_rhs();
             if let Some(bodies) = &mut self.bodies
                 && let Ok(norm) = bodies.condense(
@@ -604,7 +648,7 @@ impl System {
                     &self.rhs,
                     &self.interfaces,
                     &self.frames,
-                    &mut self.condensed,
+                    &mut self.condensed.relation,
                 )
             {
                 return Ok(norm);
@@ -612,7 +656,7 @@ impl System {
             self.linearise_in(Layout::Whole, model, state)?;
             self.turn(model, state);
         }
-        self.condensed.stiffness = self.spring(model);
+        self.condensed.relation.stiffness = self.spring(model);
         self.condense_whole(model)
     }
 
@@ -621,7 +665,7 @@ impl System {
     fn condense_whole(&mut self, model: &Model) -> Result<f64, SolveError> {
         self.start_values();
         let unknowns = model.dofs.equations;
-        let give = -1.0 / self.condensed.stiffness;
+        let give = -1.0 / self.condensed.relation.stiffness;
         for s in 0..self.interfaces.len() {
             for (k, row) in springs(give).iter().enumerate() {
                 self.place_row(s, k, row, self.frames[s]);
@@ -634,19 +678,32 @@ impl System {
         factors.factor(&self.values)?;
         factors.solve(&self.rhs, &mut self.x)?;
         let norm = factors.inverse_norm();
-        self.condensed.start.copy_from_slice(&self.x[unknowns..]);
-        let count = 2 * self.interfaces.len();
-        for k in 0..count {
-            self.work.fill(0.0);
-            self.work[unknowns + k] = 1.0;
-            factors.solve(&self.work, &mut self.x)?;
-            self.condensed.response[k * count..(k + 1) * count]
-                .copy_from_slice(&self.x[unknowns..]);
+        self.condensed
+            .relation
+            .start
+            .copy_from_slice(&self.x[unknowns..]);
+        let (count, size) = (2 * self.interfaces.len(), self.x.len());
+        for first in (0..count).step_by(Factors::BLOCK) {
+            let columns = first..count.min(first + Factors::BLOCK);
+            self.block.clear();
+            self.block.resize(size * columns.len(), 0.0);
+            for (column, k) in self.block.chunks_exact_mut(size).zip(columns.clone()) {
+                column[unknowns + k] = 1.0;
+            }
+            factors.solve_block(&mut self.block)?;
+            let response = &mut self.condensed.relation.response[first * count..];
+            for (to, column) in response
+                .chunks_exact_mut(count)
+                .zip(self.block.chunks_exact(size))
+            {
+                to.copy_from_slice(&column[unknowns..]);
+            }
         }
         Ok(norm)
     }
 
-    /// Stiffness of the springs: that of the stiffest degree of freedom.
+    /// Stiffness of the springs. What lies k times above or below it loses as many digits when the springs drop out, so
+    /// it is midway between the stiffest degree of freedom of the interface and the softest body as a whole.
     fn spring(&self, model: &Model) -> f64 {
         let Some(pattern) = self.pattern() else {
             return 1.0;
@@ -658,7 +715,8 @@ impl System {
             .flat_map(|i| &i.links)
             .filter_map(|l| model.dofs.equation[l.dof]);
         let stiffest = slaves.map(diagonal).fold(0.0, f64::max);
-        if stiffest > 0.0 { stiffest } else { 1.0 }
+        let spring = (stiffest * self.softest).sqrt();
+        if spring > 0.0 { spring } else { 1.0 }
     }
 
     /// Completes a solve: finds what it does to the bodies. Costs one back substitution where the bodies were
@@ -797,6 +855,19 @@ fn kinds(model: &Model) -> Vec<Kind> {
         }
     }
     kinds
+}
+
+/// Order of magnitude of the softest body's stiffness as a whole: that of a beam in bending, of a solid by itself.
+fn softest_body(model: &Model) -> f64 {
+    let of = |body: &Body| match &body.kind {
+        BodyKind::Beam(beam) => beam.ei / model.length.powi(3),
+        BodyKind::Solid(solid) => {
+            let stiffness = solid.materials.iter().map(|m| m.young * m.thickness);
+            stiffness.fold(f64::INFINITY, f64::min)
+        }
+    };
+    let softest = model.bodies.iter().map(of).fold(f64::INFINITY, f64::min);
+    if softest.is_finite() { softest } else { 1.0 }
 }
 
 /// Largest force that the scene's loads reach over its history.

@@ -1,0 +1,282 @@
+//! The frozen interface problem: all that the minor iterations of one major iteration know of the bodies.
+//!
+//! While geometry and stiffness are frozen, forces and relative motions at the slave nodes are linear in each other
+//! (the relation of `condensed`). What each node may do is Coulomb's law for the whole increment: a free node has
+//! a gap and no force; a touching one is pressed, and either sticks where the increment found it, within the friction
+//! limit, or slips against friction at the limit. This module solves for one assumption of what every node does, and
+//! says how far the answer is from obeying; [`crate::debug::census`] tries them all.
+
+use crate::contact::table1::{Equation, Known, Limit, Motion, equations, gone};
+use crate::linalg::DenseFactors;
+use crate::scene::{Friction, Mode};
+use crate::solve::condensed::Relation;
+use serde::{Deserialize, Serialize};
+
+/// Estimated norm of a scaled inverse from which on an assumption counts as singular.
+const SINGULAR: f64 = 1e11;
+
+/// The frozen interface problem of a major iteration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Frozen {
+    pub relation: Relation,
+    /// One entry a slave node, in the relation's order.
+    pub nodes: Vec<FrozenNode>,
+    /// Sizes of forces and lengths, to compare margins of either.
+    pub force: f64,
+    pub length: f64,
+}
+
+/// What a slave node brings into the frozen problem.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FrozenNode {
+    /// Slave number in the scene.
+    pub slave: usize,
+    /// Gap at the start of the major iteration; infinite past the ends of all surfaces.
+    pub gap: f64,
+    /// Total forces there.
+    pub f_n: f64,
+    pub f_t: f64,
+    /// Slip since the start of the increment, which sticking takes back.
+    pub slip: f64,
+    pub friction: Friction,
+    /// Whether any unknown takes part in its normal and tangential motion; where not, its support carries the force.
+    pub moves: [bool; 2],
+    /// Relative motion, along n and t, that no unknown takes part in.
+    pub prescribed: [f64; 2],
+}
+
+/// What a node is assumed to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Assumed {
+    Free,
+    Fixed,
+    /// Sliding with F_t > 0, and with F_t < 0.
+    Plus,
+    Minus,
+}
+
+impl Assumed {
+    /// As the reference solutions write it: F, X, +, −.
+    pub fn letter(self) -> char {
+        match self {
+            Assumed::Free => 'F',
+            Assumed::Fixed => 'X',
+            Assumed::Plus => '+',
+            Assumed::Minus => '-',
+        }
+    }
+
+    /// The mode that it is.
+    pub fn mode(self) -> Mode {
+        match self {
+            Assumed::Free => Mode::Free,
+            Assumed::Fixed => Mode::Fixed,
+            Assumed::Plus | Assumed::Minus => Mode::Sliding,
+        }
+    }
+
+    /// What a node in this mode does whose tangential force has this sign.
+    pub fn of(mode: Mode, sign: f64) -> Self {
+        match mode {
+            Mode::Free => Assumed::Free,
+            Mode::Fixed => Assumed::Fixed,
+            Mode::Sliding if sign < 0.0 => Assumed::Minus,
+            Mode::Sliding => Assumed::Plus,
+        }
+    }
+
+    fn sign(self) -> f64 {
+        if self == Assumed::Minus { -1.0 } else { 1.0 }
+    }
+}
+
+impl FrozenNode {
+    /// What the node can be assumed to do: without friction, sliding has no direction and sticking no sense.
+    pub fn choices(&self) -> &'static [Assumed] {
+        if self.gap.is_infinite() {
+            &[Assumed::Free]
+        } else if self.friction.is_smooth() {
+            &[Assumed::Free, Assumed::Plus]
+        } else {
+            &[Assumed::Free, Assumed::Fixed, Assumed::Plus, Assumed::Minus]
+        }
+    }
+
+    fn equations(&self, assumed: Assumed) -> [Equation; 2] {
+        let known = Known {
+            gap: self.gap,
+            ratio: 0.0,
+            slip: self.slip,
+            f_n: self.f_n,
+            f_t: self.f_t,
+            limit: Limit::Consistent {
+                sign: assumed.sign(),
+                coefficient: self.friction.coefficient(),
+                cohesion: self.friction.cohesion,
+            },
+        };
+        let mut rows = equations(assumed.mode(), &known);
+        let forces = [self.f_n, self.f_t];
+        for k in 0..2 {
+            if rows[k].motion != Motion::None && !self.moves[k] {
+                rows[k] = gone((1 - k) as f64, k as f64, forces[k]);
+            }
+        }
+        rows
+    }
+}
+
+/// What an assumption leads to, at one node.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct NodeAnswer {
+    pub assumed: Assumed,
+    /// Total forces.
+    pub f_n: f64,
+    pub f_t: f64,
+    /// |F_t| that friction can give.
+    pub limit: f64,
+    /// Gap after the motion.
+    pub gap: f64,
+    /// Slip since the start of the increment.
+    pub slip: f64,
+    /// The condition that is closest to being broken, or most broken.
+    pub worst: Margin,
+}
+
+/// A condition that an assumption must meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Condition {
+    /// A free node must not penetrate: g ≥ 0 (length).
+    NoPenetration,
+    /// A touching node must be pressed: F_n ≥ 0 (force).
+    NoTension,
+    /// A stuck node must keep to the friction limit: T_max − |F_t| ≥ 0 (force).
+    WithinLimit,
+    /// Friction must oppose the slip: sgn(F_t) · slip ≥ 0 (length).
+    Dissipation,
+}
+
+/// How far a condition is from being broken.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Margin {
+    pub condition: Condition,
+    /// Force or length; negative where the condition is broken.
+    pub value: f64,
+    /// The same over the problem's size of forces or lengths.
+    pub relative: f64,
+}
+
+/// An assumption for every node, solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    pub nodes: Vec<NodeAnswer>,
+}
+
+impl Answer {
+    /// The assumption, a letter a node.
+    pub fn letters(&self) -> String {
+        self.nodes.iter().map(|n| n.assumed.letter()).collect()
+    }
+
+    /// The node whose condition is closest to being broken, or most broken, and that condition; none without nodes.
+    pub fn worst(&self) -> Option<(usize, Margin)> {
+        let margins = self.nodes.iter().map(|n| n.worst).enumerate();
+        margins.min_by(|a, b| a.1.relative.total_cmp(&b.1.relative))
+    }
+
+    /// Whether every node obeys, up to a relative tolerance.
+    pub fn obeys(&self, tolerance: f64) -> bool {
+        self.nodes.iter().all(|n| n.worst.relative >= -tolerance)
+    }
+}
+
+/// Solves one assumption after the other, with room made once.
+pub struct Trials<'a> {
+    problem: &'a Frozen,
+    matrix: Vec<f64>,
+    z: Vec<f64>,
+    dense: DenseFactors,
+}
+
+impl<'a> Trials<'a> {
+    /// Room for trials of a problem; none without memory.
+    pub fn new(problem: &'a Frozen) -> Option<Self> {
+        let count = problem.relation.count();
+        Some(Trials {
+            problem,
+            matrix: vec![0.0; count * count],
+            z: vec![0.0; count],
+            dense: DenseFactors::new(count, 1).ok()?,
+        })
+    }
+
+    /// The answer to an assumption, one entry a node; none where its equations are singular.
+    pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
+        let (problem, relation) = (self.problem, &self.problem.relation);
+        for (s, (node, &assumed)) in problem.nodes.iter().zip(assumed).enumerate() {
+            for (k, row) in node.equations(assumed).iter().enumerate() {
+                self.z[2 * s + k] =
+                    relation.place_row(s, k, row, node.prescribed, &mut self.matrix);
+            }
+        }
+        self.dense.factor(&self.matrix);
+        if self.dense.inverse_norm() > SINGULAR || self.dense.solve(&mut self.z).is_err() {
+            return None;
+        }
+        let nodes = problem.nodes.iter().zip(assumed).enumerate();
+        let of_node = |(s, (node, &assumed)): (usize, (&FrozenNode, &Assumed))| {
+            let answer = relation.answer(&self.z, s, node.prescribed);
+            judge(node, assumed, answer, problem.force, problem.length)
+        };
+        Some(Answer {
+            nodes: nodes.map(of_node).collect(),
+        })
+    }
+}
+
+/// What force and motion increments mean for a node that was assumed to do this.
+fn judge(
+    node: &FrozenNode,
+    assumed: Assumed,
+    [force, motion]: [[f64; 2]; 2],
+    force_size: f64,
+    length_size: f64,
+) -> NodeAnswer {
+    let (f_n, f_t) = (node.f_n + force[0], node.f_t + force[1]);
+    let limit = f_n.abs() * node.friction.coefficient() + node.friction.cohesion;
+    let gap = node.gap - motion[0];
+    let slip = node.slip + motion[1];
+    let of_force = |condition, value: f64| Margin {
+        condition,
+        value,
+        relative: value / force_size,
+    };
+    let of_length = |condition, value: f64| Margin {
+        condition,
+        value,
+        relative: value / length_size,
+    };
+    let pressed = of_force(Condition::NoTension, f_n);
+    let worst = match assumed {
+        Assumed::Free => of_length(Condition::NoPenetration, gap),
+        Assumed::Fixed => smaller(pressed, of_force(Condition::WithinLimit, limit - f_t.abs())),
+        _ if node.friction.is_smooth() => pressed,
+        _ => smaller(
+            pressed,
+            of_length(Condition::Dissipation, assumed.sign() * slip),
+        ),
+    };
+    NodeAnswer {
+        assumed,
+        f_n,
+        f_t,
+        limit,
+        gap,
+        slip,
+        worst,
+    }
+}
+
+fn smaller(a: Margin, b: Margin) -> Margin {
+    if b.relative < a.relative { b } else { a }
+}
