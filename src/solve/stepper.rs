@@ -8,10 +8,11 @@
 //! until residual and interface conditions are within the tolerance; then the increment is accepted
 //! ```
 
+use crate::contact::anchor::{distance, pierced};
 use crate::contact::decision::{Numbers, Rule, Ties, decide};
 use crate::contact::projection::project;
 use crate::contact::table1::{direction, t_max};
-use crate::scene::model::Watched;
+use crate::scene::model::{Surface, Watched};
 use crate::scene::spec::{AtCycle, AtLimit, Axis, FrictionLimit, ResidualMethod, SlipCount};
 use crate::scene::{Mode, Model, spec};
 use crate::solve::event::{
@@ -244,7 +245,7 @@ impl Stepper {
             };
         let slip = match (node.mode, settings.slip) {
             (Mode::Free, _) => 0.0,
-            (_, SlipCount::Increment) => node.slip + here,
+            (_, SlipCount::Increment) => node.slipped(settings) + here,
             (_, SlipCount::Major) => motion[1],
         };
         let sign = direction(f_t, ties.force, slip, ties.length, node.sign);
@@ -281,6 +282,10 @@ impl Stepper {
                 _ => limit,
             },
             slip,
+            drift: match node.mode {
+                Mode::Free => 0.0,
+                _ => node.drift + here,
+            },
             spot: node.spot,
             normal: footing.map_or(node.normal, |f| f.normal),
             foot: footing.map_or([f64::NAN; 2], |f| f.foot),
@@ -455,6 +460,15 @@ impl Stepper {
                 });
                 node.slip + motion[1] - touched
             };
+            if record.decision.before != Mode::Free && node.anchor.is_none() {
+                node.anchor = node
+                    .spot
+                    .zip(self.system.footing(s))
+                    .and_then(|(spot, at)| {
+                        let positions = &self.system.positions;
+                        pierced(&self.model.surfaces, spot, at, node.ratio, positions)
+                    });
+            }
             node.ratio = 0.0;
             node.travel = 0.0;
         }
@@ -471,6 +485,7 @@ impl Stepper {
     fn find_spots(&mut self) {
         self.system.place(&self.model, &self.state.u);
         let positions = &self.system.positions;
+        let moves_on = self.state.controls.settings.slip == SlipCount::Major;
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
             let at = positions[slave.node];
             node.spot = project(
@@ -498,6 +513,11 @@ impl Stepper {
             if node.mode == Mode::Free {
                 (node.f_n, node.f_t) = (0.0, 0.0);
             }
+            // Where slip is counted anew in every major iteration, so is what to stick to.
+            if moves_on && node.mode == Mode::Sliding {
+                node.anchor = node.spot;
+            }
+            find_anchor(node, &self.model.surfaces, positions);
         }
         self.linearised = false;
     }
@@ -540,6 +560,9 @@ impl Stepper {
         let unsettled = self.state.unsettled;
         for node in &mut self.state.nodes {
             node.slip = 0.0;
+            if node.mode == Mode::Sliding {
+                (node.anchor, node.drift) = (node.spot, 0.0);
+            }
         }
         let mut leg = self.state.start.leg;
         while leg + 1 < self.model.path.len() && self.state.load_factor == self.model.path[leg + 1]
@@ -589,12 +612,34 @@ impl Stepper {
                     let k = if *axis == Axis::X { 0 } else { 1 };
                     slaves.iter().map(|&s| self.state.nodes[s].force()[k]).sum()
                 }
+                Watched::Drift { slaves } => slaves.iter().fold(0.0, |largest: f64, &s| {
+                    let drift = self.state.nodes[s].drift;
+                    if drift.abs() > largest.abs() {
+                        drift
+                    } else {
+                        largest
+                    }
+                }),
                 Watched::Reaction { dof } => {
                     self.system.nodal_force(*dof) - self.system.interaction(*dof)
                 }
             });
         }
     }
+}
+
+/// Gives a touching node that has no anchor one where it stands, takes it from a free one, and measures the drift. A node
+/// that has come to another surface is anchored anew there.
+fn find_anchor(node: &mut NodeState, surfaces: &[Surface], positions: &[[f64; 2]]) {
+    let (Some(spot), true) = (node.spot, node.mode != Mode::Free) else {
+        (node.anchor, node.drift) = (None, 0.0);
+        return;
+    };
+    let anchor = node.anchor.filter(|a| a.surface == spot.surface);
+    node.anchor = anchor.or(Some(spot));
+    node.drift = anchor.map_or(0.0, |anchor| {
+        distance(&surfaces[spot.surface], spot, anchor, positions)
+    });
 }
 
 /// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free.

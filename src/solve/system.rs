@@ -11,7 +11,7 @@ use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
 use crate::scene::model::Model;
-use crate::scene::spec::{Component, FrictionLimit, Geometry, SlipCount, Solver};
+use crate::scene::spec::{Component, FrictionLimit, Geometry, Solver, Sticking};
 use crate::solve::bodies::{Bodies, condensable};
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
@@ -444,7 +444,12 @@ impl System {
                 Mode::Sliding => (node.f_t - node.t_max).abs(),
                 _ => 0.0,
             };
-            worst = worst.max(length / model.length);
+            let anchored = state.controls.settings.sticking == Sticking::Anchored;
+            let drift = match node.mode {
+                Mode::Fixed if anchored && self.interfaces[s].moves[1] => node.drift.abs(),
+                _ => 0.0,
+            };
+            worst = worst.max(length.max(drift) / model.length);
             if force > 0.0 {
                 worst = worst.max(force / self.norms.scale);
             }
@@ -696,14 +701,10 @@ impl System {
             },
         };
         let gap = interface.footing.map_or(0.0, |f| f.gap);
-        let slip = match state.controls.settings.slip {
-            SlipCount::Increment => node.slip,
-            SlipCount::Major => 0.0,
-        };
         let known = Known {
             gap,
             ratio: node.ratio,
-            slip,
+            slip: node.slipped(&state.controls.settings),
             f_n: node.f_n,
             f_t: node.f_t,
             limit,
