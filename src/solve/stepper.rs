@@ -13,7 +13,9 @@ use crate::contact::decision::{Numbers, Rule, Ties, decide};
 use crate::contact::projection::project;
 use crate::contact::table1::{direction, t_max};
 use crate::scene::model::{Surface, Watched};
-use crate::scene::spec::{AtCycle, AtLimit, Axis, FrictionLimit, ResidualMethod, SlipCount};
+use crate::scene::spec::{
+    AtCycle, AtLimit, Axis, FrictionLimit, ResidualMethod, SlipCount, Sticking,
+};
 use crate::scene::{Mode, Model, spec};
 use crate::solve::event::{
     Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular,
@@ -485,7 +487,9 @@ impl Stepper {
     fn find_spots(&mut self) {
         self.system.place(&self.model, &self.state.u);
         let positions = &self.system.positions;
-        let moves_on = self.state.controls.settings.slip == SlipCount::Major;
+        // Where slip is counted anew in every major iteration, so is what to stick to.
+        let settings = &self.state.controls.settings;
+        let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
             let at = positions[slave.node];
             node.spot = project(
@@ -513,8 +517,7 @@ impl Stepper {
             if node.mode == Mode::Free {
                 (node.f_n, node.f_t) = (0.0, 0.0);
             }
-            // Where slip is counted anew in every major iteration, so is what to stick to.
-            if moves_on && node.mode == Mode::Sliding {
+            if anew && node.mode == Mode::Sliding {
                 node.anchor = node.spot;
             }
             find_anchor(node, &self.model.surfaces, positions);
