@@ -112,6 +112,7 @@ fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -> No
         t_max,
         t_max_used: t_max,
         slip,
+        drift: 0.0,
         spot: None,
         normal: [0.0, 1.0],
         foot: [0.0, 0.0],

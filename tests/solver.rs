@@ -263,3 +263,55 @@ fn cohesion_adds_to_friction_and_both_limit_the_tangential_force() {
     }
     assert!(slid > 20, "{slid}");
 }
+
+/// Major iterations in all, of a run without failure.
+fn majors(run: &Run) -> u32 {
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    run.accepted.iter().map(|a| a.majors).sum()
+}
+
+#[test]
+fn t_max_in_the_matrix_takes_a_fraction_of_the_minor_iterations_for_the_same_answer() {
+    let solved = |t_max: &str| {
+        let set = [
+            ("friction.angle", "10"),
+            ("history.path[1]", "0.4"),
+            ("settings.t_max", t_max),
+        ];
+        run(&scene("05-cantilever-elastic-block", &set))
+    };
+    let (lagged, consistent) = (solved("lagged"), solved("consistent"));
+    assert!(majors(&lagged).abs_diff(majors(&consistent)) <= 1);
+    // A step is a minor iteration.
+    assert!(
+        lagged.steps > 3 * consistent.steps,
+        "{} {}",
+        lagged.steps,
+        consistent.steps
+    );
+    let last = |run: &Run, name: &str| run.accepted.last().unwrap().monitors[name];
+    for name in ["u_x", "u_y", "rotation", "contact_x", "contact_y"] {
+        let (a, b) = (last(&lagged, name), last(&consistent, name));
+        assert!((a - b).abs() < 1e-9, "{name}: {a} {b}");
+    }
+}
+
+#[test]
+fn the_second_residual_method_saves_majors_on_the_rough_cantilevers_with_the_papers_geometry() {
+    let solved = |residual: &str| {
+        let set = [
+            ("settings.geometry", "frozen"),
+            ("settings.residual", residual),
+        ];
+        run(&scene("02-two-cantilevers-rough", &set))
+    };
+    let (first, second) = (solved("accumulate"), solved("stress"));
+    assert!(
+        majors(&second) < majors(&first) - 20,
+        "{} {}",
+        majors(&first),
+        majors(&second)
+    );
+    let end = |run: &Run| run.accepted.last().unwrap().monitors["u_x"];
+    assert!((end(&first) - end(&second)).abs() < 1e-10);
+}

@@ -219,4 +219,6 @@ pub enum Watched {
     Contact { slaves: Vec<usize>, axis: Axis },
     /// Support force at a restrained degree of freedom.
     Reaction { dof: usize },
+    /// Largest drift of slaves (by slave number).
+    Drift { slaves: Vec<usize> },
 }

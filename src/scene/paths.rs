@@ -7,7 +7,7 @@ use super::error::{Path, at, nearest, quoted};
 use super::spec::{
     AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, Law, LoadSpec,
     Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity, Region, ResidualMethod, Scale,
-    Settings, SlipCount, Solver, Spec, Ties, Update,
+    Settings, SlipCount, Solver, Spec, Sticking, Ties, Update,
 };
 
 /// A value set from outside.
@@ -277,6 +277,7 @@ choices! {
     Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
     FrictionLimit { "lagged" => FrictionLimit::Lagged, "consistent" => FrictionLimit::Consistent }
     SlipCount { "increment" => SlipCount::Increment, "major" => SlipCount::Major }
+    Sticking { "anchored" => Sticking::Anchored, "increments" => Sticking::Increments }
     Law { "svk" => Law::Svk, "neohookean" => Law::NeoHookean }
     Plane { "strain" => Plane::Strain, "stress" => Plane::Stress }
     Update { "total" => Update::Total, "updated" => Update::Updated }
@@ -563,6 +564,10 @@ fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
     );
     visit(&place.field("t_max"), Scalar::Choice(&mut settings.t_max));
     visit(&place.field("slip"), Scalar::Choice(&mut settings.slip));
+    visit(
+        &place.field("sticking"),
+        Scalar::Choice(&mut settings.sticking),
+    );
     visit(&place.field("ties"), Scalar::Choice(&mut settings.ties));
     visit(&place.field("minors"), Scalar::Limit(&mut settings.minors));
     visit(&place.field("majors"), Scalar::Limit(&mut settings.majors));
@@ -596,6 +601,11 @@ fn monitor(place: &Place, monitor: &mut MonitorSpec, visit: &mut Visit<'_>) {
                 visit(&of.field("node"), Scalar::Text(node));
             }
             visit(&of.field("component"), Scalar::Choice(component));
+        }
+        Quantity::Drift { node } => {
+            if let Some(node) = node {
+                visit(&of.field("node"), Scalar::Text(node));
+            }
         }
     }
 }

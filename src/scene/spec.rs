@@ -421,6 +421,8 @@ pub struct Settings {
     pub t_max: FrictionLimit,
     /// Over what the slip of Table 2's sliding row is counted. Default: increment.
     pub slip: SlipCount,
+    /// What a fixed node holds on to. Default: anchored.
+    pub sticking: Sticking,
     /// What a tie in Table 2 does. Default: keep.
     pub ties: Ties,
     /// Most minor iterations in a major one. Default: 100.
@@ -445,6 +447,7 @@ impl Default for Settings {
             geometry: Geometry::default(),
             t_max: FrictionLimit::default(),
             slip: SlipCount::default(),
+            sticking: Sticking::default(),
             ties: Ties::default(),
             minors: 100,
             majors: 60,
@@ -512,6 +515,17 @@ pub enum SlipCount {
     Major,
 }
 
+/// What a fixed node holds on to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sticking {
+    /// To the point of the surface where it stuck, which it remembers: what it has gone from there, it takes back.
+    #[default]
+    Anchored,
+    /// To nothing, as in the paper: no tangential motion in a major iteration, but that the slip counted is taken back.
+    Increments,
+}
+
 /// What a tie in Table 2 does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -570,6 +584,12 @@ pub enum Quantity {
     },
     /// The force of the support at a restrained degree of freedom.
     Reaction { node: String, component: Component },
+    /// How far one slave node that sticks has gone along its surface from the point where it stuck (length, with the
+    /// sign of slip; 0 where it slides or is free), or that of all which has gone furthest.
+    Drift {
+        #[serde(default)]
+        node: Option<String>,
+    },
 }
 
 /// A Cartesian axis.

@@ -50,6 +50,8 @@ pub struct NodeRecord {
     pub t_max_used: f64,
     /// Slip u_tS* − u_tS, as the settings count it.
     pub slip: f64,
+    /// How far it is from where it stuck, along the surface and with the sign of slip; 0 while it is free.
+    pub drift: f64,
     /// Where S* lies; none past the ends of all surfaces.
     pub spot: Option<Spot>,
     /// Outward normal n at S*.
@@ -79,7 +81,7 @@ pub struct Norms {
     /// The same over the force scale.
     pub relative: f64,
     /// Largest violation of the interface conditions, relative: gaps of touching nodes and penetration of free
-    /// ones over the length scale; force on free nodes and |F_t − T_max| of sliding ones over the force scale.
+    /// ones, and drift of fixed ones where they are anchored, over the length scale; force on free nodes and |F_t − T_max| of sliding ones over the force scale.
     pub interface: f64,
     /// Largest displacement change in the last major iteration over the length scale; 0 before the first.
     pub correction: f64,

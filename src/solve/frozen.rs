@@ -6,10 +6,12 @@
 //! limit, or slips against friction at the limit. This module solves for one assumption of what every node does, and
 //! says how far the answer is from obeying; [`crate::debug::census`] tries them all.
 
-use crate::contact::table1::{Equation, Known, Limit, Motion, equations, gone};
+use crate::contact::table1::{Equation, Known, Limit};
 use crate::linalg::DenseFactors;
-use crate::scene::{Friction, Mode};
+use crate::scene::{Friction, Mode, Settings};
 use crate::solve::condensed::Relation;
+use crate::solve::minor::{Site, supported};
+use crate::solve::state::NodeState;
 use serde::{Deserialize, Serialize};
 
 /// Estimated norm of a scaled inverse from which on an assumption counts as singular.
@@ -24,6 +26,7 @@ pub struct Frozen {
     /// Sizes of forces and lengths, to compare margins of either.
     pub force: f64,
     pub length: f64,
+    pub settings: Settings,
 }
 
 /// What a slave node brings into the frozen problem.
@@ -31,18 +34,12 @@ pub struct Frozen {
 pub struct FrozenNode {
     /// Slave number in the scene.
     pub slave: usize,
-    /// Gap at the start of the major iteration; infinite past the ends of all surfaces.
-    pub gap: f64,
-    /// Total forces there.
-    pub f_n: f64,
-    pub f_t: f64,
-    /// Slip since the start of the increment, which sticking takes back.
-    pub slip: f64,
-    pub friction: Friction,
-    /// Whether any unknown takes part in its normal and tangential motion; where not, its support carries the force.
-    pub moves: [bool; 2],
+    pub site: Site,
     /// Relative motion, along n and t, that no unknown takes part in.
     pub prescribed: [f64; 2],
+    pub friction: Friction,
+    /// What the node brings into the next minor iteration.
+    pub state: NodeState,
 }
 
 /// What a node is assumed to do.
@@ -93,7 +90,7 @@ impl Assumed {
 impl FrozenNode {
     /// What the node can be assumed to do: without friction, sliding has no direction and sticking no sense.
     pub fn choices(&self) -> &'static [Assumed] {
-        if self.gap.is_infinite() {
+        if self.site.gap.is_infinite() {
             &[Assumed::Free]
         } else if self.friction.is_smooth() {
             &[Assumed::Free, Assumed::Plus]
@@ -102,27 +99,24 @@ impl FrozenNode {
         }
     }
 
-    fn equations(&self, assumed: Assumed) -> [Equation; 2] {
+    fn equations(&self, assumed: Assumed, settings: &Settings) -> [Equation; 2] {
         let known = Known {
-            gap: self.gap,
+            gap: if self.site.gap.is_finite() {
+                self.site.gap
+            } else {
+                0.0
+            },
             ratio: 0.0,
-            slip: self.slip,
-            f_n: self.f_n,
-            f_t: self.f_t,
+            slip: self.state.slipped(settings),
+            f_n: self.state.f_n,
+            f_t: self.state.f_t,
             limit: Limit::Consistent {
                 sign: assumed.sign(),
                 coefficient: self.friction.coefficient(),
                 cohesion: self.friction.cohesion,
             },
         };
-        let mut rows = equations(assumed.mode(), &known);
-        let forces = [self.f_n, self.f_t];
-        for k in 0..2 {
-            if rows[k].motion != Motion::None && !self.moves[k] {
-                rows[k] = gone((1 - k) as f64, k as f64, forces[k]);
-            }
-        }
-        rows
+        supported(assumed.mode(), &known, self.site.moves)
     }
 }
 
@@ -214,7 +208,11 @@ impl<'a> Trials<'a> {
     pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
         let (problem, relation) = (self.problem, &self.problem.relation);
         for (s, (node, &assumed)) in problem.nodes.iter().zip(assumed).enumerate() {
-            for (k, row) in node.equations(assumed).iter().enumerate() {
+            for (k, row) in node
+                .equations(assumed, &problem.settings)
+                .iter()
+                .enumerate()
+            {
                 self.z[2 * s + k] =
                     relation.place_row(s, k, row, node.prescribed, &mut self.matrix);
             }
@@ -226,7 +224,7 @@ impl<'a> Trials<'a> {
         let nodes = problem.nodes.iter().zip(assumed).enumerate();
         let of_node = |(s, (node, &assumed)): (usize, (&FrozenNode, &Assumed))| {
             let answer = relation.answer(&self.z, s, node.prescribed);
-            judge(node, assumed, answer, problem.force, problem.length)
+            judge(problem, node, assumed, answer)
         };
         Some(Answer {
             nodes: nodes.map(of_node).collect(),
@@ -236,25 +234,24 @@ impl<'a> Trials<'a> {
 
 /// What force and motion increments mean for a node that was assumed to do this.
 fn judge(
+    problem: &Frozen,
     node: &FrozenNode,
     assumed: Assumed,
     [force, motion]: [[f64; 2]; 2],
-    force_size: f64,
-    length_size: f64,
 ) -> NodeAnswer {
-    let (f_n, f_t) = (node.f_n + force[0], node.f_t + force[1]);
+    let (f_n, f_t) = (node.state.f_n + force[0], node.state.f_t + force[1]);
     let limit = f_n.abs() * node.friction.coefficient() + node.friction.cohesion;
-    let gap = node.gap - motion[0];
-    let slip = node.slip + motion[1];
+    let gap = node.site.gap - motion[0];
+    let slip = node.state.slipped(&problem.settings) + motion[1];
     let of_force = |condition, value: f64| Margin {
         condition,
         value,
-        relative: value / force_size,
+        relative: value / problem.force,
     };
     let of_length = |condition, value: f64| Margin {
         condition,
         value,
-        relative: value / length_size,
+        relative: value / problem.length,
     };
     let pressed = of_force(Condition::NoTension, f_n);
     let worst = match assumed {

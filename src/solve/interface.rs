@@ -38,7 +38,6 @@ pub struct Interface {
     pub moves: [bool; 2],
     /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.
     pub prescribed: [f64; 2],
-    pub carried: [bool; 2],
 }
 
 impl Interface {

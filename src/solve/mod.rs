@@ -3,6 +3,7 @@
 //! - [`state`]: plain data from which everything goes on; [`stepper`]: the state machine over it.
 //! - [`system`]: the linearised equations of a major iteration; `interface`: a slave node's part of them; `bodies`: the
 //!   bodies condensed; `condensed`: the interface alone; [`singular`]: why there is no solution.
+//! - [`minor`]: a minor iteration at one slave node; [`frozen`]: the interface problem by itself.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
 mod bodies;
@@ -11,6 +12,7 @@ pub mod event;
 pub mod frozen;
 mod interface;
 pub mod intervene;
+pub mod minor;
 pub mod singular;
 pub mod state;
 pub mod stepper;

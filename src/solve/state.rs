@@ -5,6 +5,7 @@
 
 use crate::contact::projection::Spot;
 use crate::fem::assembly::history_len;
+use crate::scene::spec::{SlipCount, Sticking};
 use crate::scene::{Friction, Mode, Model, Settings};
 use crate::solve::event::{Failure, Forced, Position};
 use serde::{Deserialize, Serialize};
@@ -68,6 +69,13 @@ pub struct NodeState {
     pub sign: f64,
     /// Slip counted up to the start of the present major iteration.
     pub slip: f64,
+    /// Where on the master it stuck, or last was when an increment was accepted; none while it is free
+    /// ([`crate::contact::anchor`]).
+    #[serde(default)]
+    pub anchor: Option<Spot>,
+    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t.
+    #[serde(default)]
+    pub drift: f64,
     /// Ratio ρ of tangential to normal travel where the node touched in the present major iteration; else 0.
     pub ratio: f64,
     /// Tangential over normal travel in the last minor iteration: the ρ that the node would take, should it touch.
@@ -246,10 +254,22 @@ impl NodeState {
             t_max: 0.0,
             sign: 0.0,
             slip: 0.0,
+            anchor: None,
+            drift: 0.0,
             ratio: 0.0,
             travel: 0.0,
             spot: None,
             normal: [0.0, 1.0],
+        }
+    }
+
+    /// What it has slipped up to the start of the present major iteration, and what sticking takes back: counted, or
+    /// measured from its anchor.
+    pub fn slipped(&self, settings: &Settings) -> f64 {
+        match (settings.sticking, settings.slip) {
+            (Sticking::Anchored, _) => self.drift,
+            (Sticking::Increments, SlipCount::Increment) => self.slip,
+            (Sticking::Increments, SlipCount::Major) => 0.0,
         }
     }
 

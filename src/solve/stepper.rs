@@ -8,17 +8,16 @@
 //! until residual and interface conditions are within the tolerance; then the increment is accepted
 //! ```
 
-use crate::contact::decision::{Numbers, Rule, Ties, decide};
+use crate::contact::anchor::{distance, pierced};
+use crate::contact::decision::Ties;
 use crate::contact::projection::project;
-use crate::contact::table1::{direction, t_max};
-use crate::scene::model::Watched;
-use crate::scene::spec::{AtCycle, AtLimit, Axis, FrictionLimit, ResidualMethod, SlipCount};
+use crate::scene::model::{Surface, Watched};
+use crate::scene::spec::{AtCycle, AtLimit, Axis, ResidualMethod, SlipCount, Sticking};
 use crate::scene::{Mode, Model, spec};
-use crate::solve::event::{
-    Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular,
-};
+use crate::solve::event::{Cycle, Event, Failure, NodeRecord, Norms, Outcome, Position, Singular};
 use crate::solve::frozen::Frozen;
 use crate::solve::intervene::Intervention;
+use crate::solve::minor::{carried, judge};
 use crate::solve::singular;
 use crate::solve::state::{IncrementStart, NodeState, State, Status};
 use crate::solve::system::{Solved, System};
@@ -171,7 +170,8 @@ impl Stepper {
         let tolerance = self.state.controls.settings.tolerance * self.model.length;
         (0..self.state.nodes.len()).find_map(|slave| {
             let gap = self.system.footing(slave)?.gap;
-            let stuck = self.system.carried(slave)[0] && gap < -tolerance;
+            let stuck = carried(self.state.nodes[slave].mode, self.system.moves(slave))[0]
+                && gap < -tolerance;
             stuck.then_some(Failure::Jammed { slave, gap })
         })
     }
@@ -202,99 +202,16 @@ impl Stepper {
     fn judge(&mut self) -> bool {
         let ties = self.ties();
         let mut settled = true;
-        for slave in 0..self.state.nodes.len() {
-            let before = self.state.nodes[slave];
-            let record = self.record(slave, &ties);
-            let node = &mut self.state.nodes[slave];
-            let motion = self.system.relative_motion(slave);
-            node.travel = if motion[0].abs() > f64::MIN_POSITIVE {
-                motion[1] / motion[0]
-            } else {
-                0.0
-            };
-            node.sign = direction(
-                record.f_t,
-                ties.force,
-                sense(&before, &record, motion),
-                ties.length,
-                before.sign,
-            );
-            node.t_max = t_max(&self.state.controls.friction[slave], record.f_n, node.sign);
-            node.mode = record.decision.next;
-            if let Forced::Once(_) = node.forced {
-                node.forced = Forced::No;
-            }
-            leave_or_enter(node, before.mode);
-            let lag = before.mode == Mode::Sliding
-                && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
-            settled &= !record.decision.changes() && !lag;
-            self.event.nodes.push(NodeRecord {
-                t_max: node.t_max,
-                ..record
-            });
+        let controls = self.state.controls.clone();
+        for (slave, node) in self.state.nodes.iter_mut().enumerate() {
+            let site = self.system.site(slave, node);
+            let given = self.system.given(slave);
+            let friction = &controls.friction[slave];
+            let (record, still) = judge(node, &site, given, friction, &controls.settings, &ties);
+            settled &= still;
+            self.event.nodes.push(record);
         }
         settled
-    }
-
-    fn record(&self, slave: usize, ties: &Ties) -> NodeRecord {
-        let node = &self.state.nodes[slave];
-        let friction = &self.state.controls.friction[slave];
-        let settings = &self.state.controls.settings;
-        let [d_n, d_t] = self.system.force_increment(slave);
-        let (f_n, f_t) = (node.f_n + d_n, node.f_t + d_t);
-        let motion = self.system.relative_motion(slave);
-        let footing = self.system.footing(slave);
-        let start_gap = footing.map_or(f64::INFINITY, |f| f.gap);
-        let here = motion[1]
-            - if node.ratio == 0.0 {
-                0.0
-            } else {
-                start_gap * node.ratio
-            };
-        let slip = match (node.mode, settings.slip) {
-            (Mode::Free, _) => 0.0,
-            (_, SlipCount::Increment) => node.slip + here,
-            (_, SlipCount::Major) => motion[1],
-        };
-        let sign = direction(f_t, ties.force, slip, ties.length, node.sign);
-        let limit = t_max(friction, f_n, sign);
-        let numbers = Numbers {
-            mode: node.mode,
-            gap: start_gap - motion[0],
-            f_n,
-            f_t,
-            t_max: limit,
-            slip,
-            smooth: friction.is_smooth(),
-        };
-        let mut decision = decide(&numbers, ties);
-        if footing.is_none() {
-            decision.rule = Rule::OffSurface;
-            (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
-        } else if let Forced::Held(mode) = node.forced {
-            decision.next = mode;
-            if decision.wanted != mode {
-                decision.rule = Rule::Held;
-            }
-        }
-        NodeRecord {
-            decision,
-            forced: node.forced,
-            gap: numbers.gap,
-            f_n,
-            f_t,
-            t_max: limit,
-            t_max_used: match (node.mode, settings.t_max) {
-                (Mode::Sliding, FrictionLimit::Lagged) => node.t_max,
-                (Mode::Sliding, FrictionLimit::Consistent) => f_t,
-                _ => limit,
-            },
-            slip,
-            spot: node.spot,
-            normal: footing.map_or(node.normal, |f| f.normal),
-            foot: footing.map_or([f64::NAN; 2], |f| f.foot),
-            carried: self.system.carried(slave),
-        }
     }
 
     /// The minor loop has not settled: look for a cycle and at the limit, and count on.
@@ -464,6 +381,15 @@ impl Stepper {
                 });
                 node.slip + motion[1] - touched
             };
+            if record.decision.before != Mode::Free && node.anchor.is_none() {
+                node.anchor = node
+                    .spot
+                    .zip(self.system.footing(s))
+                    .and_then(|(spot, at)| {
+                        let positions = &self.system.positions;
+                        pierced(&self.model.surfaces, spot, at, node.ratio, positions)
+                    });
+            }
             node.ratio = 0.0;
             node.travel = 0.0;
         }
@@ -480,6 +406,9 @@ impl Stepper {
     fn find_spots(&mut self) {
         self.system.place(&self.model, &self.state.u);
         let positions = &self.system.positions;
+        // Where slip is counted anew in every major iteration, so is what to stick to.
+        let settings = &self.state.controls.settings;
+        let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
             let at = positions[slave.node];
             node.spot = project(
@@ -507,6 +436,10 @@ impl Stepper {
             if node.mode == Mode::Free {
                 (node.f_n, node.f_t) = (0.0, 0.0);
             }
+            if anew && node.mode == Mode::Sliding {
+                node.anchor = node.spot;
+            }
+            find_anchor(node, &self.model.surfaces, positions);
         }
         self.linearised = false;
     }
@@ -549,6 +482,9 @@ impl Stepper {
         let unsettled = self.state.unsettled;
         for node in &mut self.state.nodes {
             node.slip = 0.0;
+            if node.mode == Mode::Sliding {
+                (node.anchor, node.drift) = (node.spot, 0.0);
+            }
         }
         let mut leg = self.state.start.leg;
         while leg + 1 < self.model.path.len() && self.state.load_factor == self.model.path[leg + 1]
@@ -598,6 +534,14 @@ impl Stepper {
                     let k = if *axis == Axis::X { 0 } else { 1 };
                     slaves.iter().map(|&s| self.state.nodes[s].force()[k]).sum()
                 }
+                Watched::Drift { slaves } => slaves.iter().fold(0.0, |largest: f64, &s| {
+                    let drift = self.state.nodes[s].drift;
+                    if drift.abs() > largest.abs() {
+                        drift
+                    } else {
+                        largest
+                    }
+                }),
                 Watched::Reaction { dof } => {
                     self.system.nodal_force(*dof) - self.system.interaction(*dof)
                 }
@@ -606,20 +550,16 @@ impl Stepper {
     }
 }
 
-/// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free.
-fn sense(before: &NodeState, record: &NodeRecord, motion: [f64; 2]) -> f64 {
-    if before.mode == Mode::Free {
-        motion[1]
-    } else {
-        record.slip
-    }
-}
-
-/// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens.
-fn leave_or_enter(node: &mut NodeState, before: Mode) {
-    match (before, node.mode) {
-        (_, Mode::Free) => node.ratio = 0.0,
-        (Mode::Free, _) => node.ratio = node.travel,
-        _ => {}
-    }
+/// Gives a touching node that has no anchor one where it stands, takes it from a free one, and measures the drift. A node
+/// that has come to another surface is anchored anew there.
+fn find_anchor(node: &mut NodeState, surfaces: &[Surface], positions: &[[f64; 2]]) {
+    let (Some(spot), true) = (node.spot, node.mode != Mode::Free) else {
+        (node.anchor, node.drift) = (None, 0.0);
+        return;
+    };
+    let anchor = node.anchor.filter(|a| a.surface == spot.surface);
+    node.anchor = anchor.or(Some(spot));
+    node.drift = anchor.map_or(0.0, |anchor| {
+        distance(&surfaces[spot.surface], spot, anchor, positions)
+    });
 }

@@ -5,18 +5,19 @@
 //! iteration. After a first pass neither allocates, unless a slave node finds another deformable master element.
 
 use crate::contact::projection::{Footing, footing, tangent};
-use crate::contact::table1::{Equation, Known, Limit, Motion, equations, gone};
+use crate::contact::table1::{Equation, Motion};
 use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
 use crate::scene::model::{Body, BodyKind, Model};
-use crate::scene::spec::{Component, FrictionLimit, Geometry, SlipCount, Solver};
+use crate::scene::spec::{Component, Geometry, Solver, Sticking};
 use crate::solve::bodies::{Bodies, condensable};
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
 use crate::solve::frozen::{Frozen, FrozenNode};
 use crate::solve::interface::Interface;
+use crate::solve::minor::{self, Given, Site};
 use crate::solve::state::{NodeState, State};
 use std::sync::Arc;
 
@@ -451,7 +452,12 @@ impl System {
                 Mode::Sliding => (node.f_t - node.t_max).abs(),
                 _ => 0.0,
             };
-            worst = worst.max(length / model.length);
+            let anchored = state.controls.settings.sticking == Sticking::Anchored;
+            let drift = match node.mode {
+                Mode::Fixed if anchored && self.interfaces[s].moves[1] => node.drift.abs(),
+                _ => 0.0,
+            };
+            worst = worst.max(length.max(drift) / model.length);
             if force > 0.0 {
                 worst = worst.max(force / self.norms.scale);
             }
@@ -474,14 +480,9 @@ impl System {
         self.interfaces[slave].footing.as_ref()
     }
 
-    /// Which of a slave node's force components were left to its support in the last solve.
-    pub fn carried(&self, slave: usize) -> [bool; 2] {
-        self.interfaces[slave].carried
-    }
-
-    /// Whether any unknown takes part in a slave node's normal motion.
-    pub fn moves_normally(&self, slave: usize) -> bool {
-        self.interfaces[slave].moves[0]
+    /// Whether any unknown takes part in a slave node's normal and tangential motion.
+    pub fn moves(&self, slave: usize) -> [bool; 2] {
+        self.interfaces[slave].moves
     }
 
     /// Internal force less applied load at a degree of freedom: what support or surface must give there.
@@ -605,19 +606,17 @@ impl System {
             self.condensed.fresh = true;
         }
         let relation = self.condensed.relation.clone();
-        let nodes = state.nodes.iter().enumerate().map(|(slave, node)| {
-            let interface = &self.interfaces[slave];
-            FrozenNode {
+        let nodes = state
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(slave, node)| FrozenNode {
                 slave,
-                gap: interface.footing.map_or(f64::INFINITY, |f| f.gap),
-                f_n: node.f_n,
-                f_t: node.f_t,
-                slip: node.slip,
+                site: self.site(slave, node),
+                prescribed: self.frames[slave].map(|d| dot(d, self.interfaces[slave].prescribed)),
                 friction: state.controls.friction[slave],
-                moves: interface.moves,
-                prescribed: self.frames[slave].map(|d| dot(d, interface.prescribed)),
-            }
-        });
+                state: *node,
+            });
         let largest = relation.start.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         Ok(Frozen {
             nodes: nodes.collect(),
@@ -627,6 +626,7 @@ impl System {
                 largest
             },
             length: model.length,
+            settings: state.controls.settings,
             relation,
         })
     }
@@ -741,41 +741,31 @@ impl System {
         }
     }
 
-    /// Table 1's rows of a node; a row in which nothing can move is given to the support.
-    fn rows(&mut self, s: usize, state: &State) -> [Equation; 2] {
-        let (node, interface) = (&state.nodes[s], &mut self.interfaces[s]);
-        let friction = &state.controls.friction[s];
-        let limit = match state.controls.settings.t_max {
-            FrictionLimit::Lagged => Limit::Lagged(node.t_max),
-            FrictionLimit::Consistent => Limit::Consistent {
-                sign: node.sign,
-                coefficient: friction.coefficient(),
-                cohesion: friction.cohesion,
-            },
-        };
-        let gap = interface.footing.map_or(0.0, |f| f.gap);
-        let slip = match state.controls.settings.slip {
-            SlipCount::Increment => node.slip,
-            SlipCount::Major => 0.0,
-        };
-        let known = Known {
-            gap,
-            ratio: node.ratio,
-            slip,
-            f_n: node.f_n,
-            f_t: node.f_t,
-            limit,
-        };
-        let mut rows = equations(node.mode, &known);
-        let forces = [node.f_n, node.f_t];
-        interface.carried = [false; 2];
-        for k in 0..2 {
-            if rows[k].motion != Motion::None && !interface.moves[k] {
-                interface.carried[k] = true;
-                rows[k] = gone((1 - k) as f64, k as f64, forces[k]);
-            }
+    /// Table 1's rows of a node.
+    fn rows(&self, s: usize, state: &State) -> [Equation; 2] {
+        let controls = &state.controls;
+        let (node, site) = (&state.nodes[s], self.site(s, &state.nodes[s]));
+        minor::rows(node, &site, &controls.friction[s], &controls.settings)
+    }
+
+    /// A slave node's surroundings in the last linearisation.
+    pub fn site(&self, slave: usize, node: &NodeState) -> Site {
+        let interface = &self.interfaces[slave];
+        let footing = interface.footing.as_ref();
+        Site {
+            gap: footing.map_or(f64::INFINITY, |f| f.gap),
+            normal: footing.map_or(node.normal, |f| f.normal),
+            foot: footing.map_or([f64::NAN; 2], |f| f.foot),
+            moves: interface.moves,
         }
-        rows
+    }
+
+    /// What the last solve gave at a slave node.
+    pub fn given(&self, slave: usize) -> Given {
+        Given {
+            force: self.condensed.forces[slave],
+            motion: self.condensed.motions[slave],
+        }
     }
 
     /// Increments ΔF_n, ΔF_t of a slave node in the last solve.

@@ -26,6 +26,9 @@ const STUDIES: &[Builtin] = studies![
     "fig-11-roles",
     "geometry-01",
     "geometry-02",
+    "residual-methods",
+    "t-max-friction",
+    "t-max-osc",
 ];
 
 /// All built-in studies, in the order in which they are offered.

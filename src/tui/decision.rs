@@ -90,7 +90,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 }
 
 /// Lines that [`measured`] takes.
-const MEASURED: usize = 12;
+const MEASURED: usize = 13;
 
 /// All that the minor iteration found at the node, with a word on each, for the screen that has room for it.
 fn measured(record: &NodeRecord, view: &View, theme: &Theme) -> Vec<Line<'static>> {
@@ -152,6 +152,11 @@ fn measured(record: &NodeRecord, view: &View, theme: &Theme) -> Vec<Line<'static
             "slip",
             signed(record.slip),
             "u_tS* − u_tS, as the settings count it",
+        ),
+        (
+            "drift",
+            signed(record.drift),
+            "along the surface, from the point where it stuck or where the increment found it",
         ),
         ("S*", place, ""),
         ("at", pair(record.foot), ""),

@@ -101,22 +101,36 @@ fn watched(
             }
             Ok(Watched::Reaction { dof })
         }
-        Quantity::Contact { node, component } => {
-            let slaves = match node {
-                Some(name) => vec![slave_number(here, name, node_of(name)?, names, slaves)?],
-                None if slaves.is_empty() => {
-                    return Err(Fault::new(
-                        here.clone(),
-                        "the scene has no slave nodes, and so no contact force",
-                    ));
-                }
-                None => (0..slaves.len()).collect(),
-            };
-            Ok(Watched::Contact {
-                slaves,
-                axis: *component,
-            })
+        Quantity::Contact { node, component } => Ok(Watched::Contact {
+            slaves: slave_numbers(here, node.as_deref(), "contact force", names, slaves)?,
+            axis: *component,
+        }),
+        Quantity::Drift { node } => Ok(Watched::Drift {
+            slaves: slave_numbers(here, node.as_deref(), "drift", names, slaves)?,
+        }),
+    }
+}
+
+/// The slave of that name, or all of them; `what` says what there is none of without any.
+fn slave_numbers(
+    here: &Path,
+    name: Option<&str>,
+    what: &str,
+    names: &Names,
+    slaves: &[Slave],
+) -> Result<Vec<usize>, Fault> {
+    match name {
+        Some(name) => {
+            let node = names
+                .node(name)
+                .map_err(|message| Fault::new(here.then("node"), message))?;
+            Ok(vec![slave_number(here, name, node, names, slaves)?])
         }
+        None if slaves.is_empty() => Err(Fault::new(
+            here.clone(),
+            format!("the scene has no slave nodes, and so no {what}"),
+        )),
+        None => Ok((0..slaves.len()).collect()),
     }
 }
 

@@ -1,0 +1,201 @@
+//! One minor iteration at one slave node: Table 1's equations before the solve, Table 2's verdict after it.
+//!
+//! Pure functions of what the node brings and what the solve gave, so that a minor iteration on a frozen interface
+//! problem alone ([`super::frozen`]) is the same as one of the stepper.
+
+use crate::contact::decision::{Numbers, Rule, Ties, decide};
+use crate::contact::table1::{Equation, Known, Limit, direction, equations, gone, t_max};
+use crate::scene::spec::{FrictionLimit, SlipCount};
+use crate::scene::{Friction, Mode, Settings};
+use crate::solve::event::{Forced, NodeRecord};
+use crate::solve::state::NodeState;
+use serde::{Deserialize, Serialize};
+
+/// A slave node's surroundings, frozen during a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Site {
+    /// Gap; infinite past the ends of all surfaces.
+    pub gap: f64,
+    /// Outward normal at S*.
+    pub normal: [f64; 2],
+    /// Position of S*.
+    pub foot: [f64; 2],
+    /// Whether any unknown takes part in the normal and in the tangential motion; where not, the support carries the
+    /// force.
+    pub moves: [bool; 2],
+}
+
+/// What a solve gave at a slave node: increments of force, and motion of S* relative to S, normal and tangential.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Given {
+    pub force: [f64; 2],
+    pub motion: [f64; 2],
+}
+
+/// Table 1's rows of a node; a row in which nothing can move is given to the support ([`carried`]).
+pub fn rows(
+    node: &NodeState,
+    site: &Site,
+    friction: &Friction,
+    settings: &Settings,
+) -> [Equation; 2] {
+    let limit = match settings.t_max {
+        FrictionLimit::Lagged => Limit::Lagged(node.t_max),
+        FrictionLimit::Consistent => Limit::Consistent {
+            sign: node.sign,
+            coefficient: friction.coefficient(),
+            cohesion: friction.cohesion,
+        },
+    };
+    let known = Known {
+        gap: if site.gap.is_finite() { site.gap } else { 0.0 },
+        ratio: node.ratio,
+        slip: node.slipped(settings),
+        f_n: node.f_n,
+        f_t: node.f_t,
+        limit,
+    };
+    supported(node.mode, &known, site.moves)
+}
+
+/// Table 1's equations, those in which nothing can move given to the support.
+pub(super) fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equation; 2] {
+    let [mut normal, mut tangential] = equations(mode, known);
+    let carried = carried(mode, moves);
+    if carried[0] {
+        normal = gone(1.0, 0.0, known.f_n);
+    }
+    if carried[1] {
+        tangential = gone(0.0, 1.0, known.f_t);
+    }
+    [normal, tangential]
+}
+
+/// Which force components a mode asks the node to hold a motion with that no unknown takes part in (normal, tangential):
+/// they are left to the support.
+pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
+    [
+        mode != Mode::Free && !moves[0],
+        mode == Mode::Fixed && !moves[1],
+    ]
+}
+
+/// Checks a node's mode against Table 2 and leaves that of the next minor iteration in it; returns the record and
+/// whether mode and T_max have settled.
+pub fn judge(
+    node: &mut NodeState,
+    site: &Site,
+    given: Given,
+    friction: &Friction,
+    settings: &Settings,
+    ties: &Ties,
+) -> (NodeRecord, bool) {
+    let before = *node;
+    let record = record(&before, site, given, friction, settings, ties);
+    let [normal, tangential] = given.motion;
+    node.travel = if normal.abs() > f64::MIN_POSITIVE {
+        tangential / normal
+    } else {
+        0.0
+    };
+    let sense = sense(&before, &record, tangential);
+    node.sign = direction(record.f_t, ties.force, sense, ties.length, before.sign);
+    node.t_max = t_max(friction, record.f_n, node.sign);
+    node.mode = record.decision.next;
+    if let Forced::Once(_) = node.forced {
+        node.forced = Forced::No;
+    }
+    leave_or_enter(node, before.mode);
+    let lag = before.mode == Mode::Sliding
+        && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
+    let settled = !record.decision.changes() && !lag;
+    let record = NodeRecord {
+        t_max: node.t_max,
+        ..record
+    };
+    (record, settled)
+}
+
+fn record(
+    node: &NodeState,
+    site: &Site,
+    given: Given,
+    friction: &Friction,
+    settings: &Settings,
+    ties: &Ties,
+) -> NodeRecord {
+    let (f_n, f_t) = (node.f_n + given.force[0], node.f_t + given.force[1]);
+    let [normal, tangential] = given.motion;
+    let here = tangential
+        - if node.ratio == 0.0 {
+            0.0
+        } else {
+            site.gap * node.ratio
+        };
+    let slip = match (node.mode, settings.slip) {
+        (Mode::Free, _) => 0.0,
+        (_, SlipCount::Increment) => node.slipped(settings) + here,
+        (_, SlipCount::Major) => tangential,
+    };
+    let sign = direction(f_t, ties.force, slip, ties.length, node.sign);
+    let limit = t_max(friction, f_n, sign);
+    let numbers = Numbers {
+        mode: node.mode,
+        gap: site.gap - normal,
+        f_n,
+        f_t,
+        t_max: limit,
+        slip,
+        smooth: friction.is_smooth(),
+    };
+    let mut decision = decide(&numbers, ties);
+    if site.gap.is_infinite() {
+        decision.rule = Rule::OffSurface;
+        (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
+    } else if let Forced::Held(mode) = node.forced {
+        decision.next = mode;
+        if decision.wanted != mode {
+            decision.rule = Rule::Held;
+        }
+    }
+    NodeRecord {
+        decision,
+        forced: node.forced,
+        gap: numbers.gap,
+        f_n,
+        f_t,
+        t_max: limit,
+        t_max_used: match (node.mode, settings.t_max) {
+            (Mode::Sliding, FrictionLimit::Lagged) => node.t_max,
+            (Mode::Sliding, FrictionLimit::Consistent) => f_t,
+            _ => limit,
+        },
+        slip,
+        drift: match node.mode {
+            Mode::Free => 0.0,
+            _ => node.drift + here,
+        },
+        spot: node.spot,
+        normal: site.normal,
+        foot: site.foot,
+        carried: carried(node.mode, site.moves),
+    }
+}
+
+/// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free.
+fn sense(before: &NodeState, record: &NodeRecord, tangential: f64) -> f64 {
+    if before.mode == Mode::Free {
+        tangential
+    } else {
+        record.slip
+    }
+}
+
+/// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens.
+fn leave_or_enter(node: &mut NodeState, before: Mode) {
+    match (before, node.mode) {
+        (_, Mode::Free) => node.ratio = 0.0,
+        (Mode::Free, _) => node.ratio = node.travel,
+        _ => {}
+    }
+}
