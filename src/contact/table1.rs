@@ -13,7 +13,8 @@
 //! ```
 //!
 //! A node that slid in an earlier major iteration of the increment and is then found to stick did not slip at all:
-//! unless slip is counted by the paper's reading, over a single major iteration, sticking takes that slip back.
+//! sticking takes that slip back, as measured from the point where it stuck ([`crate::contact::anchor`]) or as counted;
+//! in the paper's reading, counted over a single major iteration, there is nothing to take back.
 
 use crate::scene::{Friction, Mode};
 
@@ -44,7 +45,7 @@ pub struct Known {
     pub gap: f64,
     /// Ratio ρ of tangential to normal travel, where the node touched in this major iteration; else 0.
     pub ratio: f64,
-    /// Slip already made that sticking must take back (0 in the paper's reading): length.
+    /// Slip already made that sticking must take back (length): the drift from the anchor, or what was counted.
     pub slip: f64,
     /// Total forces F_n^(k−1), F_t^(k−1).
     pub f_n: f64,
