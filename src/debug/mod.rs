@@ -6,6 +6,7 @@
 
 pub mod census;
 pub mod command;
+pub mod core;
 pub mod differences;
 pub mod files;
 pub mod report;

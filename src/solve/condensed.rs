@@ -62,15 +62,25 @@ impl Relation {
 
     /// ΔF_n, ΔF_t of a slave node, and its normal and tangential relative motion, for these z.
     pub fn answer(&self, z: &[f64], slave: usize, prescribed: [f64; 2]) -> [[f64; 2]; 2] {
-        let (mut forces, mut motions) = ([0.0; 2], prescribed);
+        let [mut force, mut motion] = self.change(z, slave);
+        for component in 0..2 {
+            let start = self.start[2 * slave + component];
+            force[component] += start;
+            motion[component] += start / self.stiffness + prescribed[component];
+        }
+        [force, motion]
+    }
+
+    /// Change of the same by these z.
+    pub fn change(&self, z: &[f64], slave: usize) -> [[f64; 2]; 2] {
+        let (mut force, mut motion) = ([0.0; 2], [0.0; 2]);
         for component in 0..2 {
             let row = 2 * slave + component;
             let answers = self.response.iter().skip(row).step_by(self.count());
-            let change: f64 = answers.zip(z).map(|(response, z)| response * z).sum();
-            forces[component] = self.start[row] + change;
-            motions[component] += z[row] + forces[component] / self.stiffness;
+            force[component] = answers.zip(z).map(|(response, z)| response * z).sum();
+            motion[component] = z[row] + force[component] / self.stiffness;
         }
-        [forces, motions]
+        [force, motion]
     }
 }
 

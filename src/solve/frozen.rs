@@ -6,11 +6,13 @@
 //! limit, or slips against friction at the limit. This module solves for one assumption of what every node does, and
 //! says how far the answer is from obeying; [`crate::debug::census`] tries them all.
 
+use crate::contact::decision::Ties;
 use crate::contact::table1::{Equation, Known, Limit};
 use crate::linalg::DenseFactors;
-use crate::scene::{Friction, Mode, Settings};
+use crate::scene::{Friction, Mode, Settings, spec};
 use crate::solve::condensed::Relation;
-use crate::solve::minor::{Site, supported};
+use crate::solve::event::NodeRecord;
+use crate::solve::minor::{self, Given, Site, supported};
 use crate::solve::state::NodeState;
 use serde::{Deserialize, Serialize};
 
@@ -184,7 +186,7 @@ impl Answer {
     }
 }
 
-/// Solves one assumption after the other, with room made once.
+/// Solves one set of equations after the other, with room made once.
 pub struct Trials<'a> {
     problem: &'a Frozen,
     matrix: Vec<f64>,
@@ -206,13 +208,63 @@ impl<'a> Trials<'a> {
 
     /// The answer to an assumption, one entry a node; none where its equations are singular.
     pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
-        let (problem, relation) = (self.problem, &self.problem.relation);
-        for (s, (node, &assumed)) in problem.nodes.iter().zip(assumed).enumerate() {
-            for (k, row) in node
-                .equations(assumed, &problem.settings)
-                .iter()
-                .enumerate()
-            {
+        let problem = self.problem;
+        let given = self.solve(|s, node| node.equations(assumed[s], &problem.settings))?;
+        let nodes = problem.nodes.iter().zip(assumed).zip(given);
+        Some(Answer {
+            nodes: nodes
+                .map(|((node, &assumed), given)| judge(problem, node, assumed, given))
+                .collect(),
+        })
+    }
+
+    /// One minor iteration: solves for what the nodes bring, and leaves in them what they bring into the next. Returns
+    /// what it did at each node, and whether all has settled; none where the equations are singular.
+    pub fn minor(&mut self, nodes: &mut [NodeState]) -> Option<(Vec<NodeRecord>, bool)> {
+        let problem = self.problem;
+        let given = self.given(nodes)?;
+        let forces = nodes.iter().zip(&given).flat_map(|(node, given)| {
+            [node.f_n + given.force[0], node.f_t + given.force[1]].map(f64::abs)
+        });
+        let ties = problem.ties(forces.fold(problem.force, f64::max));
+        let mut settled = true;
+        let all = nodes.iter_mut().zip(&problem.nodes).zip(given);
+        let records = all.map(|((state, node), given)| {
+            let settings = &problem.settings;
+            let (record, still) =
+                minor::judge(state, &node.site, given, &node.friction, settings, &ties);
+            settled &= still;
+            record
+        });
+        Some((records.collect(), settled))
+    }
+
+    /// What a minor iteration gives for what the nodes bring.
+    pub fn given(&mut self, nodes: &[NodeState]) -> Option<Vec<Given>> {
+        let settings = self.problem.settings;
+        self.solve(|s, node| minor::rows(&nodes[s], &node.site, &node.friction, &settings))
+    }
+
+    /// How the answer to the last solve's equations changes by the right-hand side of equation k of a node.
+    pub fn answers_to(&mut self, slave: usize, k: usize) -> Option<Vec<Given>> {
+        self.z.fill(0.0);
+        self.z[2 * slave + k] = 1.0;
+        self.dense.solve(&mut self.z).ok()?;
+        let relation = &self.problem.relation;
+        let change = |s: usize| {
+            let [force, motion] = relation.change(&self.z, s);
+            Given { force, motion }
+        };
+        Some((0..self.problem.nodes.len()).map(change).collect())
+    }
+
+    fn solve(
+        &mut self,
+        equations: impl Fn(usize, &FrozenNode) -> [Equation; 2],
+    ) -> Option<Vec<Given>> {
+        let relation = &self.problem.relation;
+        for (s, node) in self.problem.nodes.iter().enumerate() {
+            for (k, row) in equations(s, node).iter().enumerate() {
                 self.z[2 * s + k] =
                     relation.place_row(s, k, row, node.prescribed, &mut self.matrix);
             }
@@ -221,13 +273,87 @@ impl<'a> Trials<'a> {
         if self.dense.inverse_norm() > SINGULAR || self.dense.solve(&mut self.z).is_err() {
             return None;
         }
-        let nodes = problem.nodes.iter().zip(assumed).enumerate();
-        let of_node = |(s, (node, &assumed)): (usize, (&FrozenNode, &Assumed))| {
-            let answer = relation.answer(&self.z, s, node.prescribed);
-            judge(problem, node, assumed, answer)
+        let nodes = self.problem.nodes.iter().enumerate();
+        let given = |(s, node): (usize, &FrozenNode)| {
+            let [force, motion] = relation.answer(&self.z, s, node.prescribed);
+            Given { force, motion }
         };
-        Some(Answer {
-            nodes: nodes.map(of_node).collect(),
+        Some(nodes.map(given).collect())
+    }
+}
+
+impl Frozen {
+    /// What each node brings into the next minor iteration.
+    pub fn states(&self) -> Vec<NodeState> {
+        self.nodes.iter().map(|node| node.state).collect()
+    }
+
+    /// Tolerances of Table 2, for forces of this size.
+    pub fn ties(&self, force: f64) -> Ties {
+        Ties {
+            force: self.settings.tolerance * force,
+            length: self.settings.tolerance * self.length,
+            keep: self.settings.ties == spec::Ties::Keep,
+        }
+    }
+
+    /// The problem of some of the nodes (`keep`, by place, ascending), all others going on for ever with the equations of
+    /// what they bring; none where these are singular.
+    pub fn reduced(&self, keep: &[usize]) -> Option<Frozen> {
+        let (relation, count) = (&self.relation, self.relation.count());
+        let rest: Vec<usize> = (0..self.nodes.len())
+            .filter(|s| !keep.contains(s))
+            .collect();
+        let unknowns = |nodes: &[usize]| -> Vec<usize> {
+            nodes.iter().flat_map(|&s| [2 * s, 2 * s + 1]).collect()
+        };
+        let (kept, gone) = (unknowns(keep), unknowns(&rest));
+        let (mut matrix, mut rhs) = (vec![0.0; count * count], vec![0.0; count]);
+        for &s in &rest {
+            let node = &self.nodes[s];
+            let rows = minor::rows(&node.state, &node.site, &node.friction, &self.settings);
+            for (k, row) in rows.iter().enumerate() {
+                rhs[2 * s + k] = relation.place_row(s, k, row, node.prescribed, &mut matrix);
+            }
+        }
+        // z of the rest for z = 0 of the kept ones, and its change by each of these.
+        let own: Vec<f64> = gone
+            .iter()
+            .flat_map(|&j| gone.iter().map(move |&i| (i, j)))
+            .map(|(i, j)| matrix[j * count + i])
+            .collect();
+        let mut answers: Vec<f64> = gone.iter().map(|&i| rhs[i]).collect();
+        for &j in &kept {
+            answers.extend(gone.iter().map(|&i| -matrix[j * count + i]));
+        }
+        let mut dense = DenseFactors::new(gone.len(), 1 + kept.len()).ok()?;
+        dense.factor(&own);
+        if dense.inverse_norm() > SINGULAR {
+            return None;
+        }
+        dense.solve(&mut answers).ok()?;
+        let through = |i: usize, column: usize| -> f64 {
+            let z = answers.iter().skip(column * gone.len());
+            let shares = gone.iter().zip(z);
+            shares
+                .map(|(&j, z)| relation.response[j * count + i] * z)
+                .sum()
+        };
+        let start = kept.iter().map(|&i| relation.start[i] + through(i, 0));
+        let columns = kept
+            .iter()
+            .enumerate()
+            .flat_map(|(column, &j)| kept.iter().map(move |&i| (i, j, column + 1)));
+        let response =
+            columns.map(|(i, j, column)| relation.response[j * count + i] + through(i, column));
+        Some(Frozen {
+            relation: Relation {
+                stiffness: relation.stiffness,
+                start: start.collect(),
+                response: response.collect(),
+            },
+            nodes: keep.iter().map(|&s| self.nodes[s]).collect(),
+            ..self.clone()
         })
     }
 }
@@ -237,7 +363,7 @@ fn judge(
     problem: &Frozen,
     node: &FrozenNode,
     assumed: Assumed,
-    [force, motion]: [[f64; 2]; 2],
+    Given { force, motion }: Given,
 ) -> NodeAnswer {
     let (f_n, f_t) = (node.state.f_n + force[0], node.state.f_t + force[1]);
     let limit = f_n.abs() * node.friction.coefficient() + node.friction.cohesion;

@@ -7,7 +7,7 @@ use crate::contact::projection::Spot;
 use crate::fem::assembly::history_len;
 use crate::scene::spec::{SlipCount, Sticking};
 use crate::scene::{Friction, Mode, Model, Settings};
-use crate::solve::event::{Failure, Forced, Position};
+use crate::solve::event::{Cycle, Failure, Forced, Position};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -180,13 +180,9 @@ impl Trail {
         &self.entries[..nodes.min(self.entries.len())]
     }
 
-    /// The iterations since an earlier one that started from the same as the next will; none if there is none.
-    pub fn round(
-        &self,
-        nodes: &[NodeState],
-        force: f64,
-        ratio: f64,
-    ) -> Option<std::slice::ChunksExact<'_, Input>> {
+    /// The cycle that is closed where the iteration after `minor`, which `nodes` go into, starts from the same as an
+    /// earlier one; none if there is none. Forces are the same that differ by less than `force`, ratios relatively.
+    pub fn cycle(&self, nodes: &[NodeState], minor: u32, force: f64, ratio: f64) -> Option<Cycle> {
         let width = nodes.len().max(1);
         let same = |then: &[Input]| {
             then.iter()
@@ -194,7 +190,23 @@ impl Trail {
                 .all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
         };
         let found = self.entries.chunks_exact(width).rposition(same)?;
-        Some(self.entries[found * width..].chunks_exact(width))
+        let round = || self.entries[found * width..].chunks_exact(width);
+        let period = round().len() as u32;
+        let takes_part = |s: &usize| {
+            let mut inputs = round().map(|inputs| inputs[*s]);
+            let first = inputs.next();
+            first.is_some_and(|first| inputs.any(|other| !other.repeats(&first, force, ratio)))
+        };
+        let pattern = |s: usize| round().map(|inputs| inputs[s].mode).collect();
+        Some(Cycle {
+            // The last round starts with what iteration `minor + 1 - period` started from.
+            start: minor + 1 - period,
+            period,
+            members: (0..nodes.len())
+                .filter(takes_part)
+                .map(|s| (s, pattern(s)))
+                .collect(),
+        })
     }
 }
 

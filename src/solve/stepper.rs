@@ -282,32 +282,8 @@ impl Stepper {
     /// Whether the next minor iteration starts from where an earlier one of this major did.
     fn find_cycle(&self, minor: u32) -> Option<Cycle> {
         let force = SAME * self.force_scale();
-        if let Some(round) = self.state.trail.round(&self.state.nodes, force, SAME) {
-            let period = round.len() as u32;
-            let pattern = |s: usize| {
-                round
-                    .clone()
-                    .map(|inputs| inputs[s].mode)
-                    .collect::<Vec<_>>()
-            };
-            let takes_part = |s: &usize| {
-                let mut inputs = round.clone().map(|inputs| inputs[*s]);
-                inputs
-                    .next()
-                    .is_some_and(|first| inputs.any(|other| other != first))
-            };
-            let members = (0..self.state.nodes.len())
-                .filter(takes_part)
-                .map(|s| (s, pattern(s)))
-                .collect();
-            // The last round starts with what iteration `minor + 1 - period` started from.
-            return Some(Cycle {
-                start: minor + 1 - period,
-                period,
-                members,
-            });
-        }
-        None
+        let state = &self.state;
+        state.trail.cycle(&state.nodes, minor, force, SAME)
     }
 
     /// Updates displacements and forces, renews the geometry, and asks whether the increment is done.

@@ -1,0 +1,81 @@
+//! The core of a cycle: the fewest nodes that still cycle when all others go on for ever with what they do.
+//!
+//! A frozen interface problem that cycles is shrunk by giving every node outside a trial set the equations of what it
+//! brings ([`Frozen::reduced`]) and running Table 2 over what is left.
+
+use crate::solve::event::Cycle;
+use crate::solve::frozen::{Frozen, Trials};
+use crate::solve::state::Trail;
+
+/// Most members over which all sets are tried, smallest first; among more, members are dropped one at a time.
+const EXHAUSTIVE: usize = 10;
+/// Numbers of two iterations that differ by less than this, relatively, are the same.
+const SAME: f64 = 1e-12;
+
+/// The fewest nodes that still cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Core {
+    /// Places of its nodes among those of the whole problem.
+    pub places: Vec<usize>,
+    /// The problem of these nodes alone; their states are where the cycle starts from.
+    pub problem: Frozen,
+    /// Its cycle; members by place in `problem`.
+    pub cycle: Cycle,
+}
+
+/// Shrinks a problem that cycles from what its nodes bring; none where it does not.
+pub fn core(whole: &Frozen) -> Option<Core> {
+    let start = cycle(whole)?;
+    let members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
+    let of = |places: &[usize]| {
+        let problem = whole.reduced(places)?;
+        let cycle = cycle(&problem)?;
+        Some(Core {
+            places: places.to_vec(),
+            problem,
+            cycle,
+        })
+    };
+    if members.len() <= EXHAUSTIVE {
+        let sets = 1..1_u32 << members.len();
+        let mut sets: Vec<u32> = sets.collect();
+        sets.sort_by_key(|set| set.count_ones());
+        let chosen = |set: u32| -> Vec<usize> {
+            let bits = members.iter().enumerate();
+            bits.filter(|(bit, _)| set >> bit & 1 == 1)
+                .map(|(_, &m)| m)
+                .collect()
+        };
+        return sets.into_iter().find_map(|set| of(&chosen(set)));
+    }
+    let mut best = of(&members)?;
+    let mut next = 0;
+    while next < best.places.len() {
+        let mut fewer = best.places.clone();
+        fewer.remove(next);
+        match of(&fewer) {
+            Some(smaller) => (best, next) = (smaller, 0),
+            None => next += 1,
+        }
+    }
+    Some(best)
+}
+
+/// The cycle into which the minor iterations of a frozen problem run; none where they settle or cannot be solved, or
+/// where the settings' limit of minor iterations is too few to tell. Members are places in the problem.
+pub fn cycle(problem: &Frozen) -> Option<Cycle> {
+    let mut nodes = problem.states();
+    let mut trials = Trials::new(problem)?;
+    let mut trail = Trail::default();
+    for minor in 1..=problem.settings.minors {
+        trail.push(&nodes);
+        let (_, settled) = trials.minor(&mut nodes)?;
+        if settled {
+            return None;
+        }
+        if let Some(cycle) = trail.cycle(&nodes, minor, SAME * problem.force, SAME) {
+            return Some(cycle);
+        }
+    }
+    None
+}
