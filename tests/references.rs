@@ -248,7 +248,7 @@ fn the_lifted_cantilever_cycles_and_reaches_the_reference_once_its_tip_is_forced
 #[test]
 fn problem_03_converges_with_one_and_with_two_contacts() {
     // Stage 0: free; 1: the short tip on the long beam; 2: also the long tip on the short one's flank. What errors
-    // there are come from the short beam, which is bent by up to two radians, past its Euler load: the largest stand
+    // there are come from the short beam, whose tip turns by a radian, past its Euler load: the largest stand
     // at M = 4.5 and 4.75, and fall with the mesh. Up to M = 2.5 the paper's mesh is within 6e-6.
     let rows = table("03-distant-cantilevers.csv");
     let finer = ("nodes.long.per_element", "9");
