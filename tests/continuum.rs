@@ -304,7 +304,8 @@ fn problem_05_runs_to_its_end_and_to_the_tip_displacement_known() {
     };
     let total = ["0.15", "0.05", "0.01"].map(|increment| tip(increment, "total"));
     for tip in total {
-        // The number of an independent program, whose normals at the borders of elements need not be ours.
+        // The number of an independent program. Half of the difference is the column's mesh (1.02561 with twice the
+        // elements), the rest is not explained; it is not the normal at the borders of elements, where no node lies.
         assert!((tip - 1.025653).abs() < 1e-4, "{total:?}");
         assert!((tip - total[0]).abs() < 1e-9, "{total:?}");
     }
@@ -345,12 +346,250 @@ fn balanced(run: &Run) {
     assert!((sum + state.load_factor).abs() < 1e-7, "{sum}");
 }
 
+/// Loads at which slave nodes touch that were open at the end of the increment before, and which.
+fn touches(run: &Run) -> Vec<(f64, String)> {
+    use stickslip::scene::Mode;
+    let model = run.stepper.model();
+    let mut found = Vec::new();
+    let mut before = vec![false; model.slaves.len()];
+    for a in &run.accepted {
+        let now: Vec<bool> = a
+            .event
+            .nodes
+            .iter()
+            .map(|n| n.decision.next != Mode::Free)
+            .collect();
+        let new = (0..now.len()).filter(|&s| now[s] && !before[s]);
+        found.extend(new.map(|s| (a.load, model.nodes[model.slaves[s].node].name.clone())));
+        before = now;
+    }
+    found
+}
+
+/// Jump of the slope du/dP of the loaded end over the increment that ends at a load, relative to the slope: its change
+/// from the increment before to the one after, less the mean of such changes on both sides.
+fn kink(run: &Run, load: &str) -> f64 {
+    let slope = |k: usize| {
+        let (a, b) = (&run.accepted[k - 1], &run.accepted[k]);
+        (b.monitors["u_x"] - a.monitors["u_x"]) / (b.load - a.load)
+    };
+    let ends = |a: &common::Accepted| format!("{:.2}", a.load) == load;
+    let k = run.accepted.iter().position(ends).unwrap();
+    let change = |k: usize| slope(k + 1) - slope(k - 1);
+    (change(k) - 0.5 * (change(k - 2) + change(k + 2))) / slope(k)
+}
+
+/// Fig. 11. Besides the nodes that touch from the start, one on the block comes to touch, at P = 0.35, and one on the
+/// column, at P = 1.10. The column's makes a kink of 1.7 % in the slope, the block's one of 0.02 %.
 #[test]
-fn problem_05_with_its_roles_swapped_runs_to_its_end_too() {
-    let run = finished(&scene("05-cantilever-elastic-block-swapped", &[]));
-    let tip = last(&run, "u_x");
-    println!("swapped {tip}");
-    assert!((tip - 1.0256).abs() < 0.03, "{tip}");
+fn new_slave_nodes_of_problem_05_make_kinks_that_are_larger_on_the_column() {
+    let [block, column] = ROLES.map(|name| {
+        let set = [("history.increment", "0.01"), ("history.path[1]", "1.15")];
+        finished(&scene(name, &set))
+    });
+    let later = |run: &Run| -> Vec<(String, String)> {
+        let all = touches(run).into_iter().filter(|(load, _)| *load > 0.015);
+        all.map(|(load, node)| (format!("{load:.2}"), node))
+            .collect()
+    };
+    let event = |load: &str, node: &str| (load.to_owned(), node.to_owned());
+    assert_eq!(later(&block), [event("0.35", "block.94")]);
+    assert_eq!(later(&column), [event("1.10", "column.10")]);
+    let kinks = [kink(&block, "0.35"), kink(&column, "1.10")];
+    println!("kinks {kinks:?}; nowhere else {}", kink(&column, "0.50"));
+    assert!((-3e-4..-1e-4).contains(&kinks[0]), "{kinks:?}");
+    assert!((-2e-2..-1.5e-2).contains(&kinks[1]), "{kinks:?}");
+    assert!(kink(&column, "0.50").abs() < 2e-5);
+}
+
+/// Fig. 10, as far as it can be had: the paper's frozen geometry and updated stresses, increments of 0.15.
+#[test]
+fn few_minor_iterations_cost_problem_05_its_accuracy_only_where_majors_are_few_too() {
+    let tip = |majors: &str, minors: &str| {
+        let set = [
+            ("history.increment", "0.15"),
+            ("settings.geometry", "frozen"),
+            ("settings.majors", majors),
+            ("settings.minors", minors),
+            ("settings.at_major_limit", "accept"),
+            ("settings.at_minor_limit", "accept"),
+            ("materials.lower.update", "updated"),
+            ("materials.upper.update", "updated"),
+        ];
+        let run = finished(&scene(ROLES[0], &set));
+        let unsettled = |a: &&common::Accepted| {
+            use stickslip::solve::Outcome;
+            matches!(a.event.outcome, Outcome::Increment { unsettled, .. } if unsettled > 0)
+        };
+        let loads: Vec<String> = run
+            .accepted
+            .iter()
+            .filter(unsettled)
+            .map(|a| format!("{:.2}", a.load))
+            .collect();
+        (last(&run, "u_x"), loads)
+    };
+    let fine = 0.97415;
+    let one = ["1", "2", "5"].map(|minors| (tip("1", minors).0 - fine).abs());
+    println!("one major iteration: {one:?}");
+    assert!(one[0] > 0.2 && one[1] < 0.13 && one[2] < 0.13);
+    let enough = ["1", "2", "5"].map(|minors| tip("200", minors));
+    println!("majors to equilibrium: {enough:?}");
+    assert!(
+        enough
+            .iter()
+            .all(|(tip, _)| (tip - enough[2].0).abs() < 1e-9)
+    );
+    assert_eq!(enough[0].1, ["0.15", "0.90"]);
+    assert_eq!(enough[1].1, ["0.15"]);
+    assert!(enough[2].1.is_empty());
+}
+
+/// Fig. 9. With a single major iteration an increment of 0.05 never finds the modes: one node opens and closes in turn
+/// and the curve has a kink at each; with five it touches once.
+#[test]
+fn one_major_iteration_an_increment_lets_a_node_of_problem_05_chatter_and_five_do_not() {
+    let count = |majors: &str| {
+        let set = [
+            ("settings.majors", majors),
+            ("settings.minors", "5"),
+            ("settings.at_major_limit", "accept"),
+            ("settings.at_minor_limit", "accept"),
+        ];
+        let run = finished(&scene(ROLES[0], &set));
+        let node = |(_, node): &(f64, String)| node == "block.94";
+        touches(&run).into_iter().filter(node).count()
+    };
+    let (one, five) = (count("1"), count("5"));
+    println!("touches: {one} with one major iteration, {five} with five");
+    assert!(one >= 3 && five == 1);
+}
+
+const ROLES: [&str; 2] = [
+    "05-cantilever-elastic-block",
+    "05-cantilever-elastic-block-swapped",
+];
+
+#[test]
+fn problem_05_is_smooth_to_its_end_at_every_increment_of_the_paper_in_both_roles() {
+    for (name, tip) in ROLES.into_iter().zip([1.0255698, 1.0259094]) {
+        for increment in ["0.01", "0.02", "0.10", "0.15"] {
+            let run = finished(&scene(name, &[("history.increment", increment)]));
+            balanced(&run);
+            assert!(run.accepted.iter().all(|a| a.majors <= 6));
+            let end = last(&run, "u_x");
+            assert!((end - tip).abs() < 1e-7, "{name} {increment}: {end}");
+        }
+    }
+}
+
+/// With the geometry frozen, as in the paper, the slave nodes on the block get to the end, ten times as slowly.
+#[test]
+fn problem_05_with_frozen_geometry_gets_to_its_end_too_but_not_with_the_roles_swapped() {
+    let frozen = ("settings.geometry", "frozen");
+    let one = |name: &str, increment: &str| {
+        run(&scene(name, &[frozen, ("history.increment", increment)]))
+    };
+    for increment in ["0.02", "0.10", "0.15"] {
+        let run = one(ROLES[0], increment);
+        assert!(run.failure.is_none(), "{increment}: {:?}", run.failure);
+        assert!((last(&run, "u_x") - 1.0255698).abs() < 1e-7);
+        assert!(run.accepted.iter().any(|a| a.majors > 50));
+    }
+    let swapped = one(ROLES[1], "0.15");
+    let (event, failure) = swapped.failure.as_ref().unwrap();
+    let limit = matches!(
+        failure,
+        stickslip::solve::Failure::MajorLimit { limit: 200, .. }
+    );
+    assert!(limit && event.load_factor > 1.04, "{failure:?}");
+}
+
+#[test]
+fn problem_05_converges_with_its_mesh() {
+    let tip = |refine: &str, law: &str, load: &str| {
+        let set = [
+            ("refine", refine),
+            ("history.increment", "0.55"),
+            ("history.path[1]", load),
+            ("materials.lower.law", law),
+            ("materials.upper.law", law),
+        ];
+        last(&finished(&scene(ROLES[0], &set)), "u_x")
+    };
+    // The block's corner is a singular point, which is compressed the more the finer the mesh is. St Venant-Kirchhoff
+    // material softens in compression; with it the finer meshes do not get to the end.
+    for (law, load, limits) in [
+        ("svk", "0.6", [1e-3, 1.3e-4]),
+        ("neohookean", "1.1", [2.4e-3, 3.7e-4]),
+    ] {
+        let [one, two, four] = ["1", "2", "4"].map(|refine| tip(refine, law, load));
+        println!("{law} {load}: {one} {two} {four}");
+        let errors = [one, two].map(|tip| (tip - four).abs());
+        assert!(errors[0] < limits[0] && errors[1] < limits[1], "{errors:?}");
+    }
+    let collapses = scene(ROLES[0], &[("refine", "2"), ("history.increment", "0.15")]);
+    assert!(run(&collapses).failure.is_some());
+}
+
+/// Strain energy of all bodies at displacements u: the internal forces have a potential, so it is their work on any way
+/// to u, here the straight one, by a Gauss rule.
+fn strain_energy(run: &Run, u: &[f64]) -> f64 {
+    use stickslip::fem::assembly::{Assembled, Assembly, Moved};
+    use stickslip::linalg::Pattern;
+    let model = run.stepper.model();
+    let dofs = &model.dofs;
+    let mut assembly = Assembly::new(model);
+    let pattern = Pattern::new(dofs.equations, assembly.entries(dofs));
+    assembly.bind(dofs, &pattern);
+    let zero = vec![0.0; u.len()];
+    let (mut force, mut size) = (zero.clone(), zero.clone());
+    let (mut values, mut coupling) = (vec![0.0; pattern.entries()], vec![0.0; dofs.equations]);
+    let mut energy = 0.0;
+    for (xi, weight) in stickslip::fem::lagrange::gauss(12) {
+        let part: Vec<f64> = u.iter().map(|u| 0.5 * (1.0 + xi) * u).collect();
+        let moved = Moved {
+            u: &part,
+            step: &zero,
+            before: &zero,
+            history: &[],
+        };
+        let out = Assembled {
+            force: &mut force,
+            size: &mut size,
+            values: &mut values,
+            coupling: &mut coupling,
+        };
+        assembly.assemble(dofs, moved, out);
+        let work: f64 = force.iter().zip(u).map(|(f, u)| f * u).sum();
+        energy += 0.5 * weight * work;
+    }
+    energy
+}
+
+#[test]
+fn problem_05_stores_all_the_work_of_its_load() {
+    for name in ROLES {
+        let errors = ["0.11", "0.055", "0.0275"].map(|increment| {
+            let run = finished(&scene(name, &[("history.increment", increment)]));
+            let (mut work, mut before) = (0.0, (0.0, 0.0));
+            for a in &run.accepted {
+                let now = (a.load, a.monitors["u_x"]);
+                work += 0.5 * (now.0 + before.0) * (now.1 - before.1);
+                before = now;
+            }
+            let energy = strain_energy(&run, &run.stepper.state().u);
+            println!("{name} {increment}: work {work} energy {energy}");
+            (work / energy - 1.0).abs()
+        });
+        println!("{errors:?}");
+        // The trapezoidal rule's error: of second order in the increment.
+        let limits = [2.6e-3, 6.4e-4, 1.6e-4];
+        assert!(errors.iter().zip(limits).all(|(e, l)| *e < l), "{errors:?}");
+        for pair in errors.windows(2) {
+            assert!((3.0..5.0).contains(&(pair[0] / pair[1])), "{errors:?}");
+        }
+    }
 }
 
 #[test]
@@ -367,41 +606,51 @@ fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
     assert!(run.failure.is_some() && run.accepted.is_empty());
 }
 
-#[test]
-fn a_rigid_cylinder_on_a_block_presses_as_hertz_says() {
-    // Half of a block under a rigid cylinder of radius 8. The arc is walked so that its outward side is below.
-    let count = 32;
-    let text = format!(
-        "(title: \"t\", nodes: [
-            Block(id: \"k\", corners: [(0, -1), (1, 0)], elements: ({count}, 16)),
-            Arc(id: \"c\", center: (0, 8), radius: 8, from: 262, to: 280, elements: 4, per_element: 5)],
-          materials: [Elastic(id: \"m\", E: 100, nu: 0.3)], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
-          surfaces: [(id: \"c\", along: \"c\")], slaves: [(nodes: [\"k.top\"], on: [\"c\"])],
-          supports: [(node: \"k.left\", fix: [x]), (node: \"k.bottom\", fix: [x, y]), (node: \"k.right\", fix: [x, y])],
-          loads: [Displacement(node: \"c.all\", component: y, value: -1)],
-          history: (path: [0, 0.0075], increment: 0.0025),
-          monitors: [(name: \"f\", of: Contact(component: y))])"
-    );
-    let run = finished(&Scene::from_text("hertz", &text, &[]).unwrap_or_else(|e| panic!("{e}")));
-    let (radius, modulus) = (8.0, 100.0 / (1.0 - 0.09));
-    let force = -2.0 * last(&run, "f");
-    let width = (4.0 * force * radius / (std::f64::consts::PI * modulus)).sqrt();
-    let peak = 2.0 * force / (std::f64::consts::PI * width);
+/// Half width and peak pressure of the contact of `hertz-cylinder-on-block`, and the force on the whole cylinder.
+///
+/// The middle node of a side carries two thirds of what presses on it. Half an ellipse of pressure is a line in p²
+/// over x²; that of least squares gives both numbers without asking which node is the last that touches.
+fn line_contact(refine: &str) -> (f64, f64, f64) {
+    let run = finished(&scene("hertz-cylinder-on-block", &[("refine", refine)]));
     let (state, model) = (run.stepper.state(), run.stepper.model());
-    let spacing = 0.5 / f64::from(count);
-    for (node, slave) in state.nodes.iter().zip(&model.slaves) {
-        let x = model.nodes[slave.node].at[0];
-        if (x - width).abs() > spacing {
-            assert_eq!(node.f_n > 0.0, x < width, "{x} {width}");
-        }
-        // The middle node of an element carries two thirds of what presses on it.
-        let is_middle = (x / spacing).round() as usize % 2 == 1;
-        if is_middle && x < 0.9 * width {
-            let pressure = node.f_n / (4.0 / 3.0 * spacing);
-            let expected = peak * (1.0 - (x / width).powi(2)).sqrt();
-            let error = (pressure - expected) / peak;
-            assert!(error.abs() < 0.02, "{x}: {pressure} {expected}");
-        }
+    let at = |s: usize| model.nodes[model.slaves[s].node].at[0];
+    let spacing = (at(1) - at(0)).abs();
+    let points: Vec<(f64, f64)> = (0..model.slaves.len())
+        .filter(|&s| state.nodes[s].f_n > 0.0)
+        .filter(|&s| (at(s) / spacing).round() as usize % 2 == 1)
+        .map(|s| (s, state.nodes[s].f_n / (4.0 / 3.0 * spacing)))
+        .map(|(s, pressure)| (at(s).powi(2), pressure.powi(2)))
+        .collect();
+    let count = points.len() as f64;
+    let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / count;
+    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let slope = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2));
+    let top = y - slope * x;
+    let force = -2.0 * last(&run, "contact_y");
+    println!("refine {refine}: {count} middles touch");
+    ((-top / slope).sqrt(), top.sqrt(), force)
+}
+
+#[test]
+fn a_rigid_cylinder_presses_a_block_as_hertz_says_and_better_on_finer_meshes() {
+    use common::{number, table};
+    let rows = table("07-hertz.csv");
+    let row = rows.iter().rev().find(|r| r["R"] == "8").unwrap();
+    // Half width goes with the root of the force, and so does pressure.
+    let hertz = |force: f64| {
+        let root = (force / number(row, "F")).sqrt();
+        (number(row, "a") * root, number(row, "p0") * root)
+    };
+    let errors = ["1", "2", "4"].map(|refine| {
+        let (width, peak, force) = line_contact(refine);
+        let (a, p0) = hertz(force);
+        println!("force {force} width {width} {a} peak {peak} {p0}");
+        [(width / a - 1.0).abs(), (peak / p0 - 1.0).abs()]
+    });
+    println!("{errors:?}");
+    let limits = [[0.02, 0.0025], [0.006, 0.002], [0.002, 0.001]];
+    for (error, limit) in errors.iter().zip(limits) {
+        assert!(error[0] < limit[0] && error[1] < limit[1], "{errors:?}");
     }
 }
 

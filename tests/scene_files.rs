@@ -60,10 +60,14 @@ fn every_builtin_scene_is_sound_and_has_a_title() {
             .iter()
             .map(|m| m.name.as_str())
             .collect();
-        assert_eq!(
-            monitors,
-            ["u_x", "u_y", "rotation", "contact_x", "contact_y"]
-        );
+        let all = ["u_x", "u_y", "rotation", "contact_x", "contact_y"];
+        // Where a whole surface is moved, there is no loaded node to watch.
+        let loaded = if builtin.name.starts_with("hertz") {
+            &all[3..]
+        } else {
+            &all[..]
+        };
+        assert_eq!(monitors, loaded, "{}", builtin.name);
     }
 }
 

@@ -24,6 +24,7 @@ const SCENES: &[Builtin] = scenes![
     "04-cantilever-rigid-circle",
     "05-cantilever-elastic-block",
     "05-cantilever-elastic-block-swapped",
+    "hertz-cylinder-on-block",
     "osc-inclined-cantilever",
 ];
 
