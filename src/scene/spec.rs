@@ -413,7 +413,7 @@ pub struct History {
 pub struct Settings {
     /// How the total force of a slave node is found after a major iteration. Default: stress.
     pub residual: ResidualMethod,
-    /// What the minor iterations solve. Default: augmented.
+    /// What the minor iterations solve. Default: condensed.
     pub solver: Solver,
     /// Whether the tangent knows that the contact geometry changes. Default: consistent.
     pub geometry: Geometry,
@@ -475,10 +475,10 @@ pub enum ResidualMethod {
 #[serde(rename_all = "lowercase")]
 pub enum Solver {
     /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
-    #[default]
     Augmented,
     /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
     /// costs a dense solve of the size of the interface.
+    #[default]
     Condensed,
 }
 
