@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Run, run};
+use common::{Run, run, two_blocks};
 use stickslip::contact::projection::{footing, project};
 use stickslip::scene::{Mode, Scene};
 
@@ -421,7 +421,7 @@ fn assert_draws(done: &Run) {
         monitor(done, "f_x")
             .iter()
             .zip(&f)
-            .all(|(t, f)| t.abs() < 0.5 * f)
+            .all(|(t, f)| t.abs() < 0.6 * f)
     );
 }
 
@@ -450,41 +450,49 @@ fn a_shoe_goes_over_the_gap_between_two_elastic_blocks_and_changes_its_master() 
 }
 
 #[test]
-fn a_shoe_goes_over_the_ridge_and_the_valley_of_an_elastic_surface() {
-    // Convex, then concave: the tops of two joined blocks that are bent at the joint.
-    for rise in [-0.06, 0.06] {
+fn a_shoe_goes_over_the_ridge_of_an_elastic_surface_with_a_corner() {
+    // The tops of two joined blocks, bent down at the joint.
+    for friction in [0, 10] {
         let text = drawn(
-            &format!(
-                "Block(id: \"a\", corners: [(0, 0), (0.8, 0), (0.8, 1), (0, 1)], elements: (4, 2)),
-                 Block(id: \"b\", corners: [(0.8, 0), (1.6, 0), (1.6, {}), (0.8, 1)], elements: (4, 2)),
-                 Mesh(id: \"ab\", of: [\"a\", \"b\"], joints: [(\"a.right\", \"b.left\")]),
-                 Chain(id: \"top\", of: [\"b.top\", \"a.top\"], per_element: 3)",
-                1.0 + rise
-            ),
+            "Block(id: \"a\", corners: [(0, 0), (0.8, 0), (0.8, 1), (0, 1)], elements: (4, 2)),
+             Block(id: \"b\", corners: [(0.8, 0), (1.6, 0), (1.6, 0.94), (0.8, 1)], elements: (4, 2)),
+             Mesh(id: \"ab\", of: [\"a\", \"b\"], joints: [(\"a.right\", \"b.left\")]),
+             Chain(id: \"top\", of: [\"b.top\", \"a.top\"], per_element: 3)",
             "(node: \"a.bottom\", fix: [x, y]), (node: \"b.bottom\", fix: [x, y])",
             "Solid(id: \"ab\", mesh: \"ab\", material: \"f\")",
             "(id: \"top\", along: \"top\")",
             "\"top\"",
             0.9,
         )
-        .replace("value: -0.02, scale: [(0, 0), (0.1, 1)]", "value: -0.03, scale: [(0, 0), (0.1, 1), (0.5, 1), (1, 1.2)]");
+        .replace("scale: [(0, 0), (0.1, 1)]", "scale: [(0, 0), (0.1, 1), (0.5, 1), (1, 1.2)]")
+        .replace("supports:", &format!("friction: (angle: {friction}), supports:"));
         let done = solved(&text);
-        if rise > 0.0 {
-            assert_draws(&done);
-        } else {
-            assert_sound(&done);
-        }
-        let over = done
-            .accepted
-            .last()
-            .unwrap()
-            .state
-            .nodes
+        assert_sound(&done);
+        let nodes = &done.accepted.last().unwrap().state.nodes;
+        let elements: Vec<usize> = nodes
             .iter()
-            .filter_map(|n| n.spot);
+            .filter_map(|n| n.spot.map(|s| s.element))
+            .collect();
         assert!(
-            over.clone().count() == 5 && over.map(|s| s.element).any(|e| e < 4),
-            "none came over"
+            elements.len() == 5 && elements.iter().all(|e| *e < 4),
+            "over the ridge: {elements:?}"
         );
     }
+}
+
+#[test]
+fn the_large_scene_is_large_and_its_small_form_balances() {
+    let large = two_blocks(8);
+    assert_eq!(large.model.slaves.len(), 193);
+    assert!((9_900..10_200).contains(&stickslip::scene::Cost::of(&large).unknowns()));
+    let done = run(&two_blocks(1));
+    assert!(done.failure.is_none());
+    assert_sound(&done);
+    let (x, y) = (monitor(&done, "contact_x"), monitor(&done, "contact_y"));
+    let mu = 20_f64.to_radians().tan();
+    assert!(y.windows(2).all(|w| w[1] > w[0]) && y[0] > 0.0, "{y:?}");
+    assert!(
+        x.iter().zip(&y).all(|(x, y)| *x < 0.0 && x.abs() < mu * y),
+        "{x:?} {y:?}"
+    );
 }
