@@ -1193,6 +1193,11 @@ const EVERYTHING: &str = r#"(
         Chain(id: "c", of: ["b.1", "p"], per_element: 2),
         Block(id: "k", corners: [(5, 0), (6, 0), (6, 2), (5, 1.5)], elements: (2, 3)),
         Block(id: "r", corners: [(5, -3), (6, -2)], elements: (1, 2)),
+        Block(id: "h", corners: [(9, -1), (11, -1), (11, 0), (9, 0)], elements: (2, 1), grading: (0.5, 1)),
+        Block(id: "i", corners: [(9, 0), (11, 0), (11, 2), (9, 1)], elements: (2, 1), grading: (1, 2),
+            sides: (bottom: Along(chain: "h.top"), right: Arc(center: (10, 1))), place: (turn: 0, about: (1, 1))),
+        Mesh(id: "hi", of: ["h", "i"], joints: [("h.top", "i.bottom")], tolerance: 1e-7),
+        Chain(id: "round", of: ["i.right", "i.top"], per_element: 3),
     ],
     materials: [
         Section(id: "m", EA: 10, EI: 1, GA: 3), Section(id: "n", EA: 10, EI: 1),
@@ -1204,9 +1209,9 @@ const EVERYTHING: &str = r#"(
         Beam(id: "b", along: "b", material: "m"), Beam(id: "c", along: "c", material: "n"),
         Beam(id: "t", along: "t", material: "n"), Beam(id: "skin", along: "r.top", material: "m"),
         Solid(id: "k", mesh: "k", material: "e", regions: [(from: (5, 1), to: (6, 2), material: "f")]),
-        Solid(id: "r", mesh: "r", material: "g"),
+        Solid(id: "r", mesh: "r", material: "g"), Solid(id: "hi", mesh: "hi", material: "e"),
     ],
-    surfaces: [(id: "s", along: "a"), (id: "u", along: "t", reverse: true), (id: "v", along: "k.left")],
+    surfaces: [(id: "w", along: "round"), (id: "s", along: "a"), (id: "u", along: "t", reverse: true), (id: "v", along: "k.left")],
     slaves: [
         (nodes: ["b.all"], on: ["s"], start: fixed, friction: (angle: 10, cohesion: 0.1)),
         (nodes: ["p"], on: ["s", "u"]), (nodes: ["r.left", "r.bottom.2"], on: ["v"]),
@@ -1226,6 +1231,261 @@ const EVERYTHING: &str = r#"(
         (name: "c", of: Contact(component: x)), (name: "d", of: Reaction(node: "t.start", component: rotation)),
     ],
 )"#;
+
+/// A quarter of a plate with a round hole, of two blocks, and what its bodies and loads are.
+fn plate(changes: &[(&str, &str)]) -> Result<Scene, SceneError> {
+    let text = r#"(
+    title: "plate",
+    nodes: [
+        Line(id: "edge", from: (3, 3), to: (3, 0), elements: 1, per_element: 2),
+        Block(id: "a", corners: [(1, 0), (3, 0), (3, 3), (0.7071067811865476, 0.7071067811865476)],
+            elements: (4, 3), grading: (3, 1), sides: (left: Arc(center: (0, 0)), right: Along(chain: "edge"))),
+        Block(id: "b", corners: [(0.7071067811865476, 0.7071067811865476), (3, 3), (0, 3), (0, 1)],
+            elements: (4, 2), grading: (3, 1), sides: (left: Arc(center: (0, 0)))),
+        Mesh(id: "plate", of: ["a", "b"], joints: [("a.top", "b.bottom")]),
+        Chain(id: "outside", of: ["a.right", "b.right"], per_element: 3),
+        Chain(id: "hole", of: ["b.left", "a.left"], per_element: 3),
+    ],
+    materials: [Elastic(id: "e", E: 100, nu: 0.3)],
+    bodies: [Solid(id: "plate", mesh: "plate", material: "e")],
+    supports: [(node: "a.bottom", fix: [y]), (node: "b.top", fix: [x]), (node: "b.top.end", fix: [x])],
+    history: (path: [0, 1], increment: 1),
+)"#;
+    let text = changes.iter().fold(text.to_owned(), |text, (from, to)| {
+        text.replacen(from, to, 1)
+    });
+    Scene::from_text("plate", &text, &[])
+}
+
+/// Area of a solid, and the least Jacobian over its mean, by 3 by 3 Gauss points.
+fn area(scene: &Scene) -> (f64, f64) {
+    let BodyKind::Solid(solid) = &scene.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    let (mut sum, mut least) = (0.0, f64::INFINITY);
+    for element in &solid.elements {
+        let at = element.map(|n| scene.model.nodes[n].at);
+        let mut own = Vec::new();
+        for (r, v) in GAUSS {
+            for (s, w) in GAUSS {
+                own.push((jacobian(&at, r, s), v * w));
+            }
+        }
+        let part: f64 = own.iter().map(|(j, w)| j * w).sum();
+        least = own
+            .iter()
+            .map(|(j, _)| 4.0 * j / part)
+            .fold(least, f64::min);
+        sum += part;
+    }
+    (sum, least)
+}
+
+const GAUSS: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 5.0 / 9.0),
+    (0.0, 8.0 / 9.0),
+    (0.774_596_669_241_483_4, 5.0 / 9.0),
+];
+
+/// Jacobian of an 8-node quadrilateral by differences of its map, exact for its second degree in each direction.
+fn jacobian(at: &[[f64; 2]; 8], r: f64, s: f64) -> f64 {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let map = |r: f64, s: f64| {
+        let mut x = [0.0; 2];
+        for k in 0..8 {
+            let n = if k < 4 {
+                let (a, b) = corners[k];
+                0.25 * (1.0 + a * r) * (1.0 + b * s) * (a * r + b * s - 1.0)
+            } else if k % 2 == 0 {
+                0.5 * (1.0 - r * r) * (1.0 + if k == 4 { -s } else { s })
+            } else {
+                0.5 * (1.0 - s * s) * (1.0 + if k == 5 { r } else { -r })
+            };
+            x = [x[0] + n * at[k][0], x[1] + n * at[k][1]];
+        }
+        x
+    };
+    let h = 0.5;
+    let by = |a: [f64; 2], b: [f64; 2]| [(a[0] - b[0]) / (2.0 * h), (a[1] - b[1]) / (2.0 * h)];
+    let (dr, ds) = (
+        by(map(r + h, s), map(r - h, s)),
+        by(map(r, s + h), map(r, s - h)),
+    );
+    dr[0] * ds[1] - dr[1] * ds[0]
+}
+
+#[test]
+fn joined_blocks_share_the_nodes_of_the_joint_and_no_others() {
+    let scene = plate(&[]).unwrap_or_else(|e| panic!("{e}"));
+    // Nodes of an 8-node mesh: 3 nx ny + 2 (nx + ny) + 1; the joint has 2 · 4 + 1; the side's line has 2 of its own.
+    let (a, b) = (3 * 12 + 2 * 7 + 1, 3 * 8 + 2 * 6 + 1);
+    assert_eq!(scene.model.nodes.len(), a + b - 9 + 2);
+    assert_eq!(scene.model.bodies[0].nodes.len(), a + b - 9);
+    let names = scene.names();
+    let mut joint = names.nodes("b.bottom").unwrap();
+    joint.reverse();
+    assert_eq!(names.nodes("a.top").unwrap(), joint);
+    assert_eq!(
+        names.nodes("plate.all").unwrap(),
+        scene.model.bodies[0].nodes
+    );
+    let BodyKind::Solid(solid) = &scene.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    assert_eq!(
+        solid.edges.len(),
+        2 * (4 + 3) + 2 * (4 + 2) - 2 * 4,
+        "the joint is no outline"
+    );
+    assert_eq!(
+        names.nodes("outside.all").unwrap().len(),
+        2 * (3 + 2) + 1,
+        "the corner counts once"
+    );
+    for name in ["hole.start", "hole.end", "hole@0.4", "hole.2"] {
+        let [x, y] = scene.model.nodes[scene.node(name).unwrap()].at;
+        assert!((x.hypot(y) - 1.0).abs() < 1e-12, "{name} is on the hole");
+    }
+}
+
+#[test]
+fn areas_sum_up_to_the_whole_and_refinement_keeps_the_geometry() {
+    let whole = 9.0 - std::f64::consts::PI / 4.0;
+    let mut last = f64::INFINITY;
+    for refine in ["1", "2", "4"] {
+        let scene = plate(&[]).unwrap().with("refine", refine).unwrap();
+        let (area, least) = area(&scene);
+        let error = (area - whole).abs();
+        assert!(least > 0.3, "refine {refine}: Jacobian {least} of the mean");
+        assert!(
+            error < last / 12.0 && error < 1e-4,
+            "refine {refine}: {error}"
+        );
+        last = error;
+    }
+    let (coarse, fine) = (
+        plate(&[]).unwrap(),
+        plate(&[("title", "refine: 3, title")]).unwrap(),
+    );
+    for edge in [
+        "a.bottom", "a.right", "a.top", "a.left", "b.left", "b.right",
+    ] {
+        let at =
+            |scene: &Scene, k: usize| scene.model.nodes[scene.names().nodes(edge).unwrap()[k]].at;
+        for k in 0..coarse.names().nodes(edge).unwrap().len() {
+            // Middles of an element stay middles only of what they are on, which odd refinement keeps.
+            let ([x, y], [v, w]) = (at(&coarse, k), at(&fine, 3 * k));
+            assert!((x - v).hypot(y - w) < 1e-14, "{edge} {k}");
+        }
+    }
+}
+
+#[test]
+fn a_placed_block_is_turned_and_shifted_whole() {
+    let there = |place: &str| {
+        let block = format!(
+            "corners: [(1, 0), (3, 0), (2, 2), (0, 1)], elements: (2, 2), sides: (left: Arc(center: (0, 0))), {place}"
+        );
+        solid(&block, ELASTIC, SOLID, "").unwrap()
+    };
+    let (lies, put) = (
+        there(""),
+        there("place: (turn: 90, about: (1, 0), shift: (5, 7))"),
+    );
+    for (a, b) in lies.model.nodes.iter().zip(&put.model.nodes) {
+        let [x, y] = [a.at[0] - 1.0, a.at[1]];
+        assert!((b.at[0] - (6.0 - y)).abs() < 1e-14 && (b.at[1] - (7.0 + x)).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn each_fault_of_a_mesh_has_one_message_with_its_place() {
+    let cases: &[(&[(&str, &str)], &str, &str)] = &[
+        (
+            &[("elements: (4, 2)", "elements: (5, 2)")],
+            "nodes[3].joints[0]",
+            "\"a.top\" has 4 elements and \"b.bottom\" has 5",
+        ),
+        (
+            &[(
+                "grading: (3, 1), sides: (left: Arc(center: (0, 0)))),\n        Mesh",
+                "grading: (2, 1), sides: (left: Arc(center: (0, 0)))),\n        Mesh",
+            )],
+            "nodes[3].joints[0]",
+            "do not coincide",
+        ),
+        (
+            &[("(\"a.top\", \"b.bottom\")", "(\"a.top\", \"b.bottm\")")],
+            "nodes[3].joints[0][1]",
+            "did you mean",
+        ),
+        (
+            &[("(\"a.top\", \"b.bottom\")", "(\"edge\", \"b.bottom\")")],
+            "nodes[3].joints[0][0]",
+            "no edge of a block",
+        ),
+        (
+            &[("of: [\"a\", \"b\"]", "of: [\"a\", \"a\"]")],
+            "nodes[3].of[1]",
+            "named twice",
+        ),
+        (
+            &[("of: [\"a\", \"b\"]", "of: [\"a\", \"edge\"]")],
+            "nodes[3].of[1]",
+            "no block called \"edge\"",
+        ),
+        (
+            &[
+                ("[(\"a.top\"", "tolerance: 1, joints: [(\"a.top\""),
+                ("joints: tolerance", "tolerance"),
+            ],
+            "nodes[3].tolerance",
+            "0 to 0.1",
+        ),
+        (
+            &[("center: (0, 0)", "center: (0.1, 0)")],
+            "nodes[1].sides.left.center",
+            "equal radii",
+        ),
+        (
+            &[("from: (3, 3)", "from: (3, 2)")],
+            "nodes[1].sides.right.chain",
+            "must join the corners",
+        ),
+        (
+            &[("Along(chain: \"edge\")", "Along(chain: \"b.left\")")],
+            "nodes[1].sides.right.chain",
+            "no chain of nodes called",
+        ),
+        (
+            &[("grading: (3, 1)", "grading: (0, 1)")],
+            "nodes[1].grading[0]",
+            "must be between",
+        ),
+        (
+            &[
+                (
+                    "corners: [(1, 0), (3, 0), (3, 3)",
+                    "corners: [(1, 0), (3, 0), (0.2, 0.9)",
+                ),
+                (
+                    "right: Along(chain: \"edge\")",
+                    "right: Arc(center: (1.7, 0.55))",
+                ),
+            ],
+            "nodes[1]",
+            "",
+        ),
+    ];
+    for (changes, path, says) in cases {
+        let error = plate(changes).unwrap_err();
+        assert!(
+            error.path.starts_with(path) && error.message.contains(says),
+            "{changes:?}: {error}"
+        );
+        assert!(error.at.is_some(), "{error}");
+    }
+}
 
 #[test]
 fn the_scene_with_everything_is_sound() {

@@ -1,18 +1,23 @@
 //! Blocks of 8-node quadrilaterals: their nodes, elements and edges.
 //!
 //! Nodes are numbered row by row from the bottom: a row of corners and middles has 2 nx + 1 of them, the row between
-//! two of these, which has no nodes inside elements, nx + 1.
+//! two of these, which has no nodes inside elements, nx + 1. Curved sides are blended into the inside (transfinite
+//! interpolation, Gordon and Hall 1973).
 
-use super::curves::point;
+use super::curves::{lagrange, point, sin_cos_degrees};
 use super::error::{Fault, Path};
+use super::geometry;
 use super::limits;
-use super::spec::Point;
+use super::spec::{Place, Point, Side, Sides};
 
 /// Edges of a block in the order of the walk around it.
 pub(crate) const EDGES: [&str; 4] = ["bottom", "right", "top", "left"];
 
 /// Least sine of an angle of a block: its elements have the same angles.
 const SHARPEST: f64 = 1e-2;
+
+/// Lengths that differ by less, relatively, are meant to be the same.
+const SAME: f64 = 1e-6;
 
 /// Number of elements of a block in its two directions, after refinement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,52 +64,128 @@ impl Grid {
         }
     }
 
-    /// Positions of the nodes of a block with these four corners.
-    fn positions(self, corners: &[Point; 4]) -> Vec<Point> {
-        let (columns, rows) = (2 * self.columns, 2 * self.rows);
-        let places = (0..=rows).flat_map(move |j| {
+    /// Positions of the nodes of a block: of a straight one, blended from its corners, and what its sides deviate
+    /// from straight, blended between opposite ones (transfinite interpolation).
+    fn positions(self, corners: &[Point; 4], at: &Stations, curves: &Curves) -> Vec<Point> {
+        let places = (0..=2 * self.rows).flat_map(move |j| {
             let step = 1 + j % 2;
-            (0..=columns).step_by(step).map(move |i| (i, j))
+            (0..=2 * self.columns).step_by(step).map(move |i| (i, j))
         });
         places
             .map(|(i, j)| {
-                let (s, t) = (i as f64 / columns as f64, j as f64 / rows as f64);
+                let (s, t) = (at.across[i], at.up[j]);
                 let blend = |c: [f64; 4]| {
                     (1.0 - t) * ((1.0 - s) * c[0] + s * c[1]) + t * ((1.0 - s) * c[3] + s * c[2])
                 };
-                (blend(corners.map(|c| c.0)), blend(corners.map(|c| c.1)))
+                let straight = (blend(corners.map(|c| c.0)), blend(corners.map(|c| c.1)));
+                // Parts of the four sides, and where on each this is.
+                let parts = [(1.0 - t, i), (s, j), (t, i), (1.0 - s, j)];
+                let bent = curves
+                    .iter()
+                    .zip(parts)
+                    .filter(|(curve, _)| !curve.is_empty());
+                bent.fold(straight, |(x, y), (curve, (part, k))| {
+                    (x + part * curve[k].0, y + part * curve[k].1)
+                })
             })
             .collect()
     }
 }
 
-/// The grid of a block and the positions of its nodes.
+/// Parameters of the nodes of a block, 0 to 1, at every half element.
+struct Stations {
+    across: Vec<f64>,
+    up: Vec<f64>,
+}
+
+/// What each side deviates from straight at its stations, walked to the right or upwards; empty where it does not.
+type Curves = [Vec<Point>; 4];
+
+/// What a block is made of, as the scene has it.
+pub(crate) struct Shape<'a> {
+    pub corners: &'a [Point],
+    pub elements: (usize, usize),
+    pub grading: (f64, f64),
+    pub sides: &'a Sides,
+    pub place: &'a Place,
+}
+
+/// The grid of a block and the positions of its nodes; `chain` finds the points and the nodes per element of a chain.
 pub(crate) fn block(
     here: &Path,
-    corners: &[Point],
-    (columns, rows): (usize, usize),
+    shape: &Shape<'_>,
     refine: usize,
+    chain: &dyn Fn(&str) -> Result<(Vec<Point>, usize), String>,
 ) -> Result<(Grid, Vec<Point>), Fault> {
+    let (columns, rows) = shape.elements;
     for (k, count) in [columns, rows].into_iter().enumerate() {
         let path = here.then("elements").then(k);
         limits::count(&path, count, 1..=limits::NODES, "the number of elements")?;
     }
+    for (k, ratio) in [shape.grading.0, shape.grading.1].into_iter().enumerate() {
+        if !(1.0 / limits::GRADING..=limits::GRADING).contains(&ratio) {
+            let message = format!(
+                "the grading is {ratio:?}, the last element's length over the first's; it must be between \
+                 {:?} and {:?}",
+                1.0 / limits::GRADING,
+                limits::GRADING
+            );
+            return Err(Fault::new(here.then("grading").then(k), message));
+        }
+    }
+    let corners = corners(here, shape)?;
+    // Bounded by `check_total`.
+    let grid = Grid {
+        columns: columns * refine,
+        rows: rows * refine,
+    };
+    let at = Stations {
+        across: stations(columns, shape.grading.0, refine),
+        up: stations(rows, shape.grading.1, refine),
+    };
+    let mut curves = Curves::default();
+    for (k, side) in shape.sides.around().into_iter().enumerate() {
+        let Some(side) = side else { continue };
+        // Walked to the right or upwards.
+        let (from, to) = [(0, 1), (1, 2), (3, 2), (0, 3)][k];
+        let path = here.then("sides").then(EDGES[k]);
+        let stations = if k % 2 == 0 { &at.across } else { &at.up };
+        let ends = (corners[from], corners[to]);
+        curves[k] = match side {
+            Side::Arc { center } => arc_side(&path.then("center"), *center, ends, stations)?,
+            Side::Along { chain: id } => {
+                let path = path.then("chain");
+                let (points, m) = chain(id).map_err(|message| Fault::new(path.clone(), message))?;
+                chain_side(&path, id, &points, m, ends, stations)?
+            }
+        };
+    }
+    let mut points = grid.positions(&corners, &at, &curves);
+    check_elements(here, grid, &points)?;
+    put(here, shape.place, &mut points)?;
+    Ok((grid, points))
+}
+
+/// The four corners, which must open to the left where both sides are straight.
+fn corners(here: &Path, shape: &Shape<'_>) -> Result<[Point; 4], Fault> {
     let list = here.then("corners");
-    for (k, at) in corners.iter().enumerate() {
+    for (k, at) in shape.corners.iter().enumerate() {
         point(&list.then(k), *at)?;
     }
-    let corners = match *corners {
+    let corners = match *shape.corners {
         [low, high] => [low, (high.0, low.1), high, (low.0, high.1)],
         [a, b, c, d] => [a, b, c, d],
         _ => {
             let message = format!(
                 "the list has {} corners; it must have two opposite ones, lower left and upper right, or all four",
-                corners.len()
+                shape.corners.len()
             );
             return Err(Fault::new(list, message));
         }
     };
-    if let Some(k) = (0..4).find(|&k| !is_open(&corners, k)) {
+    let curved = shape.sides.around().map(|side| side.is_some());
+    let straight = |k: usize| !curved[k] && !curved[(k + 3) % 4];
+    if let Some(k) = (0..4).find(|&k| straight(k) && !is_open(&corners, k)) {
         let (x, y) = corners[k];
         let message = format!(
             "the block is folded or flat at its corner ({x:?}, {y:?}); corners run anticlockwise, as lower left, \
@@ -112,12 +193,166 @@ pub(crate) fn block(
         );
         return Err(Fault::new(list, message));
     }
-    // Bounded by `check_total`.
-    let grid = Grid {
-        columns: columns * refine,
-        rows: rows * refine,
+    if let Some(k) = (0..4).find(|&k| corners[k] == corners[(k + 1) % 4]) {
+        let (x, y) = corners[k];
+        let message = format!(
+            "the {} side has no length: both its ends are ({x:?}, {y:?})",
+            EDGES[k]
+        );
+        return Err(Fault::new(list, message));
+    }
+    Ok(corners)
+}
+
+/// Parameters at every half element of a side whose elements grow by a constant factor, so that the last is `ratio`
+/// times the first; each is divided evenly by refinement.
+fn stations(elements: usize, ratio: f64, refine: usize) -> Vec<f64> {
+    let steps = 2 * refine;
+    let last = elements * steps;
+    if ratio == 1.0 || elements == 1 {
+        return (0..=last).map(|i| i as f64 / last as f64).collect();
+    }
+    let growth = ratio.powf(1.0 / (elements - 1) as f64);
+    let mut ends = vec![0.0];
+    let mut length = 1.0;
+    for k in 0..elements {
+        ends.push(ends[k] + length);
+        length *= growth;
+    }
+    let whole = ends[elements];
+    let at = |i: usize| {
+        let (k, part) = ((i / steps).min(elements - 1), i % steps);
+        let part = if i == last {
+            1.0
+        } else {
+            part as f64 / steps as f64
+        };
+        ((1.0 - part) * ends[k] + part * ends[k + 1]) / whole
     };
-    Ok((grid, grid.positions(&corners)))
+    (0..=last).map(at).collect()
+}
+
+/// What a side deviates from its chord at a station.
+fn deviation((from, to): (Point, Point), s: f64, at: Point) -> Point {
+    let straight = |a: f64, b: f64| (1.0 - s) * a + s * b;
+    (at.0 - straight(from.0, to.0), at.1 - straight(from.1, to.1))
+}
+
+/// The shorter arc about a center.
+fn arc_side(
+    path: &Path,
+    center: Point,
+    ends: (Point, Point),
+    stations: &[f64],
+) -> Result<Vec<Point>, Fault> {
+    point(path, center)?;
+    let arm = |p: Point| (p.0 - center.0, p.1 - center.1);
+    let (a, b) = (arm(ends.0), arm(ends.1));
+    let (r, q) = (a.0.hypot(a.1), b.0.hypot(b.1));
+    if (r - q).abs() > SAME * r.max(q) {
+        let message = format!(
+            "the corners {:?} and {:?} are {r} and {q} away from the center; an arc needs equal radii",
+            ends.0, ends.1
+        );
+        return Err(Fault::new(path.clone(), message));
+    }
+    let turn = (a.0 * b.1 - a.1 * b.0).atan2(a.0 * b.0 + a.1 * b.1);
+    if turn.abs() > std::f64::consts::PI * (1.0 - SAME) {
+        let message = "the corners are opposite each other, so that the arc could go either way; divide the block";
+        return Err(Fault::new(path.clone(), message));
+    }
+    let on_arc = |s: f64| {
+        let (sin, cos) = (turn * s).sin_cos();
+        let radius = ((1.0 - s) * r + s * q) / r;
+        let (x, y) = (a.0 * cos - a.1 * sin, a.0 * sin + a.1 * cos);
+        (center.0 + radius * x, center.1 + radius * y)
+    };
+    Ok(deviations(ends, stations, on_arc))
+}
+
+/// The curve of a chain's m-node elements, walked so that its ends fit the corners.
+fn chain_side(
+    path: &Path,
+    id: &str,
+    points: &[Point],
+    m: usize,
+    ends: (Point, Point),
+    stations: &[f64],
+) -> Result<Vec<Point>, Fault> {
+    let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
+        return Err(Fault::new(path.clone(), "the chain is empty"));
+    };
+    let apart = |a: Point, b: Point| (a.0 - b.0).hypot(a.1 - b.1);
+    let near = SAME * apart(ends.0, ends.1);
+    let fits = |a: Point, b: Point| apart(a, ends.0).max(apart(b, ends.1)) <= near;
+    let mut walked = points.to_vec();
+    if !fits(first, last) {
+        if !fits(last, first) {
+            let message = format!(
+                "the chain {id:?} goes from {first:?} to {last:?}; it must join the corners {:?} and {:?}",
+                ends.0, ends.1
+            );
+            return Err(Fault::new(path.clone(), message));
+        }
+        walked.reverse();
+    }
+    let count = (walked.len() - 1) / (m - 1);
+    let on_chain = |s: f64| {
+        let place = s * count as f64;
+        let element = (place as usize).min(count - 1);
+        let nodes = &walked[element * (m - 1)..=(element + 1) * (m - 1)];
+        lagrange(nodes, (place - element as f64) * (m - 1) as f64)
+    };
+    Ok(deviations(ends, stations, on_chain))
+}
+
+/// Deviations from the chord at all stations; none at the corners themselves.
+fn deviations(ends: (Point, Point), stations: &[f64], at: impl Fn(f64) -> Point) -> Vec<Point> {
+    let inside = |s: f64| s > 0.0 && s < 1.0;
+    let one = |&s: &f64| {
+        if inside(s) {
+            deviation(ends, s, at(s))
+        } else {
+            (0.0, 0.0)
+        }
+    };
+    stations.iter().map(one).collect()
+}
+
+/// Refuses a mesh with an element that is folded, or all but.
+fn check_elements(here: &Path, grid: Grid, at: &[Point]) -> Result<(), Fault> {
+    let folded = |nodes: &[usize; 8]| geometry::is_folded(&nodes.map(|n| [at[n].0, at[n].1]));
+    let Some(place) = grid.elements().position(|nodes| folded(&nodes)) else {
+        return Ok(());
+    };
+    let message = format!(
+        "the block is folded in its element {} from the left, {} from the bottom: the Jacobian is not positive there; \
+         corners run anticlockwise, and curved or graded sides must leave room for the elements",
+        place % grid.columns + 1,
+        place / grid.columns + 1
+    );
+    Err(Fault::new(here.clone(), message))
+}
+
+/// Turns and shifts points.
+fn put(here: &Path, place: &Place, points: &mut [Point]) -> Result<(), Fault> {
+    let here = here.then("place");
+    limits::finite(&here.then("turn"), place.turn, "the angle")?;
+    point(&here.then("about"), place.about)?;
+    point(&here.then("shift"), place.shift)?;
+    if *place == Place::default() {
+        return Ok(());
+    }
+    let (sin, cos) = sin_cos_degrees(place.turn);
+    let (center, shift) = (place.about, place.shift);
+    for at in points {
+        let (x, y) = (at.0 - center.0, at.1 - center.1);
+        *at = (
+            center.0 + cos * x - sin * y + shift.0,
+            center.1 + sin * x + cos * y + shift.1,
+        );
+    }
+    Ok(())
 }
 
 /// Whether the boundary turns left at corner k, clearly.
@@ -159,10 +394,60 @@ mod tests {
         }
     }
 
+    fn made(
+        corners: &[Point],
+        elements: (usize, usize),
+        grading: (f64, f64),
+        sides: &Sides,
+        refine: usize,
+    ) -> Result<(Grid, Vec<Point>), Fault> {
+        let shape = Shape {
+            corners,
+            elements,
+            grading,
+            sides,
+            place: &Place::default(),
+        };
+        block(&Path::default(), &shape, refine, &|id| Err(id.into()))
+    }
+
+    #[test]
+    fn a_graded_side_ends_in_an_element_that_is_longer_by_its_ratio_and_refines_evenly() {
+        let coarse = stations(4, 8.0, 1);
+        let length = |k: usize| coarse[2 * k + 2] - coarse[2 * k];
+        assert!((length(3) / length(0) - 8.0).abs() < 1e-12);
+        assert!((length(1) / length(0) - 2.0).abs() < 1e-12);
+        assert_eq!((coarse[0], coarse[8]), (0.0, 1.0));
+        let fine = stations(4, 8.0, 3);
+        for k in 0..=4 {
+            assert!((fine[6 * k] - coarse[2 * k]).abs() < 1e-15);
+        }
+        assert!((fine[2] - fine[0] - (fine[4] - fine[2])).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_inside_of_a_sector_is_concentric_and_its_elements_are_sound() {
+        let arc = || Some(Side::Arc { center: (0.0, 0.0) });
+        let sides = Sides {
+            bottom: arc(),
+            top: arc(),
+            ..Sides::default()
+        };
+        // The bottom is the outer arc, walked anticlockwise, so that the block lies on its left.
+        let corners = [(2.0, 0.0), (0.0, 2.0), (0.0, 1.0), (1.0, 0.0)];
+        let (_, at) = made(&corners, (3, 2), (1.0, 2.0), &sides, 2).unwrap();
+        let radii: Vec<f64> = at.iter().map(|p| p.0.hypot(p.1)).collect();
+        assert!(radii[..13].iter().all(|r| (r - 2.0).abs() < 1e-14));
+        assert!(radii[13..20].iter().all(|r| (r - radii[13]).abs() < 1e-14));
+        let wrong = [(1.0, 0.0), (0.0, 1.0), (0.0, 2.0), (2.0, 0.0)];
+        let fault = made(&wrong, (3, 2), (1.0, 1.0), &sides, 1).unwrap_err();
+        assert!(fault.message.contains("folded"), "{}", fault.message);
+    }
+
     #[test]
     fn a_block_has_its_corners_and_straight_edges() {
         let corners = [(0.0, 0.0), (4.0, 1.0), (3.0, 3.0), (-1.0, 2.0)];
-        let (grid, at) = block(&Path::default(), &corners, (2, 3), 2).unwrap();
+        let (grid, at) = made(&corners, (2, 3), (1.0, 1.0), &Sides::default(), 2).unwrap();
         assert_eq!(at.len(), 3 * 4 * 6 + 2 * (4 + 6) + 1);
         assert_eq!(grid.edge(2)[0], at.len() - 1);
         for (k, corner) in corners.iter().enumerate() {

@@ -106,7 +106,7 @@ pub(crate) fn arc(
 }
 
 /// Sine and cosine of an angle in degrees, exact at right angles.
-fn sin_cos_degrees(angle: f64) -> (f64, f64) {
+pub(crate) fn sin_cos_degrees(angle: f64) -> (f64, f64) {
     let quarter = (angle / 90.0).round();
     let (sin, cos) = (angle - 90.0 * quarter).to_radians().sin_cos();
     match quarter.rem_euclid(4.0) as u8 {
@@ -159,7 +159,11 @@ fn on_curve(curve: &[Point], k: usize, refine: usize) -> Point {
         // A node itself: its very bits.
         return curve[k / refine];
     }
-    let t = k as f64 / refine as f64;
+    lagrange(curve, k as f64 / refine as f64)
+}
+
+/// The point of the Lagrange curve through nodes at the parameters 0, 1, 2, …
+pub(crate) fn lagrange(curve: &[Point], t: f64) -> Point {
     let mut at = (0.0, 0.0);
     for (i, node) in curve.iter().enumerate() {
         let shape = shape(curve.len(), i, t);

@@ -92,6 +92,42 @@ pub(crate) fn slope(m: usize, i: usize, t: f64) -> f64 {
         .sum()
 }
 
+/// Whether the Jacobian of an 8-node quadrilateral is not clearly positive at one of 5 by 5 places, its corners among
+/// them: below a thousandth of its greatest value.
+pub(crate) fn is_folded(nodes: &[[f64; 2]; 8]) -> bool {
+    const SMALLEST: f64 = 1e-3;
+    let places = (0..25).map(|k| (f64::from(k % 5) / 2.0 - 1.0, f64::from(k / 5) / 2.0 - 1.0));
+    let values: Vec<f64> = places.map(|(r, s)| jacobian(nodes, r, s)).collect();
+    let greatest = values.iter().copied().fold(0.0, f64::max);
+    !values.iter().all(|&j| j > SMALLEST * greatest)
+}
+
+/// Determinant of dx/d(r, s) of an 8-node quadrilateral, r and s from −1 to 1.
+fn jacobian(nodes: &[[f64; 2]; 8], r: f64, s: f64) -> f64 {
+    const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let mut slopes = [[0.0; 2]; 8];
+    for (k, (a, b)) in CORNERS.into_iter().enumerate() {
+        slopes[k] = [
+            0.25 * a * (1.0 + b * s) * (2.0 * a * r + b * s),
+            0.25 * b * (1.0 + a * r) * (a * r + 2.0 * b * s),
+        ];
+    }
+    for (k, side) in [(4, -1.0), (6, 1.0)] {
+        slopes[k] = [-r * (1.0 + side * s), 0.5 * side * (1.0 - r * r)];
+    }
+    for (k, side) in [(5, 1.0), (7, -1.0)] {
+        slopes[k] = [0.5 * side * (1.0 - s * s), -s * (1.0 + side * r)];
+    }
+    let sum = |axis: usize, by: usize| -> f64 {
+        nodes
+            .iter()
+            .zip(&slopes)
+            .map(|(x, d)| x[axis] * d[by])
+            .sum()
+    };
+    sum(0, 0) * sum(1, 1) - sum(0, 1) * sum(1, 0)
+}
+
 /// Distance of two points.
 pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
@@ -168,6 +204,26 @@ mod tests {
             folds(&[[1.0, 0.0], [-1.0, 0.0], [1.0, 0.0]]),
             "goes and comes back"
         );
+    }
+
+    #[test]
+    fn a_quadrilateral_is_sound_until_a_middle_leaves_the_middle_half_of_its_side() {
+        let with = |x: f64| {
+            [
+                [0.0, 0.0],
+                [4.0, 0.0],
+                [4.0, 2.0],
+                [0.0, 2.0],
+                [x, 0.0],
+                [4.0, 1.0],
+                [2.0, 2.0],
+                [0.0, 1.0],
+            ]
+        };
+        assert!((jacobian(&with(2.0), 0.3, -0.7) - 2.0).abs() < 1e-14);
+        assert!(!is_folded(&with(2.0)) && !is_folded(&with(1.2)));
+        assert!(is_folded(&with(1.0)) && is_folded(&with(3.1)));
+        assert!(is_folded(&[[0.0; 2]; 8]) && is_folded(&with(2.0).map(|[x, y]| [y, x])));
     }
 
     #[test]

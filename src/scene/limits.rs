@@ -29,6 +29,8 @@ pub const MAGNITUDE: f64 = 1e12;
 pub const STIFFNESS: (f64, f64) = (1e-30, 1e30);
 /// Poisson's ratio is below this.
 pub const POISSON: f64 = 0.5;
+/// Largest grading of a block's side: last element over first, or first over last.
+pub const GRADING: f64 = 1e6;
 /// Shortest distance between two neighbours in an element, in diagonals of the scene.
 pub const SHORTEST: f64 = 1e-9;
 

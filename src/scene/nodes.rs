@@ -1,12 +1,13 @@
 //! Nodes and their names: chains laid out, aliases resolved.
 
-use super::blocks::{EDGES, Grid, block};
+use super::blocks::{EDGES, Grid, Shape, block};
 use super::curves::{arc, check_chain_count, check_per_element, intervals, line, point, through};
-use super::error::{Fault, at, did_you_mean, quoted};
+use super::error::{Fault, Path, at, did_you_mean, quoted};
+use super::geometry::distance;
 use super::limits;
 use super::model::Node;
-use super::spec::{Nodes, Spec};
-use std::collections::HashMap;
+use super::spec::{Nodes, Point, Spec};
+use std::collections::{HashMap, HashSet};
 
 /// All nodes of a scene, and every name by which they can be called.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,6 +26,17 @@ pub(crate) struct Entry {
     pub kind: Kind,
     /// Position in the scene's `nodes`.
     pub at: usize,
+    /// Of a mesh of several blocks, their entries.
+    parts: Vec<usize>,
+}
+
+/// What a solid is made on.
+pub(crate) struct Mesh {
+    /// Distinct nodes.
+    pub nodes: Vec<usize>,
+    pub elements: Vec<[usize; 8]>,
+    /// The outline: elements of 3 nodes, walked with the body on the left.
+    pub edges: Vec<Vec<usize>>,
 }
 
 /// What an entry's nodes form.
@@ -36,15 +48,17 @@ pub(crate) enum Kind {
     Chain(usize),
     /// A chain of 3-node elements along an edge of a block.
     Edge,
-    /// A mesh of quadrilaterals.
+    /// A mesh of quadrilaterals on one block.
     Block(Grid),
+    /// A mesh of several blocks.
+    Mesh,
 }
 
 impl Kind {
     /// Nodes per element of a chain.
     fn per_element(self) -> Option<usize> {
         match self {
-            Kind::Single | Kind::Block(_) => None,
+            Kind::Single | Kind::Block(_) | Kind::Mesh => None,
             Kind::Chain(m) => Some(m),
             Kind::Edge => Some(3),
         }
@@ -60,6 +74,7 @@ impl Entry {
                 "a block",
                 format!("\"{id}.left.start\" or \"{id}.{}\"", count.min(2)),
             ),
+            Kind::Mesh => ("a mesh", format!("\"{id}.{}\"", count.min(2))),
             kind => (
                 if kind == Kind::Edge {
                     "an edge"
@@ -84,18 +99,23 @@ impl Entry {
 }
 
 impl Names {
-    /// Lays out all nodes of a scene. Chains over existing nodes come last, so that they may name what stands below
-    /// them.
+    /// Lays out all nodes of a scene. Meshes of several blocks, and then chains over existing nodes, come last, so that
+    /// they may name what stands below them.
     pub(crate) fn of(spec: &Spec) -> Result<Names, Fault> {
         limits::count(&at!["refine"], spec.refine, 1..=limits::NODES, "refine")?;
         ids(spec)?;
         check_total(spec)?;
         let mut names = Names::default();
-        let shares = |nodes: &Nodes| matches!(nodes, Nodes::Chain { .. });
+        let shares = |nodes: &Nodes| matches!(nodes, Nodes::Chain { .. } | Nodes::Mesh { .. });
         let entries = spec.nodes.iter().enumerate();
         for (at, nodes) in entries.clone().filter(|(_, nodes)| !shares(nodes)) {
             names.generate(at, nodes, spec.refine)?;
         }
+        let mut twins = Vec::new();
+        for (at, nodes) in entries.clone() {
+            names.mesh_of_blocks(at, nodes, &mut twins)?;
+        }
+        names.merge(&twins);
         for (at, nodes) in entries {
             if let Nodes::Chain {
                 id,
@@ -149,6 +169,13 @@ impl Names {
                 Kind::Block(_) => Err(format!(
                     "{id:?} is a block; name one of its edges, \"{id}.bottom\", \"{id}.right\", \"{id}.top\" or \"{id}.left\""
                 )),
+                Kind::Mesh => Err(format!(
+                    "{id:?} is a mesh; name an edge of one of its blocks, as \"{}.bottom\", or make a Chain of several",
+                    self.entries[k]
+                        .parts
+                        .first()
+                        .map_or("block", |&part| &self.entries[part].id)
+                )),
             };
         }
         let chains = || {
@@ -170,29 +197,235 @@ impl Names {
         self.index.get(id).map(|&k| self.entries[k].at)
     }
 
-    /// The block with an id: its nodes and its grid.
-    pub(crate) fn block(&self, id: &str) -> Result<(&Entry, Grid), String> {
+    /// The mesh with an id, of one block or of several.
+    ///
+    /// # Errors
+    /// A message that tells which meshes there are.
+    pub(crate) fn mesh(&self, id: &str) -> Result<Mesh, String> {
+        let meshes = || {
+            let is_mesh = |e: &&Entry| matches!(e.kind, Kind::Block(_) | Kind::Mesh);
+            self.entries.iter().filter(is_mesh).map(|e| e.id.as_str())
+        };
+        let Some(entry) = self.index.get(id).map(|&k| &self.entries[k]) else {
+            return Err(format!(
+                "no block called {}{} (blocks: {})",
+                quoted(id),
+                did_you_mean(id, meshes()),
+                super::error::some_of(meshes())
+            ));
+        };
+        let blocks: Vec<&Entry> = match entry.kind {
+            Kind::Block(_) => vec![entry],
+            Kind::Mesh => entry.parts.iter().map(|&k| &self.entries[k]).collect(),
+            _ => {
+                return Err(format!(
+                    "{id:?} is no block; a solid needs the mesh of one (blocks: {})",
+                    super::error::some_of(meshes())
+                ));
+            }
+        };
+        let mut made = Mesh {
+            nodes: entry.nodes.clone(),
+            elements: Vec::new(),
+            edges: Vec::new(),
+        };
+        for block in blocks {
+            let Kind::Block(grid) = block.kind else {
+                continue;
+            };
+            let elements = grid.elements();
+            made.elements
+                .extend(elements.map(|element| element.map(|n| block.nodes[n])));
+            let edges = EDGES
+                .iter()
+                .filter_map(|edge| self.chain(&format!("{}.{edge}", block.id)).ok());
+            made.edges.extend(edges.flat_map(Entry::elements));
+        }
+        // An edge that two blocks share is inside; each walks it its own way.
+        let walked: HashSet<(usize, usize)> = made.edges.iter().map(|e| (e[0], e[2])).collect();
+        made.edges.retain(|e| !walked.contains(&(e[2], e[0])));
+        Ok(made)
+    }
+
+    /// Position of the block with an id among the entries.
+    fn block(&self, id: &str) -> Result<usize, String> {
         let blocks = || {
             let is_block = |e: &&Entry| matches!(e.kind, Kind::Block(_));
             self.entries.iter().filter(is_block).map(|e| e.id.as_str())
         };
-        let entry = self.index.get(id).map(|&k| &self.entries[k]);
-        match entry.map(|e| (e, e.kind)) {
-            Some((entry, Kind::Block(grid))) => Ok((entry, grid)),
-            Some(_) => Err(format!(
-                "{id:?} is no block; a solid needs the mesh of one (blocks: {})",
-                super::error::some_of(blocks())
-            )),
-            None => Err(format!(
-                "no block called {}{} (blocks: {})",
-                quoted(id),
-                did_you_mean(id, blocks()),
-                super::error::some_of(blocks())
-            )),
+        let found = self.index.get(id).copied();
+        found
+            .filter(|&k| matches!(self.entries[k].kind, Kind::Block(_)))
+            .ok_or_else(|| {
+                format!(
+                    "no block called {}{} (blocks: {})",
+                    quoted(id),
+                    did_you_mean(id, blocks()),
+                    super::error::some_of(blocks())
+                )
+            })
+    }
+
+    /// Enters a mesh of several blocks, and tells which nodes its joints make one: pairs of those that stay and those
+    /// that go.
+    fn mesh_of_blocks(
+        &mut self,
+        at: usize,
+        nodes: &Nodes,
+        twins: &mut Vec<(usize, usize)>,
+    ) -> Result<(), Fault> {
+        let Nodes::Mesh {
+            id,
+            of,
+            joints,
+            tolerance,
+        } = nodes
+        else {
+            return Ok(());
+        };
+        let here = at!["nodes", at];
+        if !(0.0..=0.1).contains(tolerance) {
+            let message = format!(
+                "the tolerance is {tolerance:?}; it must be 0 to 0.1, in lengths of the edge"
+            );
+            return Err(Fault::new(here.then("tolerance"), message));
+        }
+        if of.is_empty() {
+            return Err(Fault::new(
+                here.then("of"),
+                "the list is empty; name the blocks of the mesh",
+            ));
+        }
+        let mut parts = Vec::new();
+        for (k, block) in of.iter().enumerate() {
+            let fault = |message| Fault::new(here.then("of").then(k), message);
+            let part = self.block(block).map_err(fault)?;
+            if parts.contains(&part) {
+                return Err(fault(format!("block {block:?} is named twice")));
+            }
+            parts.push(part);
+        }
+        for (k, (a, b)) in joints.iter().enumerate() {
+            let here = here.then("joints").then(k);
+            let a = self.edge(&here.then(0), a, &parts)?;
+            let b = self.edge(&here.then(1), b, &parts)?;
+            twins.extend(self.joint(&here, a, b, *tolerance)?);
+        }
+        let all: Vec<usize> = parts
+            .iter()
+            .flat_map(|&k| self.entries[k].nodes.clone())
+            .collect();
+        self.enter(at, id, all, Kind::Mesh);
+        if let Some(entry) = self.entries.last_mut() {
+            entry.parts = parts;
+        }
+        Ok(())
+    }
+
+    /// An edge of one of these blocks.
+    fn edge(&self, here: &Path, name: &str, parts: &[usize]) -> Result<&Entry, Fault> {
+        let fault = |message| Fault::new(here.clone(), message);
+        let edge = self.chain(name).map_err(fault)?;
+        let owner = parts.iter().any(|&k| self.entries[k].at == edge.at);
+        if edge.kind == Kind::Edge && owner {
+            return Ok(edge);
+        }
+        Err(fault(format!(
+            "{name:?} is no edge of a block of this mesh, which is what can be joined, as \"{}.right\"",
+            parts.first().map_or("block", |&k| &self.entries[k].id)
+        )))
+    }
+
+    /// The nodes that become one where two edges are joined. Both are walked with their block on the left, so that one
+    /// runs against the other.
+    fn joint(
+        &self,
+        here: &Path,
+        a: &Entry,
+        b: &Entry,
+        tolerance: f64,
+    ) -> Result<Vec<(usize, usize)>, Fault> {
+        let elements = |edge: &Entry| edge.nodes.len() / 2;
+        if a.nodes.len() != b.nodes.len() {
+            let message = format!(
+                "{:?} has {} elements and {:?} has {}; edges that are joined need as many",
+                a.id,
+                elements(a),
+                b.id,
+                elements(b)
+            );
+            return Err(Fault::new(here.clone(), message));
+        }
+        let place = |n: usize| self.nodes[n].at;
+        let length: f64 = a
+            .nodes
+            .windows(2)
+            .map(|w| distance(place(w[0]), place(w[1])))
+            .sum();
+        let pairs: Vec<(usize, usize)> = a
+            .nodes
+            .iter()
+            .copied()
+            .zip(b.nodes.iter().rev().copied())
+            .collect();
+        let apart = |&&(n, m): &&(usize, usize)| {
+            let far = distance(place(n), place(m)) > tolerance * length;
+            far || !distance(place(n), place(m)).is_finite()
+        };
+        let Some(&(n, m)) = pairs.iter().find(apart) else {
+            return Ok(pairs);
+        };
+        let ([x, y], [v, w]) = (place(n), place(m));
+        let message = format!(
+            "the edges do not coincide: {} is at ({x:?}, {y:?}) and {} at ({v:?}, {w:?}), {:.3e} apart; \
+             at most {:.3e} is allowed (tolerance {tolerance:?} of the length {length:.4})",
+            self.nodes[n].name,
+            self.nodes[m].name,
+            distance(place(n), place(m)),
+            tolerance * length
+        );
+        Err(Fault::new(here.clone(), message))
+    }
+
+    /// Makes one node of those that are twins, the first of them, and numbers the rest anew.
+    fn merge(&mut self, twins: &[(usize, usize)]) {
+        if twins.is_empty() {
+            return;
+        }
+        let mut root: Vec<usize> = (0..self.nodes.len()).collect();
+        fn find(root: &[usize], mut n: usize) -> usize {
+            while root[n] != n {
+                n = root[n];
+            }
+            n
+        }
+        for &(a, b) in twins {
+            let (a, b) = (find(&root, a), find(&root, b));
+            root[a.max(b)] = a.min(b);
+        }
+        let mut number = vec![0; root.len()];
+        let mut kept = Vec::with_capacity(root.len());
+        for (n, node) in std::mem::take(&mut self.nodes).into_iter().enumerate() {
+            let first = find(&root, n);
+            if first == n {
+                number[n] = kept.len();
+                kept.push(node);
+            } else {
+                // The first of its twins was numbered before.
+                number[n] = number[first];
+            }
+        }
+        self.nodes = kept;
+        for entry in &mut self.entries {
+            entry.nodes.iter_mut().for_each(|n| *n = number[*n]);
+            if entry.kind == Kind::Mesh {
+                let mut seen = HashSet::new();
+                entry.nodes.retain(|n| seen.insert(*n));
+            }
         }
     }
 
-    /// The entries: single nodes, chains, blocks and their edges.
+    /// The entries: single nodes, chains, blocks, their edges, and meshes.
     pub(crate) fn entries(&self) -> &[Entry] {
         &self.entries
     }
@@ -251,7 +484,11 @@ impl Names {
                 Ok(_) => Err(format!(
                     "no node called {}: the {} has {count} nodes, \"{}.1\" to \"{}.{count}\"",
                     quoted(name),
-                    if is_chain { "chain" } else { "block" },
+                    match entry.kind {
+                        Kind::Block(_) => "block",
+                        Kind::Mesh => "mesh",
+                        _ => "chain",
+                    },
                     entry.id,
                     entry.id
                 )),
@@ -274,7 +511,7 @@ impl Names {
                     known.extend(["start", "end", "all"].map(|which| format!("{id}.{which}")));
                     shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
                 }
-                Kind::Block(_) => {
+                Kind::Block(_) | Kind::Mesh => {
                     known.push(format!("{id}.all"));
                     shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
                 }
@@ -303,9 +540,21 @@ impl Names {
                 (vec![*at], Kind::Single)
             }
             Nodes::Block {
-                corners, elements, ..
+                corners,
+                elements,
+                grading,
+                sides,
+                place,
+                ..
             } => {
-                let (grid, points) = block(&here, corners, *elements, refine)?;
+                let shape = Shape {
+                    corners,
+                    elements: *elements,
+                    grading: *grading,
+                    sides,
+                    place,
+                };
+                let (grid, points) = block(&here, &shape, refine, &|id| self.curve(id))?;
                 (points, Kind::Block(grid))
             }
             Nodes::Line {
@@ -341,7 +590,7 @@ impl Names {
                 through(&here, points, *per_element, refine)?,
                 Kind::Chain(*per_element),
             ),
-            Nodes::Chain { .. } => return Ok(()),
+            Nodes::Chain { .. } | Nodes::Mesh { .. } => return Ok(()),
         };
         let id = nodes.id();
         let first = self.nodes.len();
@@ -365,6 +614,16 @@ impl Names {
         Ok(())
     }
 
+    /// Points along a chain that exists already, and nodes per element.
+    fn curve(&self, id: &str) -> Result<(Vec<Point>, usize), String> {
+        let chain = self.chain(id)?;
+        let place = |n: &usize| (self.nodes[*n].at[0], self.nodes[*n].at[1]);
+        Ok((
+            chain.nodes.iter().map(place).collect(),
+            chain.kind.per_element().unwrap_or(2),
+        ))
+    }
+
     fn share(
         &mut self,
         at: usize,
@@ -385,7 +644,9 @@ impl Names {
                     2 * limits::NODES
                 )));
             }
-            if shared.last().is_some() && shared.last() == found.first() {
+            if found.len() > 1 && shared.last().is_some() && shared.last() == found.first() {
+                shared.pop();
+            } else if shared.last().is_some() && shared.last() == found.first() {
                 return Err(fault(format!(
                     "{name:?} stands twice in a row; a chain must go on to another node"
                 )));
@@ -404,6 +665,7 @@ impl Names {
             nodes,
             kind,
             at,
+            parts: Vec::new(),
         });
     }
 }
@@ -486,7 +748,7 @@ fn check_total(spec: &Spec) -> Result<(), Fault> {
                 let refine = spec.refine as f64;
                 (3.0 * nx * ny * refine + 2.0 * (nx + ny)) * refine + 1.0
             }
-            Nodes::Chain { .. } => 0.0,
+            Nodes::Mesh { .. } | Nodes::Chain { .. } => 0.0,
         };
         if total > limits::NODES as f64 {
             let message = format!(

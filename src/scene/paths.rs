@@ -7,7 +7,7 @@ use super::error::{Path, at, nearest, quoted};
 use super::spec::{
     AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, Law, LoadSpec,
     Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity, Region, ResidualMethod, Scale,
-    Settings, SlipCount, Solver, Spec, Sticking, Ties, Update,
+    Settings, Side, Sides, SlipCount, Solver, Spec, Sticking, Ties, Update,
 };
 
 /// A value set from outside.
@@ -425,10 +425,35 @@ fn nodes(place: &Place, entry: &mut Nodes, visit: &mut Visit<'_>) {
             per_element
         }
         Nodes::Block {
-            corners, elements, ..
+            corners,
+            elements,
+            grading,
+            sides,
+            place: put,
+            ..
         } => {
             points(&place.field("corners"), corners, visit);
-            return pair(&place.field("elements"), elements, visit);
+            pair(&place.field("elements"), elements, visit);
+            point(&place.field("grading"), grading, visit);
+            block_sides(&place.field("sides"), sides, visit);
+            let put_at = place.field("place");
+            visit(&put_at.field("turn"), Scalar::Number(&mut put.turn));
+            point(&put_at.field("about"), &mut put.about, visit);
+            return point(&put_at.field("shift"), &mut put.shift, visit);
+        }
+        Nodes::Mesh {
+            of,
+            joints,
+            tolerance,
+            ..
+        } => {
+            texts(&place.field("of"), of, visit);
+            for (k, (a, b)) in joints.iter_mut().enumerate() {
+                let joint = place.field("joints").index(k);
+                visit(&joint.part("a", 0), Scalar::Text(a));
+                visit(&joint.part("b", 1), Scalar::Text(b));
+            }
+            return visit(&place.field("tolerance"), Scalar::Number(tolerance));
         }
         Nodes::Chain {
             of, per_element, ..
@@ -438,6 +463,26 @@ fn nodes(place: &Place, entry: &mut Nodes, visit: &mut Visit<'_>) {
         }
     };
     visit(&place.field("per_element"), Scalar::Count(per));
+}
+
+fn block_sides(place: &Place, sides: &mut Sides, visit: &mut Visit<'_>) {
+    let around = [
+        ("bottom", &mut sides.bottom),
+        ("right", &mut sides.right),
+        ("top", &mut sides.top),
+        ("left", &mut sides.left),
+    ];
+    for (name, side) in around {
+        match side {
+            Some(Side::Arc { center }) => {
+                point(&place.field(name).field("center"), center, visit);
+            }
+            Some(Side::Along { chain }) => {
+                visit(&place.field(name).field("chain"), Scalar::Text(chain));
+            }
+            None => {}
+        }
+    }
 }
 
 #[allow(non_snake_case)]

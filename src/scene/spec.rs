@@ -91,22 +91,48 @@ pub enum Nodes {
         points: Vec<Point>,
         per_element: usize,
     },
-    /// A mesh of 8-node quadrilaterals on a block with four straight edges.
+    /// A mesh of 8-node quadrilaterals on a block with four sides.
     ///
     /// Its edges are chains of 3-node elements, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
     /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
     /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
     Block {
         id: String,
-        /// Two opposite corners of an upright rectangle, lower left and upper right; or all four of a convex
+        /// Two opposite corners of an upright rectangle, lower left and upper right; or all four of a
         /// quadrilateral, anticlockwise, the bottom edge first.
         corners: Vec<Point>,
         /// Number of elements along the bottom and along the left edge, before refinement.
         elements: (usize, usize),
+        /// Length of the last element over that of the first along bottom and top (left to right), and along left and
+        /// right (upwards); lengths between grow by a constant factor. Refinement divides each element evenly.
+        /// Default: (1, 1).
+        #[serde(default = "even")]
+        grading: (f64, f64),
+        /// Sides that are not straight; what lies between is blended from all four. Default: none.
+        #[serde(default)]
+        sides: Sides,
+        /// Turns and shifts the block, curved sides and all, once it is made. Default: as it lies.
+        #[serde(default)]
+        place: Place,
     },
-    /// A chain over nodes that exist already, which it shares (a rigid joint between beams). Not refined.
+    /// One mesh of several blocks, joined along sides. Blocks lie apart, however close, where no joint names them.
+    Mesh {
+        id: String,
+        /// The blocks. Their edges keep their names; their common nodes have one name for each.
+        of: Vec<String>,
+        /// Pairs of edges that become one, as `("a.right", "b.left")`: their nodes must coincide one by one.
+        joints: Vec<(String, String)>,
+        /// How far two nodes that become one may be apart, in lengths of the edge; the first edge's stays.
+        /// Default: 1e-6.
+        #[serde(default = "joint_tolerance")]
+        tolerance: f64,
+    },
+    /// A chain over nodes that exist already, which it shares: a rigid joint between beams, or a line along several
+    /// edges of blocks, around a corner too. Refined as far as its parts are.
     Chain {
         id: String,
+        /// Names of single nodes, of whole chains (`ID.all`) and of edges of blocks. A chain or edge goes on from the
+        /// node at which the one before it ends.
         of: Vec<String>,
         per_element: usize,
     },
@@ -121,9 +147,64 @@ impl Nodes {
             | Nodes::Arc { id, .. }
             | Nodes::Through { id, .. }
             | Nodes::Block { id, .. }
+            | Nodes::Mesh { id, .. }
             | Nodes::Chain { id, .. } => id,
         }
     }
+}
+
+fn even() -> (f64, f64) {
+    (1.0, 1.0)
+}
+
+fn joint_tolerance() -> f64 {
+    1e-6
+}
+
+/// The curved sides of a block. Default of each: straight.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sides {
+    pub bottom: Option<Side>,
+    pub right: Option<Side>,
+    pub top: Option<Side>,
+    pub left: Option<Side>,
+}
+
+impl Sides {
+    /// In the order of the walk around the block: bottom, right, top, left.
+    pub fn around(&self) -> [Option<&Side>; 4] {
+        [
+            self.bottom.as_ref(),
+            self.right.as_ref(),
+            self.top.as_ref(),
+            self.left.as_ref(),
+        ]
+    }
+}
+
+/// A curved side of a block, from corner to corner.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Side {
+    /// The circular arc about a center that is equally far from both corners, the shorter way round.
+    Arc { center: Point },
+    /// The curve of a chain that stands above the block in the scene, or of an earlier block's edge, walked either
+    /// way; its ends are the two corners. Only the curve is taken, with the chain's own spacing (a graded edge is
+    /// graded already); no nodes are shared.
+    Along { chain: String },
+}
+
+/// Where a block is put: first turned, then shifted.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Place {
+    /// Degrees, anticlockwise. Default: 0.
+    pub turn: f64,
+    /// The point about which it turns. Default: (0, 0).
+    pub about: Point,
+    /// Default: (0, 0).
+    pub shift: Point,
 }
 
 /// A material or section.
@@ -221,10 +302,10 @@ pub enum BodySpec {
         along: String,
         material: String,
     },
-    /// A continuum on the mesh of a block.
+    /// A continuum on a block, or on a mesh of several.
     Solid {
         id: String,
-        /// Id of the block.
+        /// Id of the block or mesh.
         mesh: String,
         material: String,
         /// Parts of another material; where they overlap, the last one holds. Default: none.
@@ -273,7 +354,7 @@ pub struct SurfaceSpec {
 #[serde(deny_unknown_fields)]
 pub struct SlaveSpec {
     /// Names of nodes; `ID.all` stands for every node of a chain, and a block's `ID.left` for those of its edge, less
-    /// those that cannot move over surfaces that cannot move either.
+    /// those that cannot move over surfaces that cannot move either. The corner of two edges counts once.
     pub nodes: Vec<String>,
     /// Surfaces among which each node finds its own element.
     pub on: Vec<String>,

@@ -64,6 +64,11 @@ impl Canvas {
         cell.1 = style;
     }
 
+    /// The cells that it covers.
+    pub fn area(&self) -> Rect {
+        self.area
+    }
+
     /// The cell that holds a place, if it is on the canvas.
     pub fn cell(&self, at: Dot) -> Option<(u16, u16)> {
         let [width, height] = self.size();

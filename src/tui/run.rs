@@ -333,10 +333,10 @@ impl Debugger {
         said || grown || failed || was_busy != busy
     }
 
-    /// Waits a moment for a quick step, so that keys typed fast are not told to wait.
+    /// Waits a moment for a quick step, so that keys typed fast are not told to wait. A run to the end is none.
     fn breathe(&mut self) {
         let begin = std::time::Instant::now();
-        while self.is_busy() && begin.elapsed() < QUICK {
+        while self.is_busy() && !self.endless && begin.elapsed() < QUICK {
             std::thread::sleep(Duration::from_micros(500));
             self.advance();
         }

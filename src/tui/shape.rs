@@ -1,18 +1,23 @@
-//! The shape: bodies as they were (faint) and as they are, master surfaces with their outward side, contact forces,
-//! and the slave nodes by the letters of their modes. Drawn at the start of the shown major iteration.
+//! The shape: bodies as they were (faint) and as they are, with their names where there are several, master surfaces
+//! with their outward side, contact forces, and the slave nodes by the letters of their modes. Of a solid, lines
+//! between its materials are drawn, and its elements where they are large enough to be told apart. Drawn at the start
+//! of the shown major iteration.
 
 use crate::contact::projection::tangent;
 use crate::fem::lagrange;
+use crate::scene::model::{BodyKind, Solid};
 use crate::tui::app::{App, Camera};
 use crate::tui::canvas::{Canvas, Dot};
 use crate::tui::layout::Pane;
 use crate::tui::view::View;
 use crate::tui::{draw, number, theme};
-use ratatui::buffer::Buffer;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
+use std::collections::HashMap;
+use unicode_width::UnicodeWidthStr;
 
 type Point = [f64; 2];
 
@@ -21,6 +26,8 @@ const PIECES: usize = 12;
 /// Length of the longest force, and of a normal, as parts of what is seen.
 const FORCE: f64 = 0.25;
 const NORMAL: f64 = 0.04;
+/// Least diagonal of an element that is drawn, in dots.
+const ELEMENT: f64 = 12.0;
 /// Dots between two normals of an element.
 const SPACING: f64 = 16.0;
 
@@ -46,6 +53,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     surfaces(&mut canvas, &window, app, view);
     let longest = forces(&mut canvas, &window, app, view);
     canvas.render(buffer);
+    names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
     if inner.height > 1 {
         caption(buffer, inner, longest, app);
@@ -156,6 +164,12 @@ impl Window {
         }
     }
 
+    /// Whether something at a place, so many dots large, can be on the canvas.
+    fn sees(&self, place: Point, size: f64) -> bool {
+        let dot = self.dot(place);
+        (0..2).all(|axis| dot[axis] > -size && dot[axis] < self.size[axis] + size)
+    }
+
     fn dot(&self, point: Point) -> Dot {
         let x = 0.5 * self.size[0] + (point[0] - self.middle[0]) * self.scale;
         let y = 0.5 * self.size[1] - (point[1] - self.middle[1]) * self.scale;
@@ -207,10 +221,92 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
             .collect();
         draw_curve(canvas, window, &reference, app.theme.faint);
     }
+    for body in &view.model.bodies {
+        if let BodyKind::Solid(solid) = &body.kind {
+            inside(canvas, window, solid, app, view);
+        }
+    }
     for element in elements() {
         let now: Vec<Point> = element.iter().map(|node| view.place(*node)).collect();
         draw_curve(canvas, window, &now, app.theme.strong);
     }
+}
+
+/// Lines between the elements of a solid, where there is room, and between its materials.
+fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: &View) {
+    let sides = |element: &[usize; 8]| {
+        let e = *element;
+        [0, 1, 2, 3].map(|k| [e[k], e[k + 4], e[(k + 1) % 4]])
+    };
+    for element in &solid.elements {
+        let (a, b) = (view.place(element[0]), view.place(element[2]));
+        let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
+        if size >= ELEMENT && window.sees(a, size) {
+            for side in sides(element) {
+                let now = side.map(|node| view.place(node));
+                draw_curve(canvas, window, &now, app.theme.faint);
+            }
+        }
+    }
+    if solid.materials.len() < 2 {
+        return;
+    }
+    let mut other = HashMap::new();
+    for (element, material) in solid.elements.iter().zip(&solid.material_of) {
+        for side in sides(element) {
+            // Neighbours share the node in the middle of their side.
+            match other.insert(side[1], material) {
+                Some(across) if across != material => {
+                    let now = side.map(|node| view.place(node));
+                    draw_curve(canvas, window, &now, app.theme.text);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Names of the bodies, where there are several and they have room: in the middle of a solid, beside a beam.
+fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
+    if view.model.bodies.len() < 2 {
+        return;
+    }
+    let area = canvas.area();
+    // Lines that stand back, as those between elements, give way to a name; outlines and forces do not.
+    let gives_way = |cell: &Cell| cell.symbol() == " " || cell.modifier.contains(Modifier::DIM);
+    for body in &view.model.bodies {
+        let name = draw::cut(&body.name, 12);
+        let wide = name.width() as u16;
+        let (at, aside) = match &body.kind {
+            BodyKind::Solid(_) => (mean(&body.nodes, view), -i32::from(wide / 2)),
+            BodyKind::Beam(_) => (view.place(body.nodes[body.nodes.len() / 2]), 2),
+        };
+        let Some((x, y)) = canvas.cell(window.dot(at)) else {
+            continue;
+        };
+        let left = i32::from(x) + aside;
+        if left < i32::from(area.x) || left + i32::from(wide) > i32::from(area.right()) {
+            continue;
+        }
+        let left = left as u16;
+        let blank = |row: u16| {
+            (area.top()..area.bottom()).contains(&row)
+                && (left..left + wide).all(|x| gives_way(&buffer[(x, row)]))
+        };
+        let rows = [y, y.saturating_sub(1), y + 1, y.saturating_sub(2), y + 2];
+        if let Some(row) = rows.into_iter().find(|row| blank(*row)) {
+            buffer.set_string(left, row, &name, app.theme.heading);
+        }
+    }
+}
+
+/// Mean of the places of nodes.
+fn mean(nodes: &[usize], view: &View) -> Point {
+    let sum = nodes
+        .iter()
+        .map(|node| view.place(*node))
+        .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
+    sum.map(|x| x / nodes.len() as f64)
 }
 
 /// Master surfaces, with a short line from the middle of each element to its outward side.

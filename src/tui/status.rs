@@ -24,7 +24,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
         return;
     };
     // The position is what a screen of one line must show.
-    let mut lines = vec![position(app, view)];
+    let mut lines = vec![position(app, view, area.width as usize)];
     if area.height > 2 {
         lines.insert(0, scene(app, view, area.width as usize));
     }
@@ -54,30 +54,40 @@ fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
     ])
 }
 
-/// Where the solver is: the minor iteration that is shown, or the first one to come.
-fn position(app: &App, view: &View) -> Line<'static> {
+/// Where the solver is: the minor iteration that is shown, or the first one to come. A narrow screen has it closer, and
+/// without the attempt where that is the first.
+fn position(app: &App, view: &View, width: usize) -> Line<'static> {
+    let (wide, closer) = (place(app, view, "   ", true), place(app, view, "  ", true));
+    let second = view.position().attempt > 1;
+    [wide, closer]
+        .into_iter()
+        .find(|line| line.width() <= width)
+        .unwrap_or_else(|| place(app, view, " ", second))
+}
+
+fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
     let at = view.position();
     let load = match view.event() {
         Some(event) => event.load_factor,
         None => view.frame().state.load_factor,
     };
     let counts = [
-        ("increment", at.increment),
-        ("attempt", at.attempt),
-        ("major", at.major),
-        ("minor", at.minor),
+        ("increment", at.increment, true),
+        ("attempt", at.attempt, attempt),
+        ("major", at.major, true),
+        ("minor", at.minor, true),
     ];
     let mut spans = vec![Span::raw(" ")];
-    for (name, count) in counts {
+    for (name, count, _) in counts.into_iter().filter(|(_, _, shown)| *shown) {
         spans.push(Span::styled(format!("{name} "), app.theme.faint));
-        spans.push(Span::styled(format!("{count}   "), app.theme.heading));
+        spans.push(Span::styled(format!("{count}{apart}"), app.theme.heading));
     }
     spans.push(Span::styled("load ", app.theme.faint));
     spans.push(Span::styled(number::plain(load), app.theme.heading));
     let (shown, last) = (view.cursor, view.frames.len() - 1);
     if shown < last {
         spans.push(Span::styled(
-            format!("   {shown} of {last} steps"),
+            format!("{apart}{shown} of {last} steps"),
             app.theme.warning,
         ));
     }

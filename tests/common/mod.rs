@@ -103,3 +103,31 @@ pub fn number(row: &HashMap<String, String>, column: &str) -> f64 {
         .parse()
         .unwrap_or_else(|_| panic!("{column}: {:?}", row[column]))
 }
+
+/// Two strips pressed on each other, the lower one held below, `refine` times finer than 25 slave nodes: with 8, 193
+/// slave nodes and about 10,000 unknowns.
+pub fn two_blocks(refine: usize) -> Scene {
+    let text = format!(
+        r#"(
+    title: "Two strips pressed on each other",
+    refine: {refine},
+    nodes: [
+        Block(id: "low", corners: [(0, 0), (13, 1)], elements: (13, 1)),
+        Block(id: "up", corners: [(0.5, 1), (12.5, 1), (12.5, 2), (0.5, 2)], elements: (12, 1), place: (shift: (0, 0.001))),
+    ],
+    materials: [Elastic(id: "e", E: 1000, nu: 0.3)],
+    bodies: [Solid(id: "low", mesh: "low", material: "e"), Solid(id: "up", mesh: "up", material: "e")],
+    surfaces: [(id: "low", along: "low.top")],
+    slaves: [(nodes: ["up.bottom"], on: ["low"])],
+    friction: (angle: 20),
+    supports: [(node: "low.bottom", fix: [x, y])],
+    loads: [
+        Displacement(node: "up.top.all", component: y, value: -0.02),
+        Displacement(node: "up.top.all", component: x, value: 0.01),
+    ],
+    history: (path: [0, 1], increment: 0.1),
+    monitors: [(name: "contact_x", of: Contact(component: x)), (name: "contact_y", of: Contact(component: y))],
+)"#
+    );
+    Scene::from_text("two-blocks", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+}

@@ -1,12 +1,11 @@
 //! Materials, bodies, and the elements along chains.
 
-use super::super::blocks::EDGES;
 use super::super::curves::point;
 use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use super::super::geometry;
 use super::super::limits;
 use super::super::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
-use super::super::nodes::{Entry, Names, unique};
+use super::super::nodes::{Mesh, Names, unique};
 use super::super::spec::{BodySpec, Law, Material, Point, Region, Spec, Update};
 use std::collections::HashSet;
 
@@ -106,12 +105,16 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
             ),
             BodySpec::Solid { id, mesh, .. } => {
                 let here = at!["bodies", k];
+                let path = here.then("mesh");
+                let mesh = names
+                    .mesh(mesh)
+                    .map_err(|message| Fault::new(path.clone(), message))?;
+                total += 8 * mesh.elements.len();
+                limits::element_nodes(&path, total)?;
                 Ok(Body {
                     name: id.clone(),
-                    kind: BodyKind::Solid(solid(&here, mesh, body, spec, names, &mut total)?),
-                    nodes: names
-                        .block(mesh)
-                        .map_or(Vec::new(), |(e, _)| e.nodes.clone()),
+                    nodes: mesh.nodes.clone(),
+                    kind: BodyKind::Solid(solid(&here, mesh, body, spec, names)?),
                 })
             }
         })
@@ -180,14 +183,13 @@ fn beam(
     })
 }
 
-/// The mesh of a block, and what each of its elements is made of.
+/// A mesh, and what each of its elements is made of.
 fn solid(
     here: &Path,
-    mesh: &str,
+    mesh: Mesh,
     body: &BodySpec,
     spec: &Spec,
     names: &Names,
-    total: &mut usize,
 ) -> Result<Solid, Fault> {
     let BodySpec::Solid {
         material: of,
@@ -197,23 +199,11 @@ fn solid(
     else {
         return Err(Fault::new(here.clone(), "the body is no solid"));
     };
-    let path = here.then("mesh");
-    let (entry, grid) = names
-        .block(mesh)
-        .map_err(|message| Fault::new(path.clone(), message))?;
-    *total += 8 * grid.columns * grid.rows;
-    limits::element_nodes(&path, *total)?;
-    let elements: Vec<[usize; 8]> = grid
-        .elements()
-        .map(|element| element.map(|n| entry.nodes[n]))
-        .collect();
     let mut made = Solid {
-        material_of: vec![0; elements.len()],
+        material_of: vec![0; mesh.elements.len()],
         materials: vec![continuum(&here.then("material"), spec, of)?],
-        edges: edge_chains(names, mesh)
-            .flat_map(|chain| chain.elements())
-            .collect(),
-        elements,
+        edges: mesh.edges,
+        elements: mesh.elements,
     };
     for (k, region) in regions.iter().enumerate() {
         apply(
@@ -225,13 +215,6 @@ fn solid(
         )?;
     }
     Ok(made)
-}
-
-/// The edges of a block, anticlockwise.
-fn edge_chains<'n>(names: &'n Names, mesh: &str) -> impl Iterator<Item = &'n Entry> {
-    EDGES
-        .iter()
-        .filter_map(move |edge| names.chain(&format!("{mesh}.{edge}")).ok())
 }
 
 fn continuum(here: &Path, spec: &Spec, id: &str) -> Result<Elastic, Fault> {
@@ -295,7 +278,7 @@ pub(super) fn check_bodies(
             (BodyKind::Beam(beam), BodySpec::Beam { along, .. }) => {
                 check_chain(names, along, &beam.elements, length)?;
             }
-            // What lies between the edges lies between sound curves.
+            // The elements themselves were checked when their block was made.
             (BodyKind::Solid(solid), BodySpec::Solid { mesh, .. }) => {
                 check_chain(names, mesh, &solid.edges, length)?;
             }

@@ -5,7 +5,7 @@ use super::super::geometry;
 use super::super::limits;
 use super::super::model::{Dofs, Slave, Surface};
 use super::super::nodes::{Names, unique};
-use super::super::spec::{Component, Friction, Nodes, SlaveSpec, Spec};
+use super::super::spec::{Component, Friction, Nodes, Side, SlaveSpec, Spec};
 use super::bodies::{check_chain, elements};
 use std::collections::HashSet;
 
@@ -57,9 +57,18 @@ pub(super) fn slaves(
                 "the list is empty; name at least one slave node",
             ));
         }
+        let mut ends = HashSet::new();
         for (j, name) in group.nodes.iter().enumerate() {
             let fault = |message: String| Fault::new(here.then("nodes").then(j), message);
-            for node in names.nodes(name).map_err(fault)? {
+            let found = names.nodes(name).map_err(fault)?;
+            // Two edges of a block share their corner.
+            let own_ends: Vec<usize> = match found[..] {
+                [first, .., last] => vec![first, last],
+                _ => Vec::new(),
+            };
+            let met = |node: &usize| own_ends.contains(node) && ends.contains(node);
+            let fresh_ones: Vec<usize> = found.into_iter().filter(|node| !met(node)).collect();
+            for node in fresh_ones {
                 let slave = Slave {
                     node,
                     surfaces: on.clone(),
@@ -73,6 +82,7 @@ pub(super) fn slaves(
                     return Err(fault(format!("more than {} slave nodes", limits::SLAVES)));
                 }
             }
+            ends.extend(own_ends);
         }
     }
     Ok(made)
@@ -194,7 +204,10 @@ pub(super) fn check_use(
     slaves.iter().for_each(|s| used[s.node] = true);
     for entry in names.entries() {
         // A block's edges share its nodes, and it has an entry of its own.
-        let shares = matches!(spec.nodes[entry.at], Nodes::Chain { .. });
+        let shares = matches!(
+            spec.nodes[entry.at],
+            Nodes::Chain { .. } | Nodes::Mesh { .. }
+        ) || is_side(spec, spec.nodes[entry.at].id());
         let idle = entry.nodes.iter().find(|&&n| !used[n]);
         if let (Some(&node), false) = (idle, shares) {
             let message = format!(
@@ -205,6 +218,15 @@ pub(super) fn check_use(
         }
     }
     Ok(())
+}
+
+/// Whether a block takes its curve from the chain with this id.
+fn is_side(spec: &Spec, id: &str) -> bool {
+    let follows = |side: &&Side| matches!(side, Side::Along { chain } if chain == id);
+    spec.nodes.iter().any(|nodes| match nodes {
+        Nodes::Block { sides, .. } => sides.around().iter().flatten().any(follows),
+        _ => false,
+    })
 }
 
 /// Marks the surfaces that no unknown can move.
