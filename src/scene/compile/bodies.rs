@@ -8,6 +8,7 @@ use super::super::limits;
 use super::super::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
 use super::super::nodes::{Entry, Names, unique};
 use super::super::spec::{BodySpec, Law, Material, Point, Region, Spec, Update};
+use super::linear;
 use std::collections::HashSet;
 
 /// Refuses materials without usable stiffnesses.
@@ -114,6 +115,8 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
                         .map_or(Vec::new(), |(e, _)| e.nodes.clone()),
                 })
             }
+            BodySpec::Matrix { .. } => linear::matrix(&at!["bodies", k], body, names),
+            BodySpec::Springs { id, bars } => linear::springs(&at!["bodies", k], id, bars, names),
         })
         .collect()
 }
