@@ -114,7 +114,7 @@ fn the_pinned_beam_is_numbered_node_by_node_with_shear_last() {
         &model.dofs.equation[25..],
         [Some(13), Some(14), Some(15), Some(16)]
     );
-    assert_eq!((model.dofs.equations, model.dofs.shear), (17, 4));
+    assert_eq!((model.dofs.equations, model.dofs.inner), (17, 4));
     let BodyKind::Beam(beam) = &model.bodies[0].kind else {
         panic!("no beam")
     };
@@ -133,7 +133,7 @@ fn shear_stiffness_replaces_the_shear_unknowns() {
     };
     assert_eq!((beam.ga, beam.first_shear), (Some(5.0), None));
     assert_eq!(
-        (model.dofs.equations, model.dofs.shear, model.dofs.len()),
+        (model.dofs.equations, model.dofs.inner, model.dofs.len()),
         (13, 0, 25)
     );
 }
@@ -1014,7 +1014,7 @@ fn cost_counts_what_the_model_has() {
     for builtin in builtin::list() {
         let scene = Scene::open(builtin.name, &[("refine".into(), "2".into())]).unwrap();
         let cost = Cost::of(&scene);
-        let bodies = cost.translations + cost.rotations + cost.shears;
+        let bodies = cost.translations + cost.rotations + cost.shears + cost.forces;
         assert_eq!(bodies, scene.model.dofs.equations, "{}", builtin.name);
         assert_eq!(cost.unknowns(), bodies + 2 * scene.model.slaves.len());
     }
@@ -1056,6 +1056,11 @@ fn assert_usable(model: &Model) {
                 assert!(solid.material_of.iter().all(|&k| k < solid.materials.len()));
                 let nodes: HashSet<usize> = solid.elements.iter().flatten().copied().collect();
                 assert_eq!(nodes, body.nodes.iter().copied().collect());
+            }
+            BodyKind::Linear(linear) => {
+                let size = 2 * body.nodes.len();
+                let fits = |&(i, j, v): &(usize, usize, f64)| i < size && j < size && v.is_finite();
+                assert!(linear.entries.iter().all(fits));
             }
         }
     }

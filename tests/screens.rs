@@ -54,6 +54,7 @@ fn model(slaves: usize) -> Model {
             name: "floor".into(),
             elements: vec![vec![count + 2, count + 1], vec![count + 1, count]],
             rigid: true,
+            endless: false,
         }],
         slaves: (0..slaves)
             .map(|node| Slave {
@@ -64,6 +65,7 @@ fn model(slaves: usize) -> Model {
                     cohesion: 0.0,
                 },
                 start: Mode::Free,
+                state: Default::default(),
             })
             .collect(),
         dofs: Dofs {
@@ -71,7 +73,7 @@ fn model(slaves: usize) -> Model {
             count: vec![3; nodes.len()],
             equation: vec![None; 3 * nodes.len()],
             equations: 0,
-            shear: 0,
+            inner: 0,
         },
         nodes,
         loads: vec![],

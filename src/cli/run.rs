@@ -3,6 +3,7 @@
 use super::interrupt::Interrupt;
 use super::sink::{Sent, Sink};
 use super::{Error, Exit, SceneArgs, table, tell};
+use crate::debug::diagnosis::{self, Diagnosis};
 use crate::debug::files::Output;
 use crate::debug::report;
 use crate::debug::snapshot::Snapshot;
@@ -220,7 +221,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells how the run ended.
-    fn tell(&self, end: &End, args: &Args) -> Exit {
+    fn tell(&mut self, end: &End, args: &Args) -> Exit {
         if self.doubtful > MOST_WARNINGS {
             tell(&format!(
                 "warning: {} increments in all were accepted like this",
@@ -249,8 +250,24 @@ impl<'a> Run<'a> {
                     failure,
                 );
                 tell(&format!("{name}: {told}"));
+                if matches!(failure, Failure::Cycle(_)) {
+                    self.diagnose();
+                }
                 Exit::Unconverged
             }
+        }
+    }
+
+    /// Tells why the minor iterations cycle, and what gets out.
+    fn diagnose(&mut self) {
+        let Some(problem) = self.stepper.frozen() else {
+            return;
+        };
+        let Some(diagnosis) = Diagnosis::of(&problem) else {
+            return;
+        };
+        for line in diagnosis::words(&self.scene.model, &problem, &diagnosis) {
+            tell(&format!("  {line}"));
         }
     }
 

@@ -63,10 +63,16 @@ pub fn project(
     let mut best: Option<(f64, Spot)> = None;
     let consider = |surface: usize, element: usize, best: &mut Option<(f64, Spot)>| {
         let nodes = &surfaces[surface].elements[element];
-        if best.is_some_and(|(distance, _)| box_distance(nodes, positions, slave) > distance) {
+        let endless = surfaces[surface].endless;
+        let beyond = |distance| !endless && box_distance(nodes, positions, slave) > distance;
+        if best.is_some_and(|(distance, _)| beyond(distance)) {
             return;
         }
-        let (distance, xi) = closest(nodes, positions, slave);
+        let (distance, xi) = if endless {
+            closest_of_line(nodes, positions, slave)
+        } else {
+            closest(nodes, positions, slave)
+        };
         let slack = STAY_TOLERANCE * chord(nodes, positions);
         if best.is_none_or(|(least, _)| distance < least - slack) {
             *best = Some((
@@ -104,7 +110,7 @@ pub fn footing(
     let foot = blend(nodes, positions, &s.n);
     let normal = normal_at(surface, spot, positions);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
-    let inside = spot.xi.abs() < 1.0;
+    let inside = spot.xi.abs() < 1.0 || surface.endless;
     Footing {
         foot,
         normal,
@@ -145,7 +151,7 @@ fn neighbour(surface: &Surface, spot: Spot) -> Option<(usize, f64)> {
 }
 
 fn past_end(surface: &Surface, spot: Spot, positions: &[[f64; 2]], slave: [f64; 2]) -> bool {
-    if spot.xi.abs() < 1.0 || neighbour(surface, spot).is_some() {
+    if surface.endless || spot.xi.abs() < 1.0 || neighbour(surface, spot).is_some() {
         return false;
     }
     let nodes = &surface.elements[spot.element];
@@ -153,6 +159,22 @@ fn past_end(surface: &Surface, spot: Spot, positions: &[[f64; 2]], slave: [f64; 
     let (foot, slope) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
     let beyond = spot.xi * ((slave[0] - foot[0]) * slope[0] + (slave[1] - foot[1]) * slope[1]);
     beyond > END_TOLERANCE * chord(nodes, positions) * slope[0].hypot(slope[1])
+}
+
+/// Distance to the closest point of the endless straight line through an element of two nodes, and its coordinate,
+/// which is not bounded.
+fn closest_of_line(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
+    let at = |xi: f64| blend(nodes, positions, &shape(nodes.len(), xi).n);
+    let (start, end) = (at(-1.0), at(1.0));
+    let (along, to) = (
+        [end[0] - start[0], end[1] - start[1]],
+        [slave[0] - start[0], slave[1] - start[1]],
+    );
+    let part = (to[0] * along[0] + to[1] * along[1])
+        / (along[0] * along[0] + along[1] * along[1]).max(f64::MIN_POSITIVE);
+    let xi = 2.0 * part - 1.0;
+    let foot = at(xi);
+    ((slave[0] - foot[0]).hypot(slave[1] - foot[1]), xi)
 }
 
 /// Distance to the closest point of an element, and its coordinate.
@@ -260,6 +282,7 @@ mod tests {
             name: "s".into(),
             elements,
             rigid: true,
+            endless: false,
         }]
     }
 
@@ -287,6 +310,21 @@ mod tests {
         let (s, x) = floor();
         assert!(project([2.01, 0.0], &s, &[0], &x, None).is_none());
         assert!(project([2.0, -0.3], &s, &[0], &x, None).is_some());
+    }
+
+    #[test]
+    fn an_endless_line_has_no_ends_and_the_same_gap_everywhere() {
+        let mut s = surface(vec![vec![0, 1]]);
+        s[0].endless = true;
+        let x = [[2.0, 1.0], [0.0, 0.0]];
+        let n = [-1.0 / 5f64.sqrt(), 2.0 / 5f64.sqrt()];
+        for along in [-1e3, -1.0, 0.3, 1.0, 40.0] {
+            let slave = [2.0 * along + 0.1 * n[0], along + 0.1 * n[1]];
+            let spot = project(slave, &s, &[0], &x, None).unwrap();
+            let f = footing(&s, spot, &x, slave);
+            assert!((f.gap - 0.1).abs() < 1e-12, "{along}: {}", f.gap);
+            assert!((f.normal[0] - n[0]).abs() < 1e-15 && f.curve.is_some());
+        }
     }
 
     #[test]

@@ -112,6 +112,7 @@ mod tests {
             name: "s".into(),
             elements: vec![(1..=m).collect()],
             rigid: false,
+            endless: false,
         }]
     }
 

@@ -731,6 +731,7 @@ mod tests {
             surfaces: vec![],
             friction: Friction::default(),
             start: Mode::Free,
+            state: Default::default(),
         };
         Model {
             title: String::new(),

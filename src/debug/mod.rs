@@ -7,8 +7,10 @@
 pub mod census;
 pub mod command;
 pub mod core;
+pub mod diagnosis;
 pub mod differences;
 pub mod files;
+pub mod influence;
 pub mod report;
 pub mod session;
 pub mod snapshot;

@@ -4,6 +4,7 @@
 
 use crate::fem::beam::{self, Section};
 use crate::fem::material::Material;
+use crate::fem::matrix;
 use crate::fem::quad8::{self, Past};
 use crate::linalg::Pattern;
 use crate::scene::Model;
@@ -12,7 +13,7 @@ use crate::scene::spec::Update;
 use std::ops::Range;
 
 /// An entry of an element's matrix that has no place in the system, since it is restrained.
-const NOWHERE: u32 = u32::MAX;
+pub(crate) const NOWHERE: u32 = u32::MAX;
 /// Most degrees of freedom of any element.
 const MAX_DOFS: usize = if beam::MAX_DOFS > quad8::DOFS {
     beam::MAX_DOFS
@@ -42,6 +43,8 @@ struct Placed {
 /// All elements of all bodies.
 pub struct Assembly {
     elements: Vec<Placed>,
+    /// Bodies that are given by a matrix.
+    matrices: Vec<matrix::Element>,
     /// Numbers that the elements placed so far remember.
     history_len: usize,
     force: [f64; MAX_DOFS],
@@ -81,6 +84,7 @@ impl Assembly {
     pub fn new(model: &Model) -> Self {
         let mut assembly = Assembly {
             elements: Vec::new(),
+            matrices: Vec::new(),
             history_len: 0,
             force: [0.0; MAX_DOFS],
             tangent: vec![0.0; MAX_DOFS * MAX_DOFS],
@@ -91,6 +95,10 @@ impl Assembly {
             match &body.kind {
                 BodyKind::Beam(beam) => assembly.add_beam(model, beam),
                 BodyKind::Solid(solid) => assembly.add_solid(model, solid),
+                BodyKind::Linear(linear) => {
+                    let element = matrix::Element::new(&model.dofs, body, linear);
+                    assembly.matrices.push(element);
+                }
             }
         }
         assembly
@@ -144,6 +152,9 @@ impl Assembly {
             let equations = || placed.dofs.iter().filter_map(|&d| dofs.equation[d]);
             entries.extend(equations().flat_map(|i| equations().map(move |j| (i, j))));
         }
+        for matrix in &self.matrices {
+            entries.extend(matrix.entries(dofs));
+        }
         entries
     }
 
@@ -165,6 +176,9 @@ impl Assembly {
                 (Some(i), Some(j)) => slot(i, j).unwrap_or(NOWHERE),
                 _ => NOWHERE,
             }));
+        }
+        for matrix in &mut self.matrices {
+            matrix.bind(dofs, pattern);
         }
     }
 
@@ -200,6 +214,9 @@ impl Assembly {
                 placed.couple(dofs, tangent, moved.step, out.coupling);
             }
         }
+        for matrix in &self.matrices {
+            matrix.add(dofs, moved.u, moved.step, &mut out);
+        }
     }
 
     /// Renews what the elements remember, once displacements `u` are accepted; `before` are those accepted last.
@@ -226,7 +243,7 @@ impl Assembly {
 /// How many numbers the elements of a scene remember from increment to increment.
 pub fn history_len(model: &Model) -> usize {
     let of = |body: &Body| match &body.kind {
-        BodyKind::Beam(_) => 0,
+        BodyKind::Beam(_) | BodyKind::Linear(_) => 0,
         BodyKind::Solid(solid) => {
             let remembers = |m: &&usize| solid.materials[**m].update == Update::Updated;
             quad8::MEMORY * quad8::POINTS * solid.material_of.iter().filter(remembers).count()

@@ -4,4 +4,5 @@ pub mod assembly;
 pub mod beam;
 pub mod lagrange;
 pub mod material;
+pub mod matrix;
 pub mod quad8;

@@ -110,12 +110,15 @@ pub(crate) struct Shape<'a> {
     pub place: &'a Place,
 }
 
+/// The points of a chain, and the nodes of each of its elements.
+pub(crate) type Spaced = (Vec<Point>, usize);
+
 /// The grid of a block and the positions of its nodes; `chain` finds the points and the nodes per element of a chain.
 pub(crate) fn block(
     here: &Path,
     shape: &Shape<'_>,
     refine: usize,
-    chain: &dyn Fn(&str) -> Result<(Vec<Point>, usize), String>,
+    chain: &dyn Fn(&str) -> Result<Spaced, String>,
 ) -> Result<(Grid, Vec<Point>), Fault> {
     let (columns, rows) = shape.elements;
     for (k, count) in [columns, rows].into_iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::compile::increments;
-use super::model::{BodyKind, Elastic, Model, Solid, Surface};
+use super::model::{Beam, Body, BodyKind, Elastic, Form, Linear, Model, Solid, Surface};
 use super::spec::Update;
 use std::fmt;
 
@@ -17,6 +17,8 @@ pub struct Cost {
     pub rotations: usize,
     /// Unknown shear forces of shear-rigid beams, one per Gauss point.
     pub shears: usize,
+    /// Unknown forces on bodies that are given by a compliance.
+    pub forces: usize,
     /// Unknown interface forces, a normal and a tangential one per slave node.
     pub interface: usize,
     /// Degrees of freedom that supports or prescribed displacements hold.
@@ -58,11 +60,13 @@ impl Cost {
             .map(|n| usize::from(model.dofs.count[n]))
             .sum();
         let (translations, rotations) = (counted(0) + counted(1), counted(2));
+        let forces = model.bodies.iter().map(own_forces).sum();
         Cost {
             nodes: (model.nodes.len(), on_bodies),
             translations,
             rotations,
-            shears: model.dofs.shear,
+            shears: model.dofs.inner - forces,
+            forces,
             interface: 2 * model.slaves.len(),
             held: of_bodies - translations - rotations,
             bodies: model.bodies.iter().map(body_line).collect(),
@@ -75,7 +79,7 @@ impl Cost {
 
     /// All unknowns of a minor iteration, interface forces included.
     pub fn unknowns(&self) -> usize {
-        self.translations + self.rotations + self.shears + self.interface
+        self.translations + self.rotations + self.shears + self.forces + self.interface
     }
 }
 
@@ -84,11 +88,45 @@ fn plural(count: usize, one: &str) -> String {
     format!("{count} {one}{end}")
 }
 
-fn body_line(body: &super::model::Body) -> String {
-    let beam = match &body.kind {
-        BodyKind::Beam(beam) => beam,
-        BodyKind::Solid(solid) => return solid_line(&body.name, solid),
+/// Unknown forces of a body that is given by a compliance.
+fn own_forces(body: &Body) -> usize {
+    match &body.kind {
+        BodyKind::Linear(linear) if linear.form != Form::Stiffness => 2 * body.nodes.len(),
+        _ => 0,
+    }
+}
+
+fn body_line(body: &Body) -> String {
+    match &body.kind {
+        BodyKind::Beam(beam) => beam_line(&body.name, beam),
+        BodyKind::Solid(solid) => solid_line(&body.name, solid),
+        BodyKind::Linear(linear) => linear_line(body, linear),
+    }
+}
+
+fn linear_line(body: &Body, linear: &Linear) -> String {
+    let form = match linear.form {
+        Form::Stiffness => "stiffness",
+        Form::Compliance { .. } => "compliance",
     };
+    let symmetric = if linear.is_symmetric() {
+        "symmetric"
+    } else {
+        "unsymmetric"
+    };
+    format!(
+        "{}: linear, {}, a {symmetric} {form} of {}",
+        body.name,
+        plural(body.nodes.len(), "node"),
+        if linear.entries.len() == 1 {
+            "1 entry".to_owned()
+        } else {
+            format!("{} entries", linear.entries.len())
+        }
+    )
+}
+
+fn beam_line(name: &str, beam: &Beam) -> String {
     let per = beam.elements.first().map_or(0, Vec::len);
     let shear = match beam.ga {
         Some(ga) => format!("GA {ga}"),
@@ -96,8 +134,8 @@ fn body_line(body: &super::model::Body) -> String {
     };
     let elements = plural(beam.elements.len(), "element");
     format!(
-        "{}: beam, {elements} of {per} nodes, EA {}, EI {}, {shear}",
-        body.name, beam.ea, beam.ei
+        "{name}: beam, {elements} of {per} nodes, EA {}, EI {}, {shear}",
+        beam.ea, beam.ei
     )
 }
 
@@ -258,6 +296,9 @@ impl fmt::Display for Cost {
         writeln!(f, "  translations     {:>8}", self.translations)?;
         writeln!(f, "  rotations        {:>8}", self.rotations)?;
         writeln!(f, "  shear forces     {:>8}", self.shears)?;
+        if self.forces > 0 {
+            writeln!(f, "  forces on bodies {:>8}", self.forces)?;
+        }
         writeln!(f, "  interface forces {:>8}", self.interface)?;
         section(f, "bodies", &self.bodies)?;
         section(f, "surfaces", &self.surfaces)?;

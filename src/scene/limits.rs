@@ -15,6 +15,8 @@ pub const ELEMENT_NODES: usize = 4 * NODES;
 pub const ENTRIES: usize = 1_000;
 /// Most slave nodes.
 pub const SLAVES: usize = 10_000;
+/// Most nodes of a body that is given by a matrix, which is dense.
+pub const MATRIX_NODES: usize = 1_000;
 /// Most increments of a history.
 pub const INCREMENTS: f64 = 1e6;
 /// Most minor or major iterations that the settings may allow.

@@ -4,9 +4,11 @@
 //! - [`paths`]: every scalar of a scene by its path, to list and to set.
 //! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
 //! - [`cost`]: what a scene costs, and what it does without.
+//! - [`condensed`]: interface problems without bodies, as scenes; [`siconos`]: those of another code.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod builtin;
+pub mod condensed;
 pub mod cost;
 pub mod error;
 pub mod limits;
@@ -15,6 +17,7 @@ pub mod model;
 pub mod nodes;
 pub mod paths;
 pub mod read;
+pub mod siconos;
 pub mod spec;
 
 mod blocks;
@@ -69,7 +72,7 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// Reads a scene from a text; `name` is what messages call it.
+    /// Reads a scene from a text, or a friction problem of [`siconos`]; `name` is what messages call it.
     ///
     /// # Errors
     /// If the scene is unsound.
@@ -78,8 +81,27 @@ impl Scene {
         text: &str,
         overrides: &[(String, String)],
     ) -> Result<Scene, SceneError> {
+        if siconos::is_one(text) {
+            return Scene::from_siconos(name, text, overrides);
+        }
         let spec = read::spec(name, text)?;
         Scene::assemble(name, text, spec, overrides, Vec::new())
+    }
+
+    fn from_siconos(
+        name: &str,
+        text: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Scene, SceneError> {
+        let problem = siconos::read(text).map_err(|broken| SceneError {
+            at: Some((broken.line, 1)),
+            ..SceneError::whole(name, broken.message)
+        })?;
+        let file = std::path::Path::new(name).file_name();
+        let title = file.map_or_else(|| name.into(), |file| file.to_string_lossy());
+        let spec = problem.problem(&error::shortened(&title)).spec();
+        // Its text is no scene's: no value of it could be found there.
+        Scene::assemble(name, "", spec, overrides, Vec::new())
     }
 
     /// Checks a scene that came without a text, as from a snapshot.

@@ -3,11 +3,12 @@
 //! Indices instead of names, generated nodes laid out, degrees of freedom numbered. Only what the scene names is
 //! here: nodes of rigid surfaces have no unknowns, beams with GA no shear unknowns.
 //!
-//! Degrees of freedom are laid out node by node (x, y and, on beams, the rotation), then the shear forces of
-//! shear-rigid beams, one per Gauss point. `equation[d]` is the number of the unknown of degree of freedom d, or
+//! Degrees of freedom are laid out node by node (x, y and, on beams, the rotation), then the bodies' own, body by body:
+//! the shear forces of shear-rigid beams, one per Gauss point, and the forces on bodies that are given by a compliance,
+//! whose equations are lengths, all of them. `equation[d]` is the number of the unknown of degree of freedom d, or
 //! none where it is restrained or prescribed.
 
-use super::spec::{Axis, Component, Friction, Law, Mode, Plane, Settings, Update};
+use super::spec::{Axis, Component, Friction, InitialState, Law, Mode, Plane, Settings, Update};
 
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,15 +55,47 @@ pub struct Body {
 pub enum BodyKind {
     Beam(Beam),
     Solid(Solid),
+    Linear(Linear),
 }
 
 impl BodyKind {
-    /// The lines of a drawing of it: a beam's elements, a solid's outline.
+    /// The lines of a drawing of it: a beam's elements, a solid's outline, bars between two nodes.
     pub fn lines(&self) -> &[Vec<usize>] {
         match self {
             BodyKind::Beam(beam) => &beam.elements,
             BodyKind::Solid(solid) => &solid.edges,
+            BodyKind::Linear(linear) => &linear.bars,
         }
+    }
+}
+
+/// A body that is given by a matrix over the x and y of its nodes, in their order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linear {
+    pub form: Form,
+    /// Row, column and value of the matrix' entries, row by row; the whole diagonal, and what else is not zero.
+    pub entries: Vec<(usize, usize, f64)>,
+    /// Pairs of nodes that bars join, for a drawing.
+    pub bars: Vec<Vec<usize>>,
+}
+
+/// What the matrix of a [`Linear`] body is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// f = K u.
+    Stiffness,
+    /// u = free λ + W f. The forces f are unknowns of their own, from this degree of freedom on, in the order of the
+    /// matrix; their equations are u − W f = free λ. The displacements where no force acts are loads there.
+    Compliance { first_force: usize },
+}
+
+impl Linear {
+    /// Whether the matrix is the same when rows and columns change places, to the last bit.
+    pub fn is_symmetric(&self) -> bool {
+        let mut turned: Vec<(usize, usize, f64)> =
+            self.entries.iter().map(|&(i, j, v)| (j, i, v)).collect();
+        turned.sort_unstable_by_key(|&(i, j, _)| (i, j));
+        turned == self.entries
     }
 }
 
@@ -117,6 +150,8 @@ pub struct Surface {
     pub elements: Vec<Vec<usize>>,
     /// No node of it can move by an unknown.
     pub rigid: bool,
+    /// Goes on straight past its ends.
+    pub endless: bool,
 }
 
 /// A slave node.
@@ -127,6 +162,7 @@ pub struct Slave {
     pub surfaces: Vec<usize>,
     pub friction: Friction,
     pub start: Mode,
+    pub state: InitialState,
 }
 
 /// Numbering of the degrees of freedom and of the unknowns among them.
@@ -140,8 +176,8 @@ pub struct Dofs {
     pub equation: Vec<Option<usize>>,
     /// Number of equations.
     pub equations: usize,
-    /// Number of shear unknowns among them (they come last).
-    pub shear: usize,
+    /// Number of the bodies' own unknowns among them, which belong to no node and come last.
+    pub inner: usize,
 }
 
 impl Dofs {

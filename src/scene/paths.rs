@@ -5,9 +5,10 @@
 
 use super::error::{Path, at, nearest, quoted};
 use super::spec::{
-    AtCycle, AtLimit, Axis, BodySpec, Component, Friction, FrictionLimit, Geometry, Law, LoadSpec,
-    Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity, Region, ResidualMethod, Scale,
-    Settings, Side, Sides, SlipCount, Solver, Spec, Sticking, Ties, Update,
+    AtCycle, AtLimit, Axis, Bar, BodySpec, Component, Friction, FrictionLimit, Geometry,
+    InitialState, Law, LoadSpec, Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity,
+    Region, ResidualMethod, Scale, Settings, Side, Sides, SlipCount, Solver, Spec, Sticking, Ties,
+    Update,
 };
 
 /// A value set from outside.
@@ -313,6 +314,7 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
         let place = root("surfaces").called(&entry.id, k);
         visit(&place.field("along"), Scalar::Text(&mut entry.along));
         visit(&place.field("reverse"), Scalar::Flag(&mut entry.reverse));
+        visit(&place.field("endless"), Scalar::Flag(&mut entry.endless));
     }
     for (k, entry) in spec.slaves.iter_mut().enumerate() {
         let place = root("slaves").index(k);
@@ -325,6 +327,7 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
             scene_friction,
             visit,
         );
+        state(&place.field("state"), &mut entry.state, visit);
     }
     friction(&root("friction"), &mut spec.friction, visit);
     for (k, entry) in spec.supports.iter_mut().enumerate() {
@@ -535,6 +538,60 @@ fn body(place: &Place, entry: &mut BodySpec, visit: &mut Visit<'_>) {
                 visit(&place.field("material"), Scalar::Text(material));
             }
         }
+        BodySpec::Matrix {
+            nodes,
+            stiffness,
+            compliance,
+            free,
+            ..
+        } => {
+            texts(&place.field("nodes"), nodes, visit);
+            for (key, rows) in [("stiffness", stiffness), ("compliance", compliance)] {
+                for (k, row) in rows.iter_mut().enumerate() {
+                    numbers(&place.field(key).index(k), row, visit);
+                }
+            }
+            numbers(&place.field("free"), free, visit);
+        }
+        BodySpec::Springs { bars, .. } => {
+            for (k, bar) in bars.iter_mut().enumerate() {
+                let place = place.field("bars").index(k);
+                let Bar {
+                    nodes,
+                    angle,
+                    stiffness,
+                } = bar;
+                texts(&place.field("nodes"), nodes, visit);
+                visit(&place.field("angle"), Scalar::Number(angle));
+                visit(&place.field("stiffness"), Scalar::Number(stiffness));
+            }
+        }
+    }
+}
+
+fn numbers(place: &Place, list: &mut [f64], visit: &mut Visit<'_>) {
+    for (k, number) in list.iter_mut().enumerate() {
+        visit(&place.index(k), Scalar::Number(number));
+    }
+}
+
+fn state(place: &Place, state: &mut InitialState, visit: &mut Visit<'_>) {
+    let InitialState {
+        f_n,
+        f_t,
+        t_max,
+        slip,
+        ratio,
+    } = state;
+    let fields = [
+        ("f_n", f_n),
+        ("f_t", f_t),
+        ("t_max", t_max),
+        ("slip", slip),
+        ("ratio", ratio),
+    ];
+    for (key, value) in fields {
+        visit(&place.field(key), Scalar::Number(value));
     }
 }
 

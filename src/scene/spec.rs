@@ -312,6 +312,38 @@ pub enum BodySpec {
         #[serde(default)]
         regions: Vec<Region>,
     },
+    /// A linear body, given by its matrix about the undeformed state: two degrees of freedom a node, x and y, in the order
+    /// of `nodes`. Either `stiffness` (f = K u) or `compliance` (u = W f, W may be singular) is named, row by row;
+    /// neither need be symmetric.
+    Matrix {
+        id: String,
+        /// Names of nodes, each once.
+        nodes: Vec<String>,
+        /// K, force by length. Default: none.
+        #[serde(default)]
+        stiffness: Vec<Vec<f64>>,
+        /// W, length by force. Default: none.
+        #[serde(default)]
+        compliance: Vec<Vec<f64>>,
+        /// Displacement of the body under no force at load factor 1, times the load factor: u = free λ + W f. Default: zero.
+        #[serde(default)]
+        free: Vec<f64>,
+    },
+    /// Linear bars, their directions fixed: small displacements.
+    Springs { id: String, bars: Vec<Bar> },
+}
+
+/// A linear bar between two nodes, or from one node to the ground. It resists motion (of one node against the other)
+/// along its angle alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bar {
+    /// One node or two.
+    pub nodes: Vec<String>,
+    /// Degrees from +x, anticlockwise.
+    pub angle: f64,
+    /// Force by length.
+    pub stiffness: f64,
 }
 
 /// A part of a solid with a material of its own: the elements whose middle lies in an upright rectangle.
@@ -329,7 +361,10 @@ impl BodySpec {
     /// Its id.
     pub fn id(&self) -> &str {
         match self {
-            BodySpec::Beam { id, .. } | BodySpec::Solid { id, .. } => id,
+            BodySpec::Beam { id, .. }
+            | BodySpec::Solid { id, .. }
+            | BodySpec::Matrix { id, .. }
+            | BodySpec::Springs { id, .. } => id,
         }
     }
 }
@@ -347,6 +382,9 @@ pub struct SurfaceSpec {
     /// Walk the chain the other way, so that the outward side changes. Default: false.
     #[serde(default)]
     pub reverse: bool,
+    /// Goes on straight past both ends, for ever. For a rigid surface of one element of two nodes. Default: false.
+    #[serde(default)]
+    pub endless: bool,
 }
 
 /// Slave nodes and the surfaces that they may touch.
@@ -364,6 +402,26 @@ pub struct SlaveSpec {
     /// Friction of these nodes. Default: the scene's.
     #[serde(default)]
     pub friction: Option<Friction>,
+    /// What these nodes bring from iterations before the scene's first. Default: nothing.
+    #[serde(default)]
+    pub state: InitialState,
+}
+
+/// What a slave node brings into the first minor iteration, as of a step taken over from elsewhere. A node that starts
+/// free brings no forces. Forces that the bodies do not answer yet are out of balance, as after a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct InitialState {
+    /// Normal force on the slave node, along the master's outward normal n: compression positive.
+    pub f_n: f64,
+    /// Tangential force along t, which is n turned 90 degrees anticlockwise.
+    pub f_t: f64,
+    /// T_max of the first minor iteration, with its sign.
+    pub t_max: f64,
+    /// Slip u_tS* − u_tS counted so far in the increment (length).
+    pub slip: f64,
+    /// Ratio of tangential to normal travel of a node that has just touched.
+    pub ratio: f64,
 }
 
 /// Mode of interaction of a slave node with its master element (Table 1).

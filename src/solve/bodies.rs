@@ -15,7 +15,7 @@
 //! r̃ and one to recover the displacements inside.
 
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors};
-use crate::scene::model::{BodyKind, Model};
+use crate::scene::model::{BodyKind, Form, Model};
 use crate::solve::condensed::Relation;
 use crate::solve::interface::Interface;
 use std::sync::Arc;
@@ -49,11 +49,13 @@ pub struct Bodies {
 }
 
 /// Whether all bodies of a scene have a stiffness that can be factored without pivoting. Shear-rigid beams have not:
-/// their shear forces are unknowns of a saddle point.
+/// their shear forces are unknowns of a saddle point. So are the forces on a body that is given by its compliance, and a
+/// given stiffness may be unsymmetric.
 pub fn condensable(model: &Model) -> bool {
     model.bodies.iter().all(|body| match &body.kind {
         BodyKind::Beam(beam) => beam.first_shear.is_none(),
         BodyKind::Solid(_) => true,
+        BodyKind::Linear(linear) => linear.form == Form::Stiffness && linear.is_symmetric(),
     })
 }
 

@@ -44,6 +44,7 @@ pub fn diagnose<'a>(
             conditions.push(row);
         }
     }
+    frame.linear(&mut conditions);
     let motions = null_space(conditions, frame.columns())
         .iter()
         .flat_map(|v| frame.name(v))
@@ -125,7 +126,7 @@ impl Frame<'_> {
                         continue;
                     };
                     // The turn of a node that a solid shares with a beam is the beam's.
-                    if component == Component::Rotation && matches!(body.kind, BodyKind::Solid(_)) {
+                    if component == Component::Rotation && !matches!(body.kind, BodyKind::Beam(_)) {
                         continue;
                     }
                     if self.model.dofs.equation[dof].is_none() {
@@ -155,6 +156,21 @@ impl Frame<'_> {
                     self.add_component(&mut row, b, n, component, -1.0);
                     conditions.push(row);
                 }
+            }
+        }
+    }
+
+    /// What is given by a matrix has no rigid motion that could be told; nor, then, have bodies where they share its
+    /// nodes.
+    fn linear(&self, conditions: &mut Vec<Vec<f64>>) {
+        for (b, body) in self.model.bodies.iter().enumerate() {
+            if !matches!(body.kind, BodyKind::Linear(_)) {
+                continue;
+            }
+            for component in 0..3 {
+                let mut row = self.row();
+                row[3 * b + component] = 1.0;
+                conditions.push(row);
             }
         }
     }

@@ -5,7 +5,7 @@
 
 use crate::contact::projection::Spot;
 use crate::fem::assembly::history_len;
-use crate::scene::spec::{SlipCount, Sticking};
+use crate::scene::spec::{InitialState, SlipCount, Sticking};
 use crate::scene::{Friction, Mode, Model, Settings};
 use crate::solve::event::{Cycle, Failure, Forced, Position};
 use serde::{Deserialize, Serialize};
@@ -217,7 +217,7 @@ impl State {
         let nodes: Vec<NodeState> = model
             .slaves
             .iter()
-            .map(|s| NodeState::new(s.start))
+            .map(|slave| NodeState::new(slave.start, &slave.state))
             .collect();
         let load_factor = model.path[0];
         let controls = Controls {
@@ -257,18 +257,22 @@ impl State {
 }
 
 impl NodeState {
-    fn new(mode: Mode) -> Self {
+    fn new(mode: Mode, brought: &InitialState) -> Self {
         NodeState {
             mode,
             forced: Forced::No,
-            f_n: 0.0,
-            f_t: 0.0,
-            t_max: 0.0,
-            sign: 0.0,
-            slip: 0.0,
+            f_n: brought.f_n,
+            f_t: brought.f_t,
+            t_max: brought.t_max,
+            sign: if brought.t_max == 0.0 {
+                0.0
+            } else {
+                brought.t_max.signum()
+            },
+            slip: brought.slip,
             anchor: None,
-            drift: 0.0,
-            ratio: 0.0,
+            drift: brought.slip,
+            ratio: brought.ratio,
             travel: 0.0,
             spot: None,
             normal: [0.0, 1.0],

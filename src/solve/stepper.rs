@@ -298,7 +298,10 @@ impl Stepper {
         let Some(after) = norms else {
             return Outcome::Failed(Failure::Singular(Singular::Unexplained));
         };
-        let size = self.state.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        // The bodies' own unknowns, which come last, are forces.
+        let nodal = self.model.dofs.len() - self.model.dofs.inner;
+        let motions = &self.state.u[..nodal];
+        let size = motions.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
         let exact = after.relative <= settings.tolerance;
         let balanced = self.state.reached == self.state.load_factor

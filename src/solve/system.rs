@@ -10,7 +10,7 @@ use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::scene::Mode;
-use crate::scene::model::{Body, BodyKind, Model};
+use crate::scene::model::{Body, BodyKind, Form, Model};
 use crate::scene::spec::{Component, Geometry, Solver, Sticking};
 use crate::solve::bodies::{Bodies, condensable};
 use crate::solve::condensed::Condensed;
@@ -46,8 +46,9 @@ pub enum Solved {
 enum Kind {
     /// Forces, or moments, which count as forces over this lever.
     Force { lever: f64 },
-    /// The shear strain of a shear-rigid beam, a length.
-    Shear,
+    /// Lengths: the shear of a shear-rigid beam, or how far a body that is given by its compliance is from where its
+    /// forces put it.
+    Length,
 }
 
 /// What the stiffness is laid out for.
@@ -379,11 +380,11 @@ impl System {
                 self.interaction[link.dof] -= link.weight * force[link.axis];
             }
         }
-        let (mut force, mut scale, mut shear) = (0.0_f64, self.reference, 0.0_f64);
+        let (mut force, mut scale, mut length) = (0.0_f64, self.reference, 0.0_f64);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
             let balance = self.external[d] + self.interaction[d] - self.force[d];
             match self.kind[d] {
-                Kind::Shear => shear = shear.max(self.force[d].abs() / model.length),
+                Kind::Length => length = length.max(balance.abs() / model.length),
                 Kind::Force { lever } => {
                     scale = scale
                         .max(self.size[d] / lever)
@@ -398,15 +399,17 @@ impl System {
             }
         }
         let tolerance = state.controls.settings.tolerance;
-        let floor = self.round_off(model, &state.u);
+        let [floor, length_floor] = self.round_off(model, &state.u);
         let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
         self.norms = Norms {
             force,
-            relative: relative(force).max(shear),
+            relative: relative(force).max(length),
             interface: 0.0,
             correction: state.correction,
             scale,
-            limit: tolerance.max(relative(floor)),
+            limit: tolerance
+                .max(relative(floor))
+                .max(length_floor / model.length),
         };
         self.norms.interface = self.violation(model, state);
     }
@@ -416,10 +419,10 @@ impl System {
         self.balance(model, state);
     }
 
-    /// Round-off of the internal forces: the machine precision times |K| |u|.
-    fn round_off(&mut self, model: &Model, u: &[f64]) -> f64 {
+    /// Round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
+    fn round_off(&mut self, model: &Model, u: &[f64]) -> [f64; 2] {
         let Some(pattern) = self.pattern().cloned() else {
-            return 0.0;
+            return [0.0; 2];
         };
         self.x.fill(0.0);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
@@ -428,13 +431,15 @@ impl System {
             }
         }
         pattern.multiply_abs(&self.stiffness, &self.x, &mut self.work);
-        let mut worst = 0.0_f64;
+        let mut worst = [0.0_f64; 2];
         for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
-            if let (Kind::Force { lever }, Some(e)) = (kind, equation) {
-                worst = worst.max(self.work[*e] / lever);
+            match (kind, equation) {
+                (Kind::Force { lever }, Some(e)) => worst[0] = worst[0].max(self.work[*e] / lever),
+                (Kind::Length, Some(e)) => worst[1] = worst[1].max(self.work[*e]),
+                _ => {}
             }
         }
-        ROUND_OFF * f64::EPSILON * worst
+        worst.map(|worst| ROUND_OFF * f64::EPSILON * worst)
     }
 
     /// Largest relative violation of the interface conditions by a state's forces and gaps.
@@ -715,8 +720,11 @@ impl System {
             .flat_map(|i| &i.links)
             .filter_map(|l| model.dofs.equation[l.dof]);
         let stiffest = slaves.map(diagonal).fold(0.0, f64::max);
-        let spring = (stiffest * self.softest).sqrt();
-        if spring > 0.0 { spring } else { 1.0 }
+        if stiffest > 0.0 {
+            (stiffest * self.softest).sqrt()
+        } else {
+            self.softest
+        }
     }
 
     /// Completes a solve: finds what it does to the bodies. Costs one back substitution where the bodies were
@@ -833,7 +841,7 @@ fn pairing(model: &Model, node: &NodeState) -> Option<(usize, usize)> {
 
 /// What the equation of each degree of freedom balances.
 fn kinds(model: &Model) -> Vec<Kind> {
-    let mut kinds = vec![Kind::Shear; model.dofs.len()];
+    let mut kinds = vec![Kind::Length; model.dofs.len()];
     for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
         for k in 0..count as usize {
             let lever = if k == Component::Rotation as usize {
@@ -855,9 +863,16 @@ fn softest_body(model: &Model) -> f64 {
             let stiffness = solid.materials.iter().map(|m| m.young * m.thickness);
             stiffness.fold(f64::INFINITY, f64::min)
         }
+        BodyKind::Linear(linear) => {
+            let largest = linear.entries.iter().fold(0.0_f64, |m, e| m.max(e.2.abs()));
+            match linear.form {
+                Form::Stiffness => largest,
+                Form::Compliance { .. } => 1.0 / largest,
+            }
+        }
     };
     let softest = model.bodies.iter().map(of).fold(f64::INFINITY, f64::min);
-    if softest.is_finite() { softest } else { 1.0 }
+    if softest.is_normal() { softest } else { 1.0 }
 }
 
 /// Largest force that the scene's loads reach over its history.
@@ -869,7 +884,7 @@ fn reference_force(model: &Model, kinds: &[Kind]) -> f64 {
             .fold(0.0_f64, |m, &p| m.max(load.scale.at(p).abs()));
         match kinds[load.dof] {
             Kind::Force { lever } => most.max(peak * load.value.abs() / lever),
-            Kind::Shear => most,
+            Kind::Length => most,
         }
     })
 }

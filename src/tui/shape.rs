@@ -278,7 +278,9 @@ fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view:
         let name = draw::cut(&body.name, 12);
         let wide = name.width() as u16;
         let (at, aside) = match &body.kind {
-            BodyKind::Solid(_) => (mean(&body.nodes, view), -i32::from(wide / 2)),
+            BodyKind::Solid(_) | BodyKind::Linear(_) => {
+                (mean(&body.nodes, view), -i32::from(wide / 2))
+            }
             BodyKind::Beam(_) => (view.place(body.nodes[body.nodes.len() / 2]), 2),
         };
         let Some((x, y)) = canvas.cell(window.dot(at)) else {

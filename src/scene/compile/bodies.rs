@@ -7,6 +7,7 @@ use super::super::limits;
 use super::super::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
 use super::super::nodes::{Mesh, Names, unique};
 use super::super::spec::{BodySpec, Law, Material, Point, Region, Spec, Update};
+use super::linear;
 use std::collections::HashSet;
 
 /// Refuses materials without usable stiffnesses.
@@ -117,6 +118,8 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
                     kind: BodyKind::Solid(solid(&here, mesh, body, spec, names)?),
                 })
             }
+            BodySpec::Matrix { .. } => linear::matrix(&at!["bodies", k], body, names),
+            BodySpec::Springs { id, bars } => linear::springs(&at!["bodies", k], id, bars, names),
         })
         .collect()
 }

@@ -5,7 +5,7 @@ use super::super::geometry;
 use super::super::limits;
 use super::super::model::{Dofs, Slave, Surface};
 use super::super::nodes::{Names, unique};
-use super::super::spec::{Component, Friction, Nodes, Side, SlaveSpec, Spec};
+use super::super::spec::{Component, Friction, InitialState, Nodes, Side, SlaveSpec, Spec};
 use super::bodies::{check_chain, elements};
 use std::collections::HashSet;
 
@@ -18,6 +18,12 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Su
         let here = at!["surfaces", k, "along"];
         let mut elements = elements(&here, names, &surface.along, &mut total)?;
         check_chain(names, &surface.along, &elements, length)?;
+        let straight = elements.len() == 1 && elements[0].len() == 2;
+        if surface.endless && !straight {
+            let message =
+                "only a surface of a single element of two nodes can be endless: a straight one";
+            return Err(Fault::new(at!["surfaces", k, "endless"], message));
+        }
         if surface.reverse {
             elements.reverse();
             elements.iter_mut().for_each(|element| element.reverse());
@@ -26,6 +32,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Su
             name: surface.id.clone(),
             elements,
             rigid: false,
+            endless: surface.endless,
         });
     }
     Ok(made)
@@ -51,6 +58,7 @@ pub(super) fn slaves(
             friction(&here.then("friction"), own)?;
         }
         let on = candidates(&here, group, surfaces)?;
+        initial_state(&here.then("state"), &group.state)?;
         if group.nodes.is_empty() {
             return Err(Fault::new(
                 here.then("nodes"),
@@ -74,6 +82,7 @@ pub(super) fn slaves(
                     surfaces: on.clone(),
                     friction: group.friction.unwrap_or(spec.friction),
                     start: group.start,
+                    state: group.state,
                 };
                 let fresh = taken.insert(node);
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;
@@ -139,6 +148,9 @@ fn check_slave(
                 node.name, surfaces[s].name
             ));
         }
+        if surfaces[s].endless {
+            return Ok(());
+        }
         if least > length {
             let elements = &surfaces[s].elements;
             least = least.min(geometry::distance_up_to(
@@ -165,6 +177,27 @@ fn check_slave(
         node.at[1],
         on.join(" and ")
     ))
+}
+
+/// Refuses a state that is none.
+fn initial_state(here: &Path, state: &InitialState) -> Result<(), Fault> {
+    let InitialState {
+        f_n,
+        f_t,
+        t_max,
+        slip,
+        ratio,
+    } = *state;
+    let fields = [
+        ("f_n", f_n),
+        ("f_t", f_t),
+        ("t_max", t_max),
+        ("slip", slip),
+        ("ratio", ratio),
+    ];
+    fields
+        .iter()
+        .try_for_each(|(field, value)| limits::finite(&here.then(*field), *value, "the value"))
 }
 
 /// Refuses friction that no surface has.
@@ -230,14 +263,22 @@ fn is_side(spec: &Spec, id: &str) -> bool {
 }
 
 /// Marks the surfaces that no unknown can move.
-pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut [Surface]) {
-    for surface in surfaces {
+///
+/// # Errors
+/// If an endless one is not among them.
+pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut [Surface]) -> Result<(), Fault> {
+    for (k, surface) in surfaces.iter_mut().enumerate() {
         surface.rigid = surface
             .elements
             .iter()
             .flatten()
             .all(|&n| !can_move(dofs, n));
+        if surface.endless && !surface.rigid {
+            let message = "a surface that a body can move has ends; endless is for rigid ones";
+            return Err(Fault::new(at!["surfaces", k, "endless"], message));
+        }
     }
+    Ok(())
 }
 
 /// Whether x or y of a node is an unknown.

@@ -2,7 +2,7 @@
 
 use super::super::error::{Fault, Path, at};
 use super::super::limits;
-use super::super::model::{Body, BodyKind, Dofs, Factor, Load, Prescribed};
+use super::super::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed};
 use super::super::nodes::Names;
 use super::super::spec::{Component, LoadSpec, Point, Spec};
 use super::tractions;
@@ -250,7 +250,7 @@ impl Layout {
         }
     }
 
-    /// Numbers the equations node by node, then the shear forces of shear-rigid beams.
+    /// Numbers the equations node by node, then those of the bodies' own unknowns.
     pub(super) fn number(mut self, bodies: &mut [Body]) -> Dofs {
         let dofs = &mut self.dofs;
         for (dof, (node, _)) in self.of.iter().enumerate() {
@@ -259,18 +259,22 @@ impl Layout {
             dofs.equations += usize::from(free);
         }
         for body in bodies {
-            let BodyKind::Beam(beam) = &mut body.kind else {
-                continue;
+            let first = dofs.equation.len();
+            let count: usize = match &mut body.kind {
+                BodyKind::Beam(beam) if beam.ga.is_none() => {
+                    beam.first_shear = Some(first);
+                    beam.elements.iter().map(|element| element.len() - 1).sum()
+                }
+                BodyKind::Linear(linear) if linear.form != Form::Stiffness => {
+                    linear.form = Form::Compliance { first_force: first };
+                    2 * body.nodes.len()
+                }
+                _ => 0,
             };
-            if beam.ga.is_some() {
-                continue;
-            }
-            beam.first_shear = Some(dofs.equation.len());
-            let count: usize = beam.elements.iter().map(|element| element.len() - 1).sum();
             dofs.equation
                 .extend((0..count).map(|k| Some(dofs.equations + k)));
             dofs.equations += count;
-            dofs.shear += count;
+            dofs.inner += count;
         }
         self.dofs
     }

@@ -7,6 +7,7 @@ mod bodies;
 mod history;
 mod interface;
 mod layout;
+mod linear;
 mod monitors;
 mod tractions;
 
@@ -32,16 +33,25 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         .flat_map(|body| &body.nodes)
         .for_each(|&n| on_body[n] = true);
     let of_bodies = names.nodes.iter().zip(&on_body).filter(|(_, on)| **on);
-    let length = geometry::diagonal(of_bodies.map(|(node, _)| node));
+    let mut length = geometry::diagonal(of_bodies.map(|(node, _)| node));
+    if length == 0.0 {
+        // Bodies that are given by matrices may have a single node, or all of them in one place.
+        length = geometry::diagonal(names.nodes.iter());
+    }
+    if length == 0.0 {
+        let message = "all nodes are in one place; the scene has no size to compare lengths with";
+        return Err(Fault::new(at!["nodes"], message));
+    }
     bodies::check_bodies(spec, &names, &bodies, length)?;
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
     interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
-    let (loads, prescribed) = layout.loads(spec, &names)?;
+    let (mut loads, prescribed) = layout.loads(spec, &names)?;
     let dofs = layout.number(&mut bodies);
-    interface::find_rigid(&dofs, &mut surfaces);
+    loads.extend(linear::free_motions(spec, &bodies, &dofs));
+    interface::find_rigid(&dofs, &mut surfaces)?;
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;

@@ -1,0 +1,422 @@
+//! Why the minor iterations cycle, and what gets out: everything that can be said of a cycle from its frozen interface
+//! problem, as data and in words.
+
+use crate::contact::decision::{Rule, Tested};
+use crate::debug::census::{Census, census};
+use crate::debug::core::{Core, core, cycle};
+use crate::debug::influence::{Influence, influences};
+use crate::debug::report;
+use crate::scene::spec::{FrictionLimit, SlipCount};
+use crate::scene::{Mode, Model};
+use crate::solve::event::{Cycle, NodeRecord};
+use crate::solve::frozen::{Assumed, Condition, Frozen, Trials};
+use crate::solve::state::NodeState;
+
+/// What is known of a cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagnosis {
+    /// The cycle that the nodes' states start. Nodes are places in the problem.
+    pub cycle: Cycle,
+    /// What happens in each iteration of one period.
+    pub phases: Vec<Phase>,
+    /// The fewest nodes that still cycle; none where that cannot be told.
+    pub core: Option<Core>,
+    /// What is consistent with the core, all other nodes going on with what they do.
+    pub census: Option<Census>,
+    pub cause: Cause,
+    /// What was tried on the core, and whether it settles there.
+    pub ways: Vec<(Way, bool)>,
+}
+
+/// One iteration of a cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// What it found at each node.
+    pub records: Vec<NodeRecord>,
+    /// For each node whose mode it changes: the change, since the iteration before, that did most to what was tested.
+    pub pushes: Vec<Push>,
+}
+
+/// What made a node's mode change.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Push {
+    /// Place of the node whose mode changes.
+    pub node: usize,
+    /// The modes that the pushing node had in the iteration before and in this one.
+    pub from_modes: [Mode; 2],
+    pub influence: Influence,
+    /// What was tested.
+    pub tested: Tested,
+}
+
+/// Why Table 2 cycles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cause {
+    /// No state of these nodes obeys Coulomb's law.
+    NoAnswer,
+    /// The nodes slide in the answer, and Table 2 sends a rough free node to fixed only, from where it opens again.
+    NoWayToSliding,
+    /// The modes have settled; T_max, taken from the iteration before, swings by this factor each time.
+    Lag { factor: f64 },
+    /// Several states obey the law, and Table 2 passes by them all.
+    Several,
+    /// One state obeys the law, and Table 2 passes by it.
+    Passed,
+    /// Too many nodes for a census.
+    Unknown,
+}
+
+/// A change that can be tried on the frozen problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Start from the consistent state of this number in the census.
+    Answer(usize),
+    /// `settings.t_max=consistent`.
+    ConsistentLimit,
+    /// `settings.slip` the other way.
+    OtherSlip,
+}
+
+impl Diagnosis {
+    /// Diagnoses a problem whose nodes' states start a cycle; none where they do not.
+    pub fn of(problem: &Frozen) -> Option<Diagnosis> {
+        let cycle = cycle(problem)?;
+        let phases = phases(problem, cycle.period)?;
+        let core = core(problem);
+        let census = core.as_ref().and_then(|core| census(&core.problem).ok());
+        let cause = cause(&cycle, &phases, core.as_ref(), census.as_ref());
+        let ways = match &core {
+            Some(core) => ways(&core.problem, census.as_ref()),
+            None => Vec::new(),
+        };
+        Some(Diagnosis {
+            cycle,
+            phases,
+            core,
+            census,
+            cause,
+            ways,
+        })
+    }
+}
+
+/// One period of the iterations, with who pushed whom.
+fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
+    let mut trials = Trials::new(problem)?;
+    let mut nodes = problem.states();
+    // The iteration before the first is the last of the period.
+    let mut states = vec![nodes.clone()];
+    let mut all = Vec::new();
+    for _ in 0..period {
+        let (records, _) = trials.minor(&mut nodes)?;
+        states.push(nodes.clone());
+        all.push(records);
+    }
+    let before = |phase: usize| match phase {
+        0 => &states[period as usize - 1],
+        phase => &states[phase - 1],
+    };
+    let found = all.into_iter().enumerate().map(|(phase, records)| {
+        let changed = (0..records.len()).filter(|&s| records[s].decision.changes());
+        let pushes = changed
+            .filter_map(|node| push(problem, before(phase), &states[phase], &records, node))
+            .collect();
+        Phase { records, pushes }
+    });
+    Some(found.collect())
+}
+
+fn push(
+    problem: &Frozen,
+    before: &[NodeState],
+    now: &[NodeState],
+    records: &[NodeRecord],
+    node: usize,
+) -> Option<Push> {
+    let tested = fired(&records[node])?;
+    let of = |i: &Influence| match tested {
+        Tested::Gap => i.gap,
+        Tested::NormalForce => i.f_n,
+        Tested::ShearForce => i.f_t,
+        Tested::Slip => i.slip,
+    };
+    let all = influences(problem, before, now, node)?;
+    let most = all
+        .iter()
+        .max_by(|a, b| of(a).abs().total_cmp(&of(b).abs()))?;
+    Some(Push {
+        node,
+        from_modes: [before[most.from].mode, now[most.from].mode],
+        influence: *most,
+        tested,
+    })
+}
+
+/// The inequality that changed a node's mode.
+fn fired(record: &NodeRecord) -> Option<Tested> {
+    let tests = record.decision.tests.iter().flatten();
+    let broken = tests.clone().find(|test| test.margin < 0.0);
+    broken.or(tests.last()).map(|test| test.tested)
+}
+
+fn cause(cycle: &Cycle, phases: &[Phase], core: Option<&Core>, census: Option<&Census>) -> Cause {
+    if let Some(census) = census
+        && census.answers.is_empty()
+    {
+        return Cause::NoAnswer;
+    }
+    if let Some(factor) = lag(cycle, phases) {
+        return Cause::Lag { factor };
+    }
+    let (Some(core), Some(census)) = (core, census) else {
+        return Cause::Unknown;
+    };
+    if census.answers.len() > 1 {
+        return Cause::Several;
+    }
+    let never_slides = |(place, pattern): &(usize, Vec<Mode>)| {
+        let answer = census.answers[0].answer.nodes[*place].assumed;
+        matches!(answer, Assumed::Plus | Assumed::Minus) && !pattern.contains(&Mode::Sliding)
+    };
+    let members = &core.cycle.members;
+    if members.iter().any(never_slides) {
+        Cause::NoWayToSliding
+    } else {
+        Cause::Passed
+    }
+}
+
+/// The factor by which T_max swings, where no mode changes: the root of the product over a period is one in size for a
+/// true cycle, so that its sign is what can be told.
+fn lag(cycle: &Cycle, phases: &[Phase]) -> Option<f64> {
+    let settled = |phase: &Phase| phase.records.iter().all(|r| !r.decision.changes());
+    if !phases.iter().all(settled) {
+        return None;
+    }
+    let (member, _) = cycle.members.first()?;
+    let moved = |phase: &Phase| phase.records[*member].t_max - phase.records[*member].t_max_used;
+    let [first, second, ..] = phases else {
+        return Some(1.0);
+    };
+    Some(moved(second) / moved(first))
+}
+
+/// Tries what can be tried on the frozen problem alone.
+fn ways(problem: &Frozen, census: Option<&Census>) -> Vec<(Way, bool)> {
+    let settles = |changed: &Frozen| cycle(changed).is_none() && runs(changed);
+    let mut ways = Vec::new();
+    for number in 0..census.map_or(0, |c| c.answers.len()) {
+        if let Some(started) = census.and_then(|census| started(problem, census, number)) {
+            ways.push((Way::Answer(number), settles(&started)));
+        }
+    }
+    let mut other = problem.clone();
+    if problem.settings.t_max == FrictionLimit::Lagged {
+        other.settings.t_max = FrictionLimit::Consistent;
+        ways.push((Way::ConsistentLimit, settles(&other)));
+    }
+    let mut other = problem.clone();
+    other.settings.slip = match problem.settings.slip {
+        SlipCount::Increment => SlipCount::Major,
+        SlipCount::Major => SlipCount::Increment,
+    };
+    ways.push((Way::OtherSlip, settles(&other)));
+    ways
+}
+
+/// The problem with its nodes' states at a consistent state of the census.
+pub fn started(problem: &Frozen, census: &Census, number: usize) -> Option<Frozen> {
+    let answer = &census.answers.get(number)?.answer;
+    let mut started = problem.clone();
+    for (node, found) in started.nodes.iter_mut().zip(&answer.nodes) {
+        node.state.mode = found.assumed.mode();
+        node.state.ratio = 0.0;
+        node.state.sign = found.f_t.signum();
+        node.state.t_max = found.limit * node.state.sign;
+    }
+    Some(started)
+}
+
+/// Whether the minor iterations settle within the settings' limit.
+fn runs(problem: &Frozen) -> bool {
+    let mut nodes = problem.states();
+    let Some(mut trials) = Trials::new(problem) else {
+        return false;
+    };
+    (0..problem.settings.minors)
+        .map_while(|_| trials.minor(&mut nodes))
+        .any(|(_, settled)| settled)
+}
+
+/// The diagnosis in words, a line each, most important first. Nodes are named as the scene names them.
+pub fn words(model: &Model, problem: &Frozen, diagnosis: &Diagnosis) -> Vec<String> {
+    let name = |place: usize| report::slave(model, problem.nodes[place].slave);
+    let mut lines = vec![format!("why: {}", cause_words(diagnosis, &name))];
+    for (k, phase) in diagnosis.phases.iter().enumerate() {
+        for push in &phase.pushes {
+            let at = format!("minor {} of the cycle", k + 1);
+            lines.push(format!("{at}: {}", push_words(push, phase, &name)));
+        }
+    }
+    if let Some(core) = &diagnosis.core {
+        let of_core = |place: usize| report::slave(model, core.problem.nodes[place].slave);
+        if core.places.len() < problem.nodes.len() {
+            let names: Vec<_> = core.places.iter().map(|&p| name(p)).collect();
+            lines.push(format!(
+                "core: {} alone still cycle{} when all other nodes are frozen ({} of {} slave nodes)",
+                names.join(", "),
+                if names.len() == 1 { "s" } else { "" },
+                names.len(),
+                problem.nodes.len()
+            ));
+        }
+        if let Some(census) = &diagnosis.census {
+            lines.extend(census_words(census, &of_core));
+        }
+    }
+    for (way, settles) in &diagnosis.ways {
+        lines.push(way_words(*way, *settles));
+    }
+    lines
+}
+
+fn cause_words<'a>(diagnosis: &Diagnosis, name: &impl Fn(usize) -> &'a str) -> String {
+    let members: Vec<&str> = diagnosis.cycle.members.iter().map(|m| name(m.0)).collect();
+    let nodes = members.join(", ");
+    match diagnosis.cause {
+        Cause::NoAnswer => {
+            format!(
+                "no state of {nodes} obeys contact and friction at this increment; no more iterations can find one"
+            )
+        }
+        Cause::NoWayToSliding => format!(
+            "in the one consistent state {nodes} slide{}, and Table 2 has no way there: a rough node that touches is sent to fixed, and from there it opens",
+            if members.len() == 1 { "s" } else { "" }
+        ),
+        Cause::Lag { factor } if factor < 0.0 => format!(
+            "the modes have settled; T_max of {nodes}, lagged by one iteration, swings to and fro by a factor of {factor:.6}"
+        ),
+        Cause::Lag { .. } => {
+            format!("the modes have settled; T_max of {nodes}, lagged by one iteration, repeats")
+        }
+        Cause::Several => format!(
+            "{} states of {nodes} are consistent, and Table 2 passes by them all",
+            diagnosis.census.as_ref().map_or(0, |c| c.answers.len())
+        ),
+        Cause::Passed => {
+            format!("there is one consistent state of {nodes}, and Table 2 passes by it")
+        }
+        Cause::Unknown => format!("too many nodes take part to try all of their states ({nodes})"),
+    }
+}
+
+fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) -> String {
+    let record = &phase.records[push.node];
+    let from = &push.influence;
+    let (what, value) = match push.tested {
+        Tested::Gap => ("Δg", from.gap),
+        Tested::NormalForce => ("ΔF_n", from.f_n),
+        Tested::ShearForce => ("ΔF_t", from.f_t),
+        Tested::Slip => ("Δslip", from.slip),
+    };
+    let doing = match push.from_modes {
+        [a, b] if a == b => "a new T_max at",
+        [_, Mode::Free] => "opening",
+        [Mode::Free, _] => "closing",
+        [_, Mode::Sliding] => "letting slide",
+        [_, Mode::Fixed] => "sticking",
+    };
+    let did = match record.decision.rule {
+        Rule::FixedOpens | Rule::SlidingOpens => "opened",
+        Rule::FixedSlides => "let slide",
+        Rule::SlidingSticks | Rule::FreeSticks => "stuck",
+        Rule::FreeSlides => "closed",
+        _ => "changed",
+    };
+    let whom = if from.from == push.node {
+        "it".to_string()
+    } else {
+        name(push.node).to_string()
+    };
+    format!(
+        "{doing} {} {did} {whom}: {what} = {value:.4e}",
+        name(from.from)
+    )
+}
+
+fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+    let mut lines = vec![match census.answers.len() {
+        0 => format!("census: none of {} assignments is consistent", census.tried),
+        1 => format!("census: of {} assignments one is consistent", census.tried),
+        n => format!("census: of {} assignments {n} are consistent", census.tried),
+    }];
+    for (number, found) in census.answers.iter().enumerate() {
+        let nodes: Vec<String> = found
+            .answer
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(place, node)| format!("{} {}", name(place), assumed_words(node.assumed)))
+            .collect();
+        let margin = found
+            .answer
+            .worst()
+            .map_or(String::new(), |(place, margin)| {
+                format!(
+                    "; closest to failing: {} at {} by {:.4e}",
+                    condition_words(margin.condition),
+                    name(place),
+                    margin.value
+                )
+            });
+        lines.push(format!("  {}: {}{margin}", number + 1, nodes.join(", ")));
+    }
+    if let Some((answer, place, margin)) = &census.nearest {
+        lines.push(format!(
+            "  nearest: {}, which breaks \"{}\" at {} by {:.4e}",
+            answer.letters(),
+            condition_words(margin.condition),
+            name(*place),
+            -margin.value
+        ));
+    }
+    lines
+}
+
+/// What a node is assumed to do, in words.
+pub fn assumed_words(assumed: Assumed) -> &'static str {
+    match assumed {
+        Assumed::Free => "free",
+        Assumed::Fixed => "fixed",
+        Assumed::Plus => "sliding with F_t > 0",
+        Assumed::Minus => "sliding with F_t < 0",
+    }
+}
+
+/// A condition of contact or friction, in words.
+pub fn condition_words(condition: Condition) -> &'static str {
+    match condition {
+        Condition::NoPenetration => "no penetration",
+        Condition::NoTension => "no tension",
+        Condition::WithinLimit => "friction within its limit",
+        Condition::Dissipation => "friction against the slip",
+    }
+}
+
+fn way_words(way: Way, settles: bool) -> String {
+    let ends = if settles {
+        "settles"
+    } else {
+        "does not settle"
+    };
+    match way {
+        Way::Answer(number) => {
+            format!(
+                "tried: starting from consistent state {}: {ends}",
+                number + 1
+            )
+        }
+        Way::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
+        Way::OtherSlip => format!("tried: settings.slip the other way: {ends}"),
+    }
+}

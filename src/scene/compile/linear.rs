@@ -1,0 +1,217 @@
+//! Linear bodies: matrices as the file gives them, and springs made into one.
+
+use super::super::error::{Fault, Path};
+use super::super::limits;
+use super::super::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load};
+use super::super::nodes::Names;
+use super::super::spec::{Bar, BodySpec, Spec};
+use std::collections::BTreeMap;
+
+/// A body given by a stiffness or a compliance. Where the forces of a compliance stand is found later, with the other
+/// degrees of freedom.
+pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body, Fault> {
+    let BodySpec::Matrix {
+        id,
+        nodes: list,
+        stiffness,
+        compliance,
+        free,
+    } = body
+    else {
+        return Err(Fault::new(here.clone(), "the body is no Matrix"));
+    };
+    let nodes = distinct(&here.then("nodes"), list, names)?;
+    let (key, rows, form) = match (stiffness.is_empty(), compliance.is_empty()) {
+        (false, true) => ("stiffness", stiffness, Form::Stiffness),
+        (true, false) => (
+            "compliance",
+            compliance,
+            Form::Compliance { first_force: 0 },
+        ),
+        (given_none, _) => {
+            let what = if given_none { "neither" } else { "both" };
+            let message =
+                format!("the body has {what} stiffness and compliance; it must have one of them");
+            return Err(Fault::new(here.clone(), message));
+        }
+    };
+    let size = 2 * nodes.len();
+    square(&here.then(key), rows, size)?;
+    if !free.is_empty() {
+        sized(&here.then("free"), free, size)?;
+    }
+    let entries = rows.iter().enumerate().flat_map(|(i, row)| {
+        let kept = move |(j, _): &(usize, f64)| *j == i;
+        let all = row.iter().copied().enumerate();
+        all.filter(move |entry| kept(entry) || entry.1 != 0.0)
+            .map(move |(j, value)| (i, j, value))
+    });
+    Ok(Body {
+        name: id.clone(),
+        kind: BodyKind::Linear(Linear {
+            form,
+            entries: entries.collect(),
+            bars: Vec::new(),
+        }),
+        nodes,
+    })
+}
+
+/// The nodes of a matrix, each once.
+fn distinct(here: &Path, list: &[String], names: &Names) -> Result<Vec<usize>, Fault> {
+    let mut nodes = Vec::new();
+    for (k, name) in list.iter().enumerate() {
+        let fault = |message| Fault::new(here.then(k), message);
+        for node in names.nodes(name).map_err(fault)? {
+            if nodes.contains(&node) {
+                let name = &names.nodes[node].name;
+                return Err(fault(format!("node {name:?} is in the matrix already")));
+            }
+            nodes.push(node);
+        }
+        limits::count(
+            here,
+            nodes.len(),
+            1..=limits::MATRIX_NODES,
+            "the number of nodes",
+        )?;
+    }
+    if nodes.is_empty() {
+        let message = "the list is empty; name at least one node";
+        return Err(Fault::new(here.clone(), message));
+    }
+    Ok(nodes)
+}
+
+/// Refuses what is no square matrix of this size.
+fn square(here: &Path, rows: &[Vec<f64>], size: usize) -> Result<(), Fault> {
+    if rows.len() != size {
+        let message = format!(
+            "the matrix has {} rows; {} nodes have {size} degrees of freedom, x and y of each",
+            rows.len(),
+            size / 2
+        );
+        return Err(Fault::new(here.clone(), message));
+    }
+    rows.iter()
+        .enumerate()
+        .try_for_each(|(k, row)| sized(&here.then(k), row, size))
+}
+
+fn sized(here: &Path, row: &[f64], size: usize) -> Result<(), Fault> {
+    if row.len() != size {
+        let message = format!("the row has {} numbers; it must have {size}", row.len());
+        return Err(Fault::new(here.clone(), message));
+    }
+    for (k, value) in row.iter().enumerate() {
+        if !(value.abs() <= limits::STIFFNESS.1) {
+            let message = format!("the entry is {value:?}; it must be a finite number below 1e30");
+            return Err(Fault::new(here.then(k), message));
+        }
+    }
+    Ok(())
+}
+
+/// Bars whose directions stay: each adds stiffness · e eᵀ to its node, and the opposite between its nodes.
+pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Result<Body, Fault> {
+    if bars.is_empty() {
+        let message = "the list is empty; name at least one bar";
+        return Err(Fault::new(here.then("bars"), message));
+    }
+    let mut nodes: Vec<usize> = Vec::new();
+    let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    let mut joined = Vec::new();
+    for (k, bar) in bars.iter().enumerate() {
+        let here = here.then("bars").then(k);
+        limits::stiffness(&here.then("stiffness"), bar.stiffness, "the stiffness")?;
+        limits::finite(&here.then("angle"), bar.angle, "the angle")?;
+        let ends = ends(&here.then("nodes"), bar, names)?;
+        let numbers: Vec<usize> = ends.iter().map(|&n| number(&mut nodes, n)).collect();
+        let most = 1..=limits::MATRIX_NODES;
+        limits::count(&here, nodes.len(), most, "the number of nodes of all bars")?;
+        let angle = bar.angle.to_radians();
+        let direction = [angle.cos(), angle.sin()];
+        for (i, &row) in numbers.iter().enumerate() {
+            for (j, &column) in numbers.iter().enumerate() {
+                let sign = if i == j { 1.0 } else { -1.0 };
+                for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let value = sign * bar.stiffness * direction[a] * direction[b];
+                    *sums.entry((2 * row + a, 2 * column + b)).or_default() += value;
+                }
+            }
+        }
+        if ends.len() == 2 {
+            joined.push(ends);
+        }
+    }
+    Ok(Body {
+        name: id.to_owned(),
+        kind: BodyKind::Linear(Linear {
+            form: Form::Stiffness,
+            entries: sums.into_iter().map(|((i, j), v)| (i, j, v)).collect(),
+            bars: joined,
+        }),
+        nodes,
+    })
+}
+
+/// The one or two nodes of a bar.
+fn ends(here: &Path, bar: &Bar, names: &Names) -> Result<Vec<usize>, Fault> {
+    limits::count(here, bar.nodes.len(), 1..=2, "the number of nodes of a bar")?;
+    let mut ends = Vec::with_capacity(2);
+    for (k, name) in bar.nodes.iter().enumerate() {
+        let fault = |message| Fault::new(here.then(k), message);
+        let node = names.node(name).map_err(fault)?;
+        if ends.contains(&node) {
+            return Err(fault("a bar joins two different nodes".to_owned()));
+        }
+        ends.push(node);
+    }
+    Ok(ends)
+}
+
+/// The number of a node in a list, to which it is added where it is new.
+fn number(nodes: &mut Vec<usize>, node: usize) -> usize {
+    let found = nodes.iter().position(|&other| other == node);
+    found.unwrap_or_else(|| {
+        nodes.push(node);
+        nodes.len() - 1
+    })
+}
+
+/// What moves the unloaded matrices, as loads: K · free on the nodes, or `free` itself in a compliance's equations.
+pub(super) fn free_motions(spec: &Spec, bodies: &[Body], dofs: &Dofs) -> Vec<Load> {
+    let mut loads = Vec::new();
+    for (named, body) in spec.bodies.iter().zip(bodies) {
+        let (BodySpec::Matrix { free, .. }, BodyKind::Linear(linear)) = (named, &body.kind) else {
+            continue;
+        };
+        if free.is_empty() {
+            continue;
+        }
+        let mut values = vec![0.0; free.len()];
+        let first = match linear.form {
+            Form::Stiffness => {
+                for &(i, j, value) in &linear.entries {
+                    values[i] += value * free[j];
+                }
+                None
+            }
+            Form::Compliance { first_force } => {
+                values.copy_from_slice(free);
+                Some(first_force)
+            }
+        };
+        let place = |k: usize| match first {
+            Some(first) => first + k,
+            None => dofs.first[body.nodes[k / 2]] + k % 2,
+        };
+        let acting = values.into_iter().enumerate().filter(|(_, v)| *v != 0.0);
+        loads.extend(acting.map(|(k, value)| Load {
+            dof: place(k),
+            value,
+            scale: Factor::default(),
+        }));
+    }
+    loads
+}

@@ -1,0 +1,165 @@
+//! An interface problem by itself: contacts, and a matrix that says how what carries them answers.
+//!
+//! Everything is in the frame of each contact: n is the outward normal of its master, t is n turned 90 degrees
+//! anticlockwise; displacements u and forces f are those of the slave node, f_n > 0 pushes it away. Components come in
+//! pairs, (n, t) of the first contact, of the second, and so on:
+//!
+//! ```text
+//! K (u − free λ) = load λ + f        or        u = free λ + W (load λ + f),        gap = gap_0 + u_n
+//! ```
+//!
+//! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless
+//! floor y = 0, where u_n = u_y and u_t = −u_x.
+
+use super::spec::{
+    BodySpec, Friction, History, InitialState, LoadSpec, Mode, Nodes, Settings, SlaveSpec, Spec,
+    SurfaceSpec,
+};
+
+/// How what carries the contacts answers; row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Matrix {
+    /// K, force by length.
+    Stiffness(Vec<Vec<f64>>),
+    /// W, length by force; may be singular.
+    Compliance(Vec<Vec<f64>>),
+}
+
+/// One contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact {
+    /// What its node is called.
+    pub id: String,
+    /// Distance to the master, undeformed; negative is penetration.
+    pub gap: f64,
+    pub friction: Friction,
+    /// Load on the node along n and t, at load factor 1.
+    pub load: [f64; 2],
+    pub start: Mode,
+    pub state: InitialState,
+}
+
+/// An interface problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    pub title: String,
+    pub about: String,
+    pub contacts: Vec<Contact>,
+    pub matrix: Matrix,
+    /// Displacement under no force, at load factor 1: two components a contact, or none at all.
+    pub free: Vec<f64>,
+    pub history: History,
+    pub settings: Settings,
+}
+
+impl Problem {
+    /// The scene that it is; it is checked when it is compiled.
+    pub fn spec(&self) -> Spec {
+        let spacing = self.length();
+        let ids = || self.contacts.iter().map(|contact| contact.id.clone());
+        let mut nodes: Vec<Nodes> = self
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(k, contact)| Nodes::Node {
+                id: contact.id.clone(),
+                at: (k as f64 * spacing, contact.gap),
+            })
+            .collect();
+        // Walked towards -x, so that the outward side is up.
+        nodes.push(Nodes::Line {
+            id: FLOOR.to_owned(),
+            from: (self.contacts.len() as f64 * spacing, 0.0),
+            to: (-spacing, 0.0),
+            elements: 1,
+            per_element: 2,
+        });
+        let (stiffness, compliance) = match &self.matrix {
+            Matrix::Stiffness(rows) => (turned(rows), Vec::new()),
+            Matrix::Compliance(rows) => (Vec::new(), turned(rows)),
+        };
+        Spec {
+            title: self.title.clone(),
+            about: self.about.clone(),
+            refine: 1,
+            nodes,
+            materials: Vec::new(),
+            bodies: vec![BodySpec::Matrix {
+                id: "matrix".to_owned(),
+                nodes: ids().collect(),
+                stiffness,
+                compliance,
+                free: turned_row(&self.free, 1.0),
+            }],
+            surfaces: vec![SurfaceSpec {
+                id: FLOOR.to_owned(),
+                along: FLOOR.to_owned(),
+                reverse: false,
+                endless: true,
+            }],
+            slaves: self.contacts.iter().map(slave).collect(),
+            friction: Friction::default(),
+            supports: Vec::new(),
+            loads: self.contacts.iter().filter_map(load).collect(),
+            history: self.history.clone(),
+            settings: self.settings,
+            monitors: Vec::new(),
+        }
+    }
+
+    /// A length that its gaps and motions are comparable with.
+    fn length(&self) -> f64 {
+        let gaps = self.contacts.iter().map(|contact| contact.gap);
+        let most = gaps.chain(self.free.iter().copied()).map(f64::abs);
+        let most = most.fold(0.0, f64::max);
+        if most > 0.0 { most } else { 1.0 }
+    }
+}
+
+const FLOOR: &str = "floor";
+
+fn slave(contact: &Contact) -> SlaveSpec {
+    SlaveSpec {
+        nodes: vec![contact.id.clone()],
+        on: vec![FLOOR.to_owned()],
+        start: contact.start,
+        friction: Some(contact.friction),
+        state: contact.state,
+    }
+}
+
+fn load(contact: &Contact) -> Option<LoadSpec> {
+    let [n, t] = contact.load;
+    (n != 0.0 || t != 0.0).then(|| LoadSpec::Force {
+        node: contact.id.clone(),
+        x: negative(t),
+        y: n,
+        scale: Vec::new(),
+    })
+}
+
+/// A matrix over (n, t) as one over (x, y) = (−t, n).
+fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let pairs = rows.chunks(2).flat_map(|pair| {
+        let x = pair.get(1).map(|row| turned_row(row, -1.0));
+        let y = pair.first().map(|row| turned_row(row, 1.0));
+        x.into_iter().chain(y)
+    });
+    pairs.collect()
+}
+
+/// A row over (n, t), times a sign, as one over (x, y).
+fn turned_row(row: &[f64], sign: f64) -> Vec<f64> {
+    let times = |value: f64| if sign < 0.0 { negative(value) } else { value };
+    let pairs = row.chunks(2).flat_map(|pair| {
+        let x = pair.get(1).map(|&t| negative(times(t)));
+        let y = pair.first().map(|&n| times(n));
+        x.into_iter().chain(y)
+    });
+    pairs.collect()
+}
+
+/// −x, and 0 for 0.
+fn negative(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { -x }
+}
