@@ -2,7 +2,7 @@
 //! problem, as data and in words.
 
 use crate::contact::decision::{Rule, Tested};
-use crate::debug::census::{Census, census};
+use crate::debug::census::{Census, MOST, census};
 use crate::debug::core::{Core, core, cycle};
 use crate::debug::influence::{Influence, influences};
 use crate::debug::report;
@@ -11,6 +11,9 @@ use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, NodeRecord};
 use crate::solve::frozen::{Assumed, Condition, Frozen, Trials};
 use crate::solve::state::NodeState;
+
+/// Most iterations of a period that are told one by one.
+const MOST_PHASES: usize = 12;
 
 /// What is known of a cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,10 +24,13 @@ pub struct Diagnosis {
     pub phases: Vec<Phase>,
     /// The fewest nodes that still cycle; none where that cannot be told.
     pub core: Option<Core>,
-    /// What is consistent with the core, all other nodes going on with what they do.
+    /// The problem of all nodes that take part, or of the core where those are too many for a census; the other nodes go
+    /// on with what they do.
+    pub problem: Frozen,
+    /// What is consistent in it; none where even the core is too large.
     pub census: Option<Census>,
     pub cause: Cause,
-    /// What was tried on the core, and whether it settles there.
+    /// What was tried on it, and whether it settles there.
     pub ways: Vec<(Way, bool)>,
 }
 
@@ -50,14 +56,15 @@ pub struct Push {
 }
 
 /// Why Table 2 cycles.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Cause {
     /// No state of these nodes obeys Coulomb's law.
     NoAnswer,
-    /// The nodes slide in the answer, and Table 2 sends a rough free node to fixed only, from where it opens again.
-    NoWayToSliding,
-    /// The modes have settled; T_max, taken from the iteration before, swings by this factor each time.
-    Lag { factor: f64 },
+    /// In the answer these nodes slide, as they never do in the cycle: Table 2 sends a rough node that touches to fixed,
+    /// and from there it opens. Places in the diagnosed problem.
+    NoWayToSliding(Vec<usize>),
+    /// The modes have settled; T_max, taken from the iteration before, swings to and fro.
+    Lag,
     /// Several states obey the law, and Table 2 passes by them all.
     Several,
     /// One state obeys the law, and Table 2 passes by it.
@@ -83,16 +90,19 @@ impl Diagnosis {
         let cycle = cycle(problem)?;
         let phases = phases(problem, cycle.period)?;
         let core = core(problem);
-        let census = core.as_ref().and_then(|core| census(&core.problem).ok());
-        let cause = cause(&cycle, &phases, core.as_ref(), census.as_ref());
-        let ways = match &core {
-            Some(core) => ways(&core.problem, census.as_ref()),
-            None => Vec::new(),
+        let members: Vec<usize> = cycle.members.iter().map(|member| member.0).collect();
+        let studied = match &core {
+            Some(core) if members.len() > MOST => core.problem.clone(),
+            _ => problem.reduced(&members)?,
         };
+        let census = census(&studied).ok();
+        let cause = cause(problem, &phases, &studied, census.as_ref());
+        let ways = ways(&studied, census.as_ref());
         Some(Diagnosis {
             cycle,
             phases,
             core,
+            problem: studied,
             census,
             cause,
             ways,
@@ -133,7 +143,7 @@ fn push(
     records: &[NodeRecord],
     node: usize,
 ) -> Option<Push> {
-    let tested = fired(&records[node])?;
+    let tested = fired(records[node].decision.rule)?;
     let of = |i: &Influence| match tested {
         Tested::Gap => i.gap,
         Tested::NormalForce => i.f_n,
@@ -153,52 +163,46 @@ fn push(
 }
 
 /// The inequality that changed a node's mode.
-fn fired(record: &NodeRecord) -> Option<Tested> {
-    let tests = record.decision.tests.iter().flatten();
-    let broken = tests.clone().find(|test| test.margin < 0.0);
-    broken.or(tests.last()).map(|test| test.tested)
+fn fired(rule: Rule) -> Option<Tested> {
+    match rule {
+        Rule::FixedOpens | Rule::SlidingOpens => Some(Tested::NormalForce),
+        Rule::FixedSlides => Some(Tested::ShearForce),
+        Rule::SlidingSticks => Some(Tested::Slip),
+        Rule::FreeSticks | Rule::FreeSlides => Some(Tested::Gap),
+        _ => None,
+    }
 }
 
-fn cause(cycle: &Cycle, phases: &[Phase], core: Option<&Core>, census: Option<&Census>) -> Cause {
-    if let Some(census) = census
-        && census.answers.is_empty()
-    {
-        return Cause::NoAnswer;
-    }
-    if let Some(factor) = lag(cycle, phases) {
-        return Cause::Lag { factor };
-    }
-    let (Some(core), Some(census)) = (core, census) else {
+fn cause(whole: &Frozen, phases: &[Phase], problem: &Frozen, census: Option<&Census>) -> Cause {
+    let Some(census) = census else {
         return Cause::Unknown;
     };
-    if census.answers.len() > 1 {
-        return Cause::Several;
+    if census.answers.is_empty() {
+        return Cause::NoAnswer;
     }
-    let never_slides = |(place, pattern): &(usize, Vec<Mode>)| {
-        let answer = census.answers[0].answer.nodes[*place].assumed;
-        matches!(answer, Assumed::Plus | Assumed::Minus) && !pattern.contains(&Mode::Sliding)
-    };
-    let members = &core.cycle.members;
-    if members.iter().any(never_slides) {
-        Cause::NoWayToSliding
-    } else {
-        Cause::Passed
-    }
-}
-
-/// The factor by which T_max swings, where no mode changes: the root of the product over a period is one in size for a
-/// true cycle, so that its sign is what can be told.
-fn lag(cycle: &Cycle, phases: &[Phase]) -> Option<f64> {
     let settled = |phase: &Phase| phase.records.iter().all(|r| !r.decision.changes());
-    if !phases.iter().all(settled) {
-        return None;
+    if phases.iter().all(settled) {
+        return Cause::Lag;
     }
-    let (member, _) = cycle.members.first()?;
-    let moved = |phase: &Phase| phase.records[*member].t_max - phase.records[*member].t_max_used;
-    let [first, second, ..] = phases else {
-        return Some(1.0);
+    let [answer] = census.answers.as_slice() else {
+        return Cause::Several;
     };
-    Some(moved(second) / moved(first))
+    let never_slides = |place: usize| {
+        let slave = problem.nodes[place].slave;
+        let slides = |phase: &Phase| {
+            let mut records = whole.nodes.iter().zip(&phase.records);
+            records.any(|(n, r)| n.slave == slave && r.decision.before == Mode::Sliding)
+        };
+        let assumed = answer.answer.nodes[place].assumed;
+        assumed.mode() == Mode::Sliding && !phases.iter().any(slides)
+    };
+    let nodes: Vec<usize> = (0..problem.nodes.len())
+        .filter(|&p| never_slides(p))
+        .collect();
+    match nodes.first() {
+        Some(_) => Cause::NoWayToSliding(nodes),
+        None => Cause::Passed,
+    }
 }
 
 /// Tries what can be tried on the frozen problem alone.
@@ -251,62 +255,82 @@ fn runs(problem: &Frozen) -> bool {
 /// The diagnosis in words, a line each, most important first. Nodes are named as the scene names them.
 pub fn words(model: &Model, problem: &Frozen, diagnosis: &Diagnosis) -> Vec<String> {
     let name = |place: usize| report::slave(model, problem.nodes[place].slave);
-    let mut lines = vec![format!("why: {}", cause_words(diagnosis, &name))];
-    for (k, phase) in diagnosis.phases.iter().enumerate() {
+    let studied = |place: usize| report::slave(model, diagnosis.problem.nodes[place].slave);
+    let mut lines = vec![format!("why: {}", cause_words(diagnosis, &studied))];
+    for (k, phase) in diagnosis.phases.iter().enumerate().take(MOST_PHASES) {
         for push in &phase.pushes {
             let at = format!("minor {} of the cycle", k + 1);
             lines.push(format!("{at}: {}", push_words(push, phase, &name)));
         }
     }
-    if let Some(core) = &diagnosis.core {
-        let of_core = |place: usize| report::slave(model, core.problem.nodes[place].slave);
-        if core.places.len() < problem.nodes.len() {
-            let names: Vec<_> = core.places.iter().map(|&p| name(p)).collect();
-            lines.push(format!(
-                "core: {} alone still cycle{} when all other nodes are frozen ({} of {} slave nodes)",
-                names.join(", "),
-                if names.len() == 1 { "s" } else { "" },
-                names.len(),
-                problem.nodes.len()
-            ));
-        }
-        if let Some(census) = &diagnosis.census {
-            lines.extend(census_words(census, &of_core));
-        }
+    if diagnosis.phases.len() > MOST_PHASES {
+        let more = diagnosis.phases.len() - MOST_PHASES;
+        lines.push(format!("and so on for {more} more minor iterations"));
     }
-    for (way, settles) in &diagnosis.ways {
-        lines.push(way_words(*way, *settles));
+    if let Some(core) = &diagnosis.core
+        && core.places.len() < diagnosis.cycle.members.len()
+    {
+        let names: Vec<_> = core.places.iter().map(|&place| name(place)).collect();
+        lines.push(format!(
+            "core: {} still cycle{}, period {}, when all other nodes go on with what they do",
+            list(&names),
+            if names.len() == 1 { "s" } else { "" },
+            core.cycle.period
+        ));
     }
+    if let Some(census) = &diagnosis.census {
+        lines.extend(census_words(census, &studied));
+    }
+    lines.extend(
+        diagnosis
+            .ways
+            .iter()
+            .map(|&(way, settles)| way_words(way, settles)),
+    );
     lines
 }
 
+fn list(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.to_string(),
+        [some @ .., last] => format!("{} and {last}", some.join(", ")),
+    }
+}
+
 fn cause_words<'a>(diagnosis: &Diagnosis, name: &impl Fn(usize) -> &'a str) -> String {
-    let members: Vec<&str> = diagnosis.cycle.members.iter().map(|m| name(m.0)).collect();
-    let nodes = members.join(", ");
-    match diagnosis.cause {
-        Cause::NoAnswer => {
+    let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
+    let nodes = list(&members);
+    match &diagnosis.cause {
+        Cause::NoAnswer => format!(
+            "no state of {nodes} obeys contact and friction at this increment, so no iteration can find one; \
+             a smaller increment ends before"
+        ),
+        Cause::NoWayToSliding(sliding) => {
+            let sliding: Vec<&str> = sliding.iter().map(|&place| name(place)).collect();
             format!(
-                "no state of {nodes} obeys contact and friction at this increment; no more iterations can find one"
+                "in the one consistent state {} slide{}, and Table 2 has no way there: a rough node that touches is \
+                 sent to fixed, and from there it opens",
+                list(&sliding),
+                if sliding.len() == 1 { "s" } else { "" }
             )
         }
-        Cause::NoWayToSliding => format!(
-            "in the one consistent state {nodes} slide{}, and Table 2 has no way there: a rough node that touches is sent to fixed, and from there it opens",
-            if members.len() == 1 { "s" } else { "" }
+        Cause::Lag => format!(
+            "the modes have settled, but T_max of {nodes}, lagged by one iteration, swings to and fro"
         ),
-        Cause::Lag { factor } if factor < 0.0 => format!(
-            "the modes have settled; T_max of {nodes}, lagged by one iteration, swings to and fro by a factor of {factor:.6}"
-        ),
-        Cause::Lag { .. } => {
-            format!("the modes have settled; T_max of {nodes}, lagged by one iteration, repeats")
-        }
         Cause::Several => format!(
             "{} states of {nodes} are consistent, and Table 2 passes by them all",
             diagnosis.census.as_ref().map_or(0, |c| c.answers.len())
         ),
         Cause::Passed => {
-            format!("there is one consistent state of {nodes}, and Table 2 passes by it")
+            format!("one state of {nodes} is consistent, and Table 2 passes by it")
         }
-        Cause::Unknown => format!("too many nodes take part to try all of their states ({nodes})"),
+        Cause::Unknown => {
+            format!(
+                "{} nodes take part, too many to try all of their states",
+                members.len()
+            )
+        }
     }
 }
 
@@ -319,29 +343,25 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
         Tested::ShearForce => ("ΔF_t", from.f_t),
         Tested::Slip => ("Δslip", from.slip),
     };
-    let doing = match push.from_modes {
-        [a, b] if a == b => "a new T_max at",
-        [_, Mode::Free] => "opening",
-        [Mode::Free, _] => "closing",
-        [_, Mode::Sliding] => "letting slide",
-        [_, Mode::Fixed] => "sticking",
-    };
-    let did = match record.decision.rule {
-        Rule::FixedOpens | Rule::SlidingOpens => "opened",
-        Rule::FixedSlides => "let slide",
-        Rule::SlidingSticks | Rule::FreeSticks => "stuck",
-        Rule::FreeSlides => "closed",
-        _ => "changed",
-    };
     let whom = if from.from == push.node {
-        "it".to_string()
+        "it"
     } else {
-        name(push.node).to_string()
+        name(push.node)
     };
-    format!(
-        "{doing} {} {did} {whom}: {what} = {value:.4e}",
-        name(from.from)
-    )
+    let source = name(from.from);
+    let doing = match push.from_modes {
+        [a, b] if a == b => format!("the new T_max of {source}"),
+        [_, Mode::Free] => format!("opening {source}"),
+        [Mode::Free, _] => format!("closing {source}"),
+        [_, Mode::Sliding] => format!("letting {source} slide"),
+        [_, Mode::Fixed] => format!("sticking {source}"),
+    };
+    let did = match record.decision.next {
+        Mode::Free => "open",
+        Mode::Sliding => "slide",
+        Mode::Fixed => "stick",
+    };
+    format!("{doing} made {whom} {did}: {what} = {value:.4e}")
 }
 
 fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
@@ -369,7 +389,15 @@ fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<St
                     margin.value
                 )
             });
-        lines.push(format!("  {}: {}{margin}", number + 1, nodes.join(", ")));
+        let ties = match found.ties.as_slice() {
+            [] => String::new(),
+            ties => format!(" (a tie: {} leads to the same)", ties.join(", ")),
+        };
+        lines.push(format!(
+            "  {}: {}{ties}{margin}",
+            number + 1,
+            nodes.join(", ")
+        ));
     }
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(

@@ -279,18 +279,28 @@ fn some(mut all: Vec<String>, between: &str) -> String {
     }
 }
 
+/// Modes one after the other; long stays are counted.
+fn pattern(modes: &[Mode]) -> String {
+    let stays = modes.chunk_by(|a, b| a == b).map(|stay| {
+        let word = mode(stay[0]);
+        match stay.len() {
+            1 => word.to_string(),
+            2 => format!("{word} > {word}"),
+            n => format!("{word} ({n} times)"),
+        }
+    });
+    stays.collect::<Vec<_>>().join(" > ")
+}
+
 /// A cycle of modes.
 pub fn cycle(model: &Model, cycle: &Cycle) -> String {
     let member = |(s, modes): &(usize, Vec<Mode>)| {
-        let (name, words) = (
-            slave(model, *s),
-            modes.iter().map(|&m| mode(m)).collect::<Vec<_>>(),
-        );
-        if modes.iter().all(|m| Some(m) == modes.first()) {
-            let stays = words.first().copied().unwrap_or("?");
-            format!("{name} stays {stays} while its T_max repeats")
-        } else {
-            format!("{name} {} > …", words.join(" > "))
+        let name = slave(model, *s);
+        match modes.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|m| m == first) => {
+                format!("{name} stays {} while its T_max repeats", mode(*first))
+            }
+            modes => format!("{name} {} > …", pattern(modes)),
         }
     };
     format!(
