@@ -9,9 +9,11 @@ use stickslip::scene::spec::{LoadSpec, Mode, Nodes, Point, Spec};
 use stickslip::scene::{Model, Scene};
 use stickslip::solve::{Outcome, State, Status, Stepper};
 
-/// All built-in scenes; the oscillating ones with their nodes forced to slide once where they stop.
+/// All built-in scenes but those that are to fail, of which `tests/oscillators.rs` speaks; the inclined cantilever with its
+/// node forced to slide once where it stops.
 fn accepted_everywhere(check: impl Fn(&Scene, &common::Accepted)) {
-    for builtin in builtin::list() {
+    let fails = |name: &str| name.starts_with("osc-") && name != "osc-inclined-cantilever";
+    for builtin in builtin::list().iter().filter(|b| !fails(b.name)) {
         let scene = scene(builtin.name, &[]);
         let mut run = run(&scene);
         for _ in 0..3 {

@@ -372,7 +372,7 @@ fn the_cycle_that_the_paper_s_rule_runs_into_is_left_by_forcing_the_tip_to_slide
 
 #[test]
 fn without_a_scene_the_built_in_ones_are_offered_and_enter_opens_one() {
-    let mut session = Start::debugger(&[]).size(80, 24).go();
+    let mut session = Start::debugger(&[]).size(80, 36).go();
     session.see("Choose a scene");
     for scene in builtin::list() {
         session.see(scene.name);
@@ -380,7 +380,7 @@ fn without_a_scene_the_built_in_ones_are_offered_and_enter_opens_one() {
     session.type_and_see("j", &format!("▸ {}", builtin::list()[1].name));
     session.type_and_see("k", &format!("▸ {FLOOR}"));
     session.keys("\r");
-    session.see_picture(FLOOR, "", 80, 24);
+    session.see_picture(FLOOR, "", 80, 36);
     session.quit();
     let mut session = Start::debugger(&[]).go();
     session.see("Choose a scene");

@@ -82,19 +82,19 @@ pub fn read(text: &str) -> Result<Friction2d, Broken> {
         )));
     }
     let size = 2 * contacts;
-    let storage = words.count("the storage of W")?;
-    words.exactly(size, "the number of rows of W")?;
-    words.exactly(size, "the number of columns of W")?;
-    let w = match storage {
-        0 => dense(&mut words, size)?,
-        1 => blocks(&mut words, size)?,
-        2 => columns(&mut words, size)?,
+    let matrix = match words.count("the storage of W")? {
+        0 => dense,
+        1 => blocks,
+        2 => columns,
         other => {
             return Err(words.broken(&format!(
                 "W is in storage {other}; it must be 0 (dense), 1 (sparse blocks) or 2 (compressed columns)"
             )));
         }
     };
+    words.exactly(size, "the number of rows of W")?;
+    words.exactly(size, "the number of columns of W")?;
+    let w = matrix(&mut words, size)?;
     let q = words.numbers(size, "q")?;
     let mut mu = Vec::with_capacity(contacts);
     for _ in 0..contacts {

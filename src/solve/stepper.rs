@@ -25,8 +25,9 @@ use std::sync::Arc;
 
 /// A displacement this many times the scene's length is divergence.
 const DIVERGED: f64 = 1e4;
-/// Two states of a minor loop whose numbers differ by less than this, relatively, are the same.
-const SAME: f64 = 1e-12;
+/// Two states of a minor loop whose numbers differ by less than this, relatively, are the same. It is far below any
+/// tolerance, so that T_max that converges slowly has settled before two rounds look alike.
+const SAME: f64 = 1e-14;
 /// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
 /// the length instead.
 const STILL: f64 = 1e-8;

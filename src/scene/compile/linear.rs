@@ -29,9 +29,12 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
             Form::Compliance { first_force: 0 },
         ),
         (given_none, _) => {
-            let what = if given_none { "neither" } else { "both" };
-            let message =
-                format!("the body has {what} stiffness and compliance; it must have one of them");
+            let what = if given_none {
+                "neither stiffness nor"
+            } else {
+                "both stiffness and"
+            };
+            let message = format!("the body has {what} compliance; it must have one of them");
             return Err(Fault::new(here.clone(), message));
         }
     };
