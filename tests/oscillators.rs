@@ -221,10 +221,13 @@ fn cohesion_without_tension_has_no_answer_in_any_mode() {
 #[test]
 fn the_node_in_the_valley_goes_to_and_fro_between_the_sides() {
     let run = run(&scene("osc-valley", &[]));
-    let Some((_, Failure::MajorLimit { limit: 30, .. })) = &run.failure else {
+    let Some((_, Failure::MajorCycle(round))) = &run.failure else {
         panic!("{:?}", run.failure)
     };
     assert!(run.accepted.is_empty());
+    assert_eq!((round.period, round.members.len()), (2, 1), "{round:?}");
+    let elements: Vec<_> = round.members[0].1.iter().map(|stop| stop.element).collect();
+    assert_ne!(elements[0], elements[1]);
 }
 
 #[test]

@@ -130,7 +130,9 @@ fn ends_major(outcome: &Outcome) -> bool {
         outcome,
         Outcome::Major { .. }
             | Outcome::Increment { .. }
-            | Outcome::Failed(Failure::MajorLimit { .. } | Failure::Diverged { .. })
+            | Outcome::Failed(
+                Failure::MajorLimit { .. } | Failure::MajorCycle(_) | Failure::Diverged { .. }
+            )
     )
 }
 

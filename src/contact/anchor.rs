@@ -119,6 +119,7 @@ mod tests {
         Surface {
             name: "s".into(),
             elements,
+            endless: false,
             rigid: true,
         }
     }

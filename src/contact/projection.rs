@@ -13,6 +13,8 @@ use crate::scene::model::Surface;
 const END_TOLERANCE: f64 = 1e-9;
 /// By how much another element must be closer before a node leaves its own, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
+/// How far past a border to the next element [`hold`] keeps a node on its own, in ξ.
+const OVERHANG: f64 = 0.02;
 /// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
 const BULGE: f64 = 0.5;
 
@@ -23,7 +25,7 @@ pub struct Spot {
     pub surface: usize,
     /// Number of the element in the surface.
     pub element: usize,
-    /// Coordinate in the element, −1 to 1.
+    /// Coordinate in the element, −1 to 1, or a little beyond where the node is held there ([`hold`]).
     pub xi: f64,
 }
 
@@ -97,6 +99,29 @@ pub fn project(
     (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
 }
 
+/// The spot of a node that keeps the element it had, up to [`OVERHANG`] past a border to the next one; none where it has
+/// gone further, or was on none.
+///
+/// Where elements meet at an angle, each of the two may send a node that comes to rest at their border to the other.
+pub fn hold(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    positions: &[[f64; 2]],
+    previous: Option<Spot>,
+) -> Option<Spot> {
+    let previous = previous?;
+    let surface = &surfaces[previous.surface];
+    let nodes = &surface.elements[previous.element];
+    let xi = descend(nodes, positions, slave, previous.xi, 1.0 + 2.0 * OVERHANG);
+    let border = Spot {
+        xi: xi.clamp(-1.0, 1.0),
+        ..previous
+    };
+    let held = !surface.endless
+        && (xi.abs() < 1.0 || (neighbour(surface, border).is_some() && xi.abs() <= 1.0 + OVERHANG));
+    held.then_some(Spot { xi, ..previous })
+}
+
 /// Geometry at a spot, for a slave node at `slave`.
 pub fn footing(
     surfaces: &[Surface],
@@ -110,7 +135,7 @@ pub fn footing(
     let foot = blend(nodes, positions, &s.n);
     let normal = normal_at(surface, spot, positions);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
-    let inside = spot.xi.abs() < 1.0 || surface.endless;
+    let inside = spot.xi.abs() != 1.0 || surface.endless;
     Footing {
         foot,
         normal,
@@ -190,14 +215,20 @@ fn closest(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f6
         .fold((f64::INFINITY, 0.0), |best, now| {
             if now.0 < best.0 { now } else { best }
         });
-    let refined = descend(nodes, positions, slave, start.1);
+    let refined = descend(nodes, positions, slave, start.1, 1.0);
     let ended = (distance(refined), refined);
     if ended.0 <= start.0 { ended } else { start }
 }
 
-/// Newton's method for (x_S − x) · x' = 0 within the element, falling back on Gauss-Newton where the curve bends
+/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ `bound`, falling back on Gauss-Newton where the curve bends
 /// too much towards the node.
-fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
+fn descend(
+    nodes: &[usize],
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+    start: f64,
+    bound: f64,
+) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
         let s = shape(nodes.len(), xi);
@@ -217,7 +248,7 @@ fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64)
         if denominator == 0.0 {
             break;
         }
-        let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-1.0, 1.0);
+        let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-bound, bound);
         let step = (next - xi).abs();
         xi = next;
         if step <= 2.0 * f64::EPSILON {

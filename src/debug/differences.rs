@@ -287,6 +287,7 @@ fn status(status: &Status) -> String {
         Failure::MajorLimit { limit, .. } => Failure::MajorLimit {
             limit,
             relative: 0.0,
+            interface: 0.0,
         },
         Failure::Diverged { .. } => return "diverged".into(),
         Failure::Jammed { slave, .. } => Failure::Jammed { slave, gap: 0.0 },

@@ -3,6 +3,7 @@
 use crate::contact::decision::Rule;
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
+use crate::solve::rounds::{Round, Stop};
 use crate::solve::{Event, Failure, Intervention, Outcome, Position};
 
 /// Name of a slave node.
@@ -192,6 +193,9 @@ pub fn advice(failure: &Failure) -> &'static str {
         }
         Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
         Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
+        Failure::MajorCycle(_) => {
+            "a smaller history.increment; at a corner, a rounded one, or two surfaces with the node a slave of each"
+        }
         Failure::Singular(Singular::Rigid { .. }) => {
             "a support against that motion, or slave nodes that start sliding or fixed"
         }
@@ -216,9 +220,14 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
                 some(nodes.collect(), ", ")
             )
         }
-        Failure::MajorLimit { limit, relative } => {
-            format!("no equilibrium within {limit} major iterations; relative residual {relative:.3e}")
-        }
+        Failure::MajorLimit {
+            limit,
+            relative,
+            interface,
+        } => format!(
+            "no equilibrium within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
+        ),
+        Failure::MajorCycle(round) => major_cycle(model, round),
         Failure::Singular(Singular::Rigid { motions }) => {
             let motions = motions.iter().map(motion).collect();
             format!("nothing holds a rigid motion: {}", some(motions, "; "))
@@ -290,6 +299,43 @@ fn pattern(modes: &[Mode]) -> String {
         }
     });
     stays.collect::<Vec<_>>().join(" > ")
+}
+
+/// A cycle of major iterations.
+pub fn major_cycle(model: &Model, round: &Round) -> String {
+    let member = |(s, stops): &(usize, Vec<Stop>)| {
+        let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
+        let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();
+        let moves = elements.iter().any(|e| *e != elements[0]);
+        let switches = modes.iter().any(|m| *m != modes[0]);
+        let stop = |stop: &Stop| match (moves, switches) {
+            (true, false) => place(model, stop.element),
+            (false, true) => mode(stop.mode).to_string(),
+            _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
+        };
+        let words: Vec<String> = stops.iter().map(stop).collect();
+        match (moves, switches) {
+            (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
+            _ => format!("{} {} > …", slave(model, *s), words.join(" > ")),
+        }
+    };
+    format!(
+        "the major iterations {}-cycle since major {}: {}",
+        round.period,
+        round.start,
+        some(round.members.iter().map(member).collect(), "; ")
+    )
+}
+
+/// A master element's name: its surface, and its number from 1.
+fn place(model: &Model, element: Option<(usize, usize)>) -> String {
+    match element {
+        Some((surface, element)) => {
+            let name = model.surfaces.get(surface).map_or("?", |s| s.name.as_str());
+            format!("{name} element {}", element + 1)
+        }
+        None => "no surface".into(),
+    }
 }
 
 /// A cycle of modes.

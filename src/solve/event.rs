@@ -3,6 +3,7 @@
 use crate::contact::decision::Decision;
 use crate::contact::projection::Spot;
 use crate::scene::Mode;
+use crate::solve::rounds::Round;
 use serde::{Deserialize, Serialize};
 
 /// Where the solver is. All counts start at 1.
@@ -122,7 +123,14 @@ pub enum Failure {
     /// The minor iterations did not settle within their limit; nodes that still changed in the last one.
     MinorLimit { limit: u32, changing: Vec<usize> },
     /// No equilibrium within the limit of major iterations.
-    MajorLimit { limit: u32, relative: f64 },
+    MajorLimit {
+        limit: u32,
+        relative: f64,
+        #[serde(default)]
+        interface: f64,
+    },
+    /// The major iterations returned to where they had been: they will cycle for ever.
+    MajorCycle(Round),
     /// The equations have no unique solution.
     Singular(Singular),
     /// The residual or the displacements grew out of all bounds.

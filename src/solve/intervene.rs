@@ -45,6 +45,7 @@ impl State {
             Intervention::Settings(settings) => self.set(settings)?,
         }
         self.forget_trail();
+        self.forget_rounds();
         Ok(())
     }
 
@@ -55,6 +56,13 @@ impl State {
         }
     }
 
+    /// Forgets what went into the major iterations so far.
+    pub(super) fn forget_rounds(&mut self) {
+        if !self.rounds.is_empty() {
+            Arc::make_mut(&mut self.rounds).clear();
+        }
+    }
+
     /// Sets out on the increment that follows `start`.
     pub(super) fn begin(&mut self, model: &Model) {
         (self.next.major, self.next.minor) = (1, 1);
@@ -62,6 +70,7 @@ impl State {
         self.load_factor = next_load_factor(&model.path, &self.start, self.controls.increment);
         (self.aim, self.reached) = (self.load_factor, self.start.load_factor);
         self.forget_trail();
+        self.forget_rounds();
     }
 
     fn node_mut(&mut self, slave: usize) -> Result<&mut NodeState, String> {

@@ -4,6 +4,7 @@
 //! - [`system`]: the linearised equations of a major iteration; `interface`: a slave node's part of them; `bodies`: the
 //!   bodies condensed; `condensed`: the interface alone; [`singular`]: why there is no solution.
 //! - [`minor`]: a minor iteration at one slave node; [`frozen`]: the interface problem by itself.
+//! - [`rounds`]: cycles of major iterations.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
 mod bodies;
@@ -13,6 +14,7 @@ pub mod frozen;
 mod interface;
 pub mod intervene;
 pub mod minor;
+pub mod rounds;
 pub mod singular;
 pub mod state;
 pub mod stepper;

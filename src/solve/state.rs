@@ -8,6 +8,7 @@ use crate::fem::assembly::history_len;
 use crate::scene::spec::{InitialState, SlipCount, Sticking};
 use crate::scene::{Friction, Mode, Model, Settings};
 use crate::solve::event::{Cycle, Failure, Forced, Position};
+use crate::solve::rounds::Rounds;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -28,6 +29,9 @@ pub struct State {
     pub controls: Arc<Controls>,
     /// What went into the minor iterations of the present major one so far, to recognise a cycle.
     pub trail: Arc<Trail>,
+    /// What went into the major iterations of the present increment so far, to recognise a cycle of theirs.
+    #[serde(default)]
+    pub rounds: Arc<Rounds>,
     /// Load factor that the present major iteration aims at: `load_factor`, unless it was damped.
     pub aim: f64,
     /// Load factor that the last major iteration aimed at; at first the one at the start of the increment.
@@ -246,6 +250,7 @@ impl State {
             start: Arc::new(start),
             controls: Arc::new(controls),
             trail: Arc::default(),
+            rounds: Arc::default(),
             aim,
             reached: load_factor,
             minors: 0,
@@ -257,7 +262,7 @@ impl State {
 }
 
 impl NodeState {
-    fn new(mode: Mode, brought: &InitialState) -> Self {
+    pub(super) fn new(mode: Mode, brought: &InitialState) -> Self {
         NodeState {
             mode,
             forced: Forced::No,

@@ -10,7 +10,7 @@
 
 use crate::contact::anchor::{distance, pierced};
 use crate::contact::decision::Ties;
-use crate::contact::projection::project;
+use crate::contact::projection::{hold, project};
 use crate::scene::model::{Surface, Watched};
 use crate::scene::spec::{AtCycle, AtLimit, Axis, ResidualMethod, SlipCount, Sticking};
 use crate::scene::{Mode, Model, spec};
@@ -18,6 +18,7 @@ use crate::solve::event::{Cycle, Event, Failure, NodeRecord, Norms, Outcome, Pos
 use crate::solve::frozen::Frozen;
 use crate::solve::intervene::Intervention;
 use crate::solve::minor::{carried, judge};
+use crate::solve::rounds::Round;
 use crate::solve::singular;
 use crate::solve::state::{IncrementStart, NodeState, State, Status};
 use crate::solve::system::{Solved, System};
@@ -31,6 +32,8 @@ const SAME: f64 = 1e-14;
 /// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
 /// the length instead.
 const STILL: f64 = 1e-8;
+/// From this major iteration on nodes keep their master elements a little past the borders.
+const HOLD_FROM: u32 = 5;
 /// A major iteration is not damped below this part of its load.
 const SMALLEST_PART: f64 = 1e-6;
 
@@ -323,13 +326,29 @@ impl Stepper {
                 relative: after.relative,
             });
         }
+        if settings.at_major_limit == AtLimit::Stop
+            && let Some(round) = self.find_round()
+        {
+            self.state.forget_rounds();
+            return Outcome::Failed(Failure::MajorCycle(round));
+        }
         if at_limit {
             return Outcome::Failed(Failure::MajorLimit {
                 limit: settings.majors,
                 relative: after.relative,
+                interface: after.interface,
             });
         }
         Outcome::Major { after, settled }
+    }
+
+    /// Whether the next major iteration starts from where an earlier one of this increment did.
+    fn find_round(&mut self) -> Option<Round> {
+        let force = self.force_scale();
+        let (major, slaves) = (self.state.next.major, self.state.nodes.len());
+        let rounds = Arc::make_mut(&mut self.state.rounds);
+        rounds.push(&self.state.nodes);
+        rounds.cycle(slaves, major, force)
     }
 
     fn update(&mut self) {
@@ -386,18 +405,20 @@ impl Stepper {
     fn find_spots(&mut self) {
         self.system.place(&self.model, &self.state.u);
         let positions = &self.system.positions;
+        let holds = self.state.next.major >= HOLD_FROM;
         // Where slip is counted anew in every major iteration, so is what to stick to.
         let settings = &self.state.controls.settings;
         let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
             let at = positions[slave.node];
-            node.spot = project(
-                at,
-                &self.model.surfaces,
-                &slave.surfaces,
-                positions,
-                node.spot,
-            );
+            let surfaces = &self.model.surfaces;
+            let held = if holds && node.mode != Mode::Free {
+                hold(at, surfaces, positions, node.spot)
+            } else {
+                None
+            };
+            node.spot =
+                held.or_else(|| project(at, surfaces, &slave.surfaces, positions, node.spot));
             match node.spot {
                 Some(spot) => {
                     node.normal = crate::contact::projection::footing(

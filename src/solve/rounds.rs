@@ -1,0 +1,167 @@
+//! Cycles of major iterations: a node that passes to and fro between two elements, or modes that come and go with the
+//! geometry, so that no number of major iterations ends the increment.
+
+use crate::contact::projection::Spot;
+use crate::scene::Mode;
+use crate::solve::state::NodeState;
+use serde::{Deserialize, Serialize};
+
+/// Numbers of two major iterations that differ by less than this, relatively, are the same.
+const SAME: f64 = 1e-10;
+/// Those that differ by more than this, relatively, are different: between the two, an iteration may still converge.
+const DIFFERENT: f64 = 1e-7;
+
+/// What the slave nodes took into every major iteration of the present increment.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Rounds {
+    /// One entry a slave node, iteration after iteration.
+    entries: Vec<Entry>,
+}
+
+/// What one slave node takes into a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Entry {
+    mode: Mode,
+    spot: Option<Spot>,
+    f_n: f64,
+    f_t: f64,
+}
+
+/// A cycle of major iterations.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Round {
+    /// Major iteration from which on it repeats.
+    pub start: u32,
+    /// Number of major iterations after which it repeats, at least 2.
+    pub period: u32,
+    /// Slave nodes (by slave number) that change in it, with what each takes into every iteration of one period.
+    pub members: Vec<(usize, Vec<Stop>)>,
+}
+
+/// Mode of a slave node, and the master element (surface, element) that S* is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stop {
+    pub mode: Mode,
+    pub element: Option<(usize, usize)>,
+}
+
+impl Entry {
+    fn of(node: &NodeState) -> Self {
+        Entry {
+            mode: node.mode,
+            spot: node.spot,
+            f_n: node.f_n,
+            f_t: node.f_t,
+        }
+    }
+
+    fn stop(&self) -> Stop {
+        Stop {
+            mode: self.mode,
+            element: self.spot.map(|s| (s.surface, s.element)),
+        }
+    }
+
+    /// Whether both stop at the same and their numbers differ by less than `limit`, forces in units of `force`.
+    fn within(&self, other: &Entry, force: f64, limit: f64) -> bool {
+        let along = match (self.spot, other.spot) {
+            (Some(a), Some(b)) => (a.xi - b.xi).abs(),
+            _ => 0.0,
+        };
+        self.stop() == other.stop()
+            && along <= limit
+            && (self.f_n - other.f_n).abs() <= limit * force
+            && (self.f_t - other.f_t).abs() <= limit * force
+    }
+}
+
+impl Rounds {
+    /// Forgets everything, keeping its memory.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Whether nothing is remembered.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Remembers what goes into the next major iteration.
+    pub fn push(&mut self, nodes: &[NodeState]) {
+        self.entries.extend(nodes.iter().map(Entry::of));
+    }
+
+    /// The cycle that is closed where the last of the remembered iterations, the major iteration `major`, starts from
+    /// the same as an earlier one, having been elsewhere in between.
+    pub fn cycle(&self, slaves: usize, major: u32, force: f64) -> Option<Round> {
+        let width = slaves.max(1);
+        let count = self.entries.len() / width;
+        let of = |k: usize| &self.entries[k * width..(k + 1) * width];
+        let here = count.checked_sub(1)?;
+        let all_within = |then: usize, limit: f64| {
+            let mut pairs = of(then).iter().zip(of(here));
+            pairs.all(|(a, b)| a.within(b, force, limit))
+        };
+        let found = (0..here).rfind(|&then| all_within(then, SAME))?;
+        let mut between = found + 1..here;
+        if between.is_empty() || between.any(|then| all_within(then, DIFFERENT)) {
+            return None;
+        }
+        let round = found..here;
+        let stops = |s: usize| round.clone().map(move |k| of(k)[s]);
+        let takes_part =
+            |s: &usize| stops(*s).any(|entry| !entry.within(&of(here)[*s], force, DIFFERENT));
+        let period = round.len() as u32;
+        Some(Round {
+            start: major - period,
+            period,
+            members: (0..slaves)
+                .filter(takes_part)
+                .map(|s| (s, stops(s).map(|entry| entry.stop()).collect()))
+                .collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::state::NodeState;
+
+    fn nodes(xi: f64, element: usize) -> Vec<NodeState> {
+        let spot = Spot {
+            surface: 0,
+            element,
+            xi,
+        };
+        let mut node = NodeState::new(Mode::Sliding, &Default::default());
+        node.spot = Some(spot);
+        vec![node]
+    }
+
+    #[test]
+    fn passing_to_and_fro_between_two_elements_is_a_cycle_of_majors() {
+        let mut rounds = Rounds::default();
+        for k in 0..5 {
+            rounds.push(&nodes(0.3, k % 2));
+            let cycle = rounds.cycle(1, k as u32 + 1, 1.0);
+            assert_eq!(cycle.is_some(), k >= 2, "{k}");
+            if let Some(cycle) = cycle {
+                assert_eq!((cycle.start, cycle.period), (k as u32 - 1, 2));
+                assert_eq!(cycle.members.len(), 1);
+            }
+        }
+    }
+
+    #[test]
+    fn converging_to_and_fro_is_no_cycle() {
+        let mut rounds = Rounds::default();
+        for k in 0..60 {
+            rounds.push(&nodes(
+                0.5_f64.powi(k) * if k % 2 == 0 { 1.0 } else { -1.0 },
+                0,
+            ));
+            assert_eq!(rounds.cycle(1, k as u32 + 1, 1.0), None, "{k}");
+        }
+    }
+}
