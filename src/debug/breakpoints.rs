@@ -103,9 +103,9 @@ impl Condition {
             Condition::Element { node } => any(node, &|s| now.element(s) != before.element(s)),
             Condition::Cycle => matches!(now.kind, Kind::Cycle | Kind::Damped),
             Condition::Residual => now
-                .norms
+                .after
                 .as_ref()
-                .is_some_and(|norms| norms[1].relative > norms[0].relative),
+                .is_some_and(|after| after.relative > now.residual),
             Condition::Failure => now.kind.is_failure(),
             Condition::At(place) => {
                 let place = (place.increment, place.major, place.minor);

@@ -94,7 +94,7 @@ fn side(tree: &Tree, branch: usize, at: usize) -> Option<Side> {
             gap: found.map(|found| found.gap),
         }
     };
-    let after = strip.norms.as_ref().map(|norms| norms[1]);
+    let after = strip.after.as_deref().copied();
     let before = frame.event.as_ref().map(|event| event.before);
     Some(Side {
         branch,

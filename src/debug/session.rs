@@ -14,6 +14,7 @@ use crate::debug::branches::{self, Summary};
 use crate::debug::breakpoints::{self, Breakpoint, Condition};
 use crate::debug::command::{Command, To, Unit};
 use crate::debug::compare::{self, Comparison};
+use crate::debug::journal::{self, Entry, Journal, JournalError};
 use crate::debug::report;
 use crate::debug::snapshot::{Applied, Snapshot};
 use crate::debug::strip::{Kind, Strip};
@@ -63,6 +64,20 @@ pub struct Session {
     /// Number that the last breakpoint was given.
     numbered: u32,
     watches: Vec<Watch>,
+    journal: Kept,
+    /// The command that the worker is at.
+    pending: Option<Command>,
+    /// Minor iterations solved by the present command, and increments accepted among them.
+    solved: u64,
+    accepted: u64,
+}
+
+/// Where the journal of a session is.
+enum Kept {
+    Nowhere,
+    /// At the default place, once there is something to write.
+    Due,
+    Open(Journal),
 }
 
 /// What the worker is at.
@@ -98,6 +113,28 @@ impl Session {
             breakpoints: Vec::new(),
             numbered: 0,
             watches: Vec::new(),
+            journal: Kept::Nowhere,
+            pending: None,
+            solved: 0,
+            accepted: 0,
+        }
+    }
+
+    /// Keeps a journal from now on.
+    pub fn keep(&mut self, journal: Journal) {
+        self.journal = Kept::Open(journal);
+    }
+
+    /// Keeps a journal at the default place, which is made when there is something to write.
+    pub fn keep_at_default_place(&mut self) {
+        self.journal = Kept::Due;
+    }
+
+    /// Where the journal is, if there is one.
+    pub fn journal(&self) -> Option<&Path> {
+        match &self.journal {
+            Kept::Open(journal) => Some(journal.path()),
+            _ => None,
         }
     }
 
@@ -191,6 +228,18 @@ impl Session {
         if self.is_running() {
             return Err("the solver is running; interrupt it first (Ctrl-C)".into());
         }
+        (self.solved, self.accepted) = (0, 0);
+        let kept = command.clone();
+        let reply = self.carry_out(command)?;
+        if self.is_running() {
+            let begun = self.begin(&kept);
+            self.pending = Some(kept);
+            return Ok(Reply(reply.0 + &begun));
+        }
+        Ok(self.note(kept, reply))
+    }
+
+    fn carry_out(&mut self, command: Command) -> Result<Reply, String> {
         match command {
             Command::Forward { unit, count } => Ok(self.forward(unit, count.max(1))),
             Command::Back { unit, count } => self.back(unit, count.max(1)),
@@ -243,8 +292,18 @@ impl Session {
     }
 
     fn take(&mut self, message: Message) -> Option<Reply> {
+        let reply = self.gather(message)?;
+        Some(match self.pending.take() {
+            Some(command) => self.note(command, reply),
+            None => reply,
+        })
+    }
+
+    fn gather(&mut self, message: Message) -> Option<Reply> {
         match message {
             Message::Made(frame, strip) => {
+                self.solved += 1;
+                self.accepted += u64::from(strip.kind.is_accepted());
                 self.tree.push(*frame, *strip);
                 self.cursor = self.frames().len() - 1;
                 None
@@ -281,6 +340,116 @@ impl Session {
             told += "interrupted; ";
         }
         Reply(told + &self.told())
+    }
+
+    /// Notes in the journal that a motion begins to solve; what is to be said where that fails.
+    fn begin(&mut self, command: &Command) -> String {
+        if !matches!(self.task, Some(Task::Run)) {
+            return String::new();
+        }
+        self.journal_with(|journal| journal.begun(command))
+    }
+
+    /// Notes in the journal what a command led to.
+    fn note(&mut self, command: Command, Reply(said): Reply) -> Reply {
+        let looks = matches!(
+            command,
+            Command::Branches
+                | Command::Compare(_)
+                | Command::Breakpoints
+                | Command::Snapshot { .. }
+        );
+        if looks || matches!(self.journal, Kept::Nowhere) {
+            return Reply(said);
+        }
+        let changes = self.solved > 0 || !is_motion(&command);
+        let entry = Entry {
+            at: journal::now(),
+            command,
+            solved: self.solved,
+            accepted: self.accepted,
+            branch: self.tree.current(),
+            cursor: self.cursor,
+            digest: journal::digest(&self.frame().state),
+            said: said.clone(),
+        };
+        let trouble = self.journal_with(|journal| journal.done(entry, changes));
+        Reply(said + &trouble)
+    }
+
+    /// Writes to the journal, if there is one. Where that fails it ends, and a message says so.
+    fn journal_with(
+        &mut self,
+        write: impl FnOnce(&mut Journal) -> Result<(), JournalError>,
+    ) -> String {
+        if matches!(self.journal, Kept::Due) {
+            match Journal::create_default(&self.scene) {
+                Ok(journal) => self.journal = Kept::Open(journal),
+                Err(error) => {
+                    self.journal = Kept::Nowhere;
+                    return format!("; there is no journal: {error}");
+                }
+            }
+        }
+        let Kept::Open(journal) = &mut self.journal else {
+            return String::new();
+        };
+        match write(journal) {
+            Ok(()) => String::new(),
+            Err(error) => {
+                self.journal = Kept::Nowhere;
+                format!("; the journal ends here: {error}")
+            }
+        }
+    }
+
+    /// Does what an entry of a journal says.
+    ///
+    /// # Errors
+    /// A message where it leads elsewhere than it did.
+    pub(super) fn replay(&mut self, entry: &Entry) -> Result<(), String> {
+        match &entry.command {
+            command if is_motion(command) => self.travel(entry.solved, entry.cursor)?,
+            command => {
+                self.submit(command.clone())?;
+                self.wait();
+            }
+        }
+        let place = (self.tree.current(), self.cursor);
+        if place != (entry.branch, entry.cursor) {
+            let (branch, cursor) = place;
+            return Err(format!(
+                "it leads to step {cursor} of branch b{}, and led to step {} of b{}",
+                branch + 1,
+                entry.cursor,
+                entry.branch + 1
+            ));
+        }
+        let digest = journal::digest(&self.frame().state);
+        if digest != entry.digest {
+            return Err(format!("the state is {digest}, and was {}", entry.digest));
+        }
+        Ok(())
+    }
+
+    /// Solves so many minor iterations from the tip of the branch, then goes to a step.
+    fn travel(&mut self, solved: u64, step: usize) -> Result<(), String> {
+        if solved > 0 {
+            self.solved = 0;
+            self.cursor = self.frames().len() - 1;
+            let count = u32::try_from(solved).map_err(|_| "it solves too much for one motion")?;
+            self.solve(Unit::Minor, count, Vec::new());
+            self.wait();
+        }
+        if solved > 0 && self.solved != solved {
+            return Err(format!(
+                "it solves {} minor iterations, and solved {solved}",
+                self.solved
+            ));
+        }
+        self.jump(step)?;
+        self.wait();
+        Ok(())
     }
 
     /// Moves the cursor over what is known already, then solves on.
@@ -661,22 +830,15 @@ impl Session {
         };
         let shown = event.position;
         let mut history: Vec<(u32, Norms)> = Vec::new();
-        let mut note = |strip: &Strip, before: Option<Norms>| {
-            let ended = strip.norms.as_deref();
-            let major = strip.position.major;
-            history.extend(ended.map(|norms| (major, norms[1])));
-            let first = ended.map(|norms| norms[0]).or(before);
-            history.extend(first.filter(|_| major == 1).map(|norms| (0, norms)));
-        };
-        note(&self.strips()[self.cursor], Some(event.before));
-        for strip in self.strips()[..self.cursor].iter().rev() {
+        for strip in self.strips()[..=self.cursor].iter().rev() {
             let at = strip.position;
             if strip.kind == Kind::Start
                 || (at.increment, at.attempt) != (shown.increment, shown.attempt)
             {
                 break;
             }
-            note(strip, None);
+            history.extend(strip.after.as_deref().map(|after| (at.major, *after)));
+            history.extend(strip.first.as_deref().map(|first| (0, *first)));
         }
         history.reverse();
         history.dedup_by_key(|entry| entry.0);
@@ -695,6 +857,14 @@ impl Session {
             Some(event) => report::outcome(self.model(), event),
         }
     }
+}
+
+/// Whether a command only goes along a branch.
+fn is_motion(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Forward { .. } | Command::Back { .. } | Command::Goto { .. }
+    )
 }
 
 /// A monitor's value and the load factor at the end of every accepted increment among these frames.

@@ -1,7 +1,7 @@
 //! What is kept of every minor iteration, whatever happens to its frame: enough for a timeline, breakpoints and costs.
 //!
 //! Memory: [`Strip::BYTES_PER_NODE`] bytes for each slave node, and [`Strip::BYTES_PER_ITERATION`] for the iteration. An
-//! iteration that moves a node to another element adds 4 bytes a node, one that ends a major iteration its two norms.
+//! iteration that moves a node to another element adds 4 bytes a node, one that begins an increment or ends a major iteration its norms.
 
 use crate::scene::{Mode, Model};
 use crate::solve::{Event, Failure, Forced, Norms, Outcome, Position, State};
@@ -71,8 +71,10 @@ pub struct Strip {
     pub kind: Kind,
     /// Relative residual about which the minor iteration was linearised.
     pub residual: f64,
-    /// Norms before and after, where a major iteration ended here and did not fail.
-    pub norms: Option<Box<[Norms; 2]>>,
+    /// Norms before it, where this is the first minor iteration of an increment's attempt.
+    pub first: Option<Box<Norms>>,
+    /// Norms after it, where a major iteration ended here and did not fail.
+    pub after: Option<Box<Norms>>,
     /// Wall time that it took to solve; not a part of the state, and never compared.
     pub seconds: f32,
     /// A byte a slave node: bits 0-1 the mode before, 2-3 the mode next, 4 forced once, 5 held.
@@ -119,7 +121,10 @@ impl Strip {
             leg: state.start.leg as u32,
             kind: event.map_or(Kind::Start, |event| Kind::of(&event.outcome)),
             residual: event.map_or(0.0, |event| event.before.relative),
-            norms: event.and_then(norms),
+            first: event
+                .filter(|event| begins(event))
+                .map(|event| Box::new(event.before)),
+            after: event.and_then(after),
             seconds,
             marks: (0..count).map(mark).collect(),
             margins: (0..count)
@@ -138,7 +143,8 @@ impl Strip {
             leg: state.start.leg as u32,
             kind: Kind::Intervention,
             residual: before.residual,
-            norms: None,
+            first: None,
+            after: None,
             seconds: 0.0,
             marks: state.nodes.iter().map(mark).collect(),
             margins: before.margins.clone(),
@@ -200,11 +206,14 @@ impl Strip {
     }
 }
 
-fn norms(event: &Event) -> Option<Box<[Norms; 2]>> {
+/// Whether an event is the first of an increment's attempt.
+fn begins(event: &Event) -> bool {
+    (event.position.major, event.position.minor) == (1, 1)
+}
+
+fn after(event: &Event) -> Option<Box<Norms>> {
     match &event.outcome {
-        Outcome::Major { after, .. } | Outcome::Increment { after, .. } => {
-            Some(Box::new([event.before, *after]))
-        }
+        Outcome::Major { after, .. } | Outcome::Increment { after, .. } => Some(Box::new(*after)),
         _ => None,
     }
 }
