@@ -174,7 +174,7 @@ fn a_journal_that_cannot_be_written_any_more_is_told_once_and_stops_nothing() {
         return;
     }
     session.keep(Journal::open(full).expect("it opens"));
-    let mut say = |session: &mut Session| {
+    let say = |session: &mut Session| {
         let reply = session.submit(Command::Rename(format!("n{}", session.cursor())));
         reply.expect("a rename").0
     };

@@ -13,7 +13,7 @@ use std::str::FromStr;
 /// When to stop. A node is a slave number; none stands for any node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Condition {
-    /// Table 2 changes a node's mode: from a given one or any, to a given one or any.
+    /// A node is solved in another mode next: from a given one or any, to a given one or any.
     Mode {
         node: Option<usize>,
         from: Option<Mode>,

@@ -361,7 +361,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Breakpoints, "delete", "NUMBER|all", &[], "", "Delete a breakpoint", Verb::Delete),
     entry(Group::Breakpoints, "disable", "NUMBER|all", &[], "", "Pass a breakpoint without stopping", Verb::Enable { on: false }),
     entry(Group::Breakpoints, "enable", "NUMBER|all", &[], "", "Stop at it again", Verb::Enable { on: true }),
-    entry(Group::Breakpoints, "watch", "QUANTITY [NODE] [as NAME]", &[], "", "Watch gap, f_n, f_t, t_max, slip or margin of a node, or residual or interface", Verb::Watch),
+    entry(Group::Breakpoints, "watch", "WHAT [NODE]", &[], "", "Watch gap, f_n, f_t, t_max, slip or margin of a node, or residual or interface; `as NAME` names it", Verb::Watch),
     entry(Group::Breakpoints, "unwatch", "NAME", &[], "", "End a watch", Verb::Unwatch),
 
     entry(Group::Look, "up", "", &["Up", "k"], "", "Node above; scroll or pan in other panes", Verb::Do(Ui::Move(Step::Up))),

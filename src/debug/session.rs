@@ -210,6 +210,22 @@ impl Session {
             .collect()
     }
 
+    /// The branch, if there are several, and the watches with their values, in a line; empty where there is neither.
+    pub fn aside(&self) -> String {
+        let several = self.tree.branches().len() > 1;
+        let branch =
+            several.then(|| format!("in {}", branches::name(&self.tree, self.tree.current())));
+        let watches = self.watched().into_iter().map(|(name, value)| match value {
+            Some(value) => format!("{name} = {value:.6e}"),
+            None => format!("{name} = none"),
+        });
+        branch
+            .into_iter()
+            .chain(watches)
+            .collect::<Vec<_>>()
+            .join("   ")
+    }
+
     /// Whether the worker is busy.
     pub fn is_running(&self) -> bool {
         self.task.is_some()

@@ -162,7 +162,8 @@ impl Strip {
         mode(self.marks[slave])
     }
 
-    /// Mode that it has in the next one.
+    /// Mode that it has in the next one: Table 2's verdict, or another where the user, damping or the end of the surface
+    /// had the last word.
     pub fn next(&self, slave: usize) -> Mode {
         mode(self.marks[slave] >> 2)
     }

@@ -305,11 +305,19 @@ impl Debugger {
                 (false, None) => None,
             }
         });
-        self.app.say(if known.is_some_and(|known| known == text) {
-            String::new()
+        let known = known.is_some_and(|known| known == text);
+        let said = if known { String::new() } else { text };
+        let idle = self
+            .session
+            .as_ref()
+            .filter(|session| !session.is_running());
+        let aside = idle.map_or(String::new(), Session::aside);
+        let between = if said.is_empty() || aside.is_empty() {
+            ""
         } else {
-            text
-        });
+            "   "
+        };
+        self.app.say(format!("{said}{between}{aside}"));
     }
 
     fn interrupt(&mut self) {
