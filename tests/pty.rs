@@ -47,6 +47,8 @@ struct Session {
     /// The terminal's modes before the program started.
     before: String,
     directory: TempDir,
+    /// Where it keeps its journals, unless a test says where.
+    _state: TempDir,
 }
 
 /// What the terminal was sent.
@@ -89,12 +91,14 @@ impl<'a> Start<'a> {
 
     fn go(self) -> Session {
         let directory = tempfile::tempdir().unwrap();
+        let state = tempfile::tempdir().unwrap();
         let mut command = CommandBuilder::new(self.program);
         command.args(&self.arguments);
         command.cwd(directory.path());
         for name in ["NO_COLOR", "ENV"] {
             command.env_remove(name);
         }
+        command.env("XDG_STATE_HOME", state.path());
         for (name, value) in &self.variables {
             command.env(name, value);
         }
@@ -120,6 +124,7 @@ impl<'a> Start<'a> {
             reader,
             before,
             directory,
+            _state: state,
         }
     }
 }
@@ -585,6 +590,131 @@ fn a_terminal_that_goes_away_ends_it() {
         let status = patiently(|| child.try_wait().unwrap());
         assert!(status.is_some(), "it outlives its terminal");
     }
+}
+
+/// The only journal in a directory for states.
+fn journal(state: &TempDir) -> PathBuf {
+    let journals = state.path().join("stickslip/journals");
+    let mut entries = std::fs::read_dir(&journals)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let found = entries.next().unwrap();
+    assert!(entries.next().is_none());
+    found
+}
+
+/// The panes alone: without status and messages.
+fn panes(session: &Session) -> Vec<String> {
+    let text = session.text();
+    let lines = text
+        .lines()
+        .skip_while(|line| !line.contains("Slave nodes"));
+    lines.take(30).map(trimmed).collect()
+}
+
+#[test]
+fn a_session_that_was_killed_resumes_where_it_was() {
+    let state = tempfile::tempdir().unwrap();
+    let home = state.path().to_str().unwrap().to_string();
+    let mut session = Start::debugger(&[OSCILLATES])
+        .variable("XDG_STATE_HOME", &home)
+        .go();
+    session.see("nothing is solved yet");
+    session.type_and_see("c", "2-cycle since minor 1");
+    session.type_and_see("S", "1 of 2 steps");
+    session.type_and_see("m", "mode of beam.5:");
+    session.type_and_see("s", "in the new branch b2: beam.5 sliding");
+    session.type_and_see("5f", "load 0.25 accepted");
+    session.type_and_see("2S", " steps");
+    session.wait("no message", |screen| {
+        !screen.contents().contains("running;")
+    });
+    let before = panes(&session);
+    session.signal("KILL");
+    session.end();
+
+    let file = journal(&state);
+    let mut bytes = std::fs::read(&file).unwrap();
+    bytes.extend_from_slice(b"Done((at:1,comma");
+    std::fs::write(&file, bytes).unwrap();
+    let checked = run(
+        &["resume", "--check", file.to_str().unwrap()],
+        Stdio::null(),
+    );
+    let told = String::from_utf8_lossy(&checked.stderr).into_owned();
+    assert_eq!(checked.status.code(), Some(0), "{told}");
+    assert!(
+        told.contains("equal to the last bit; line 9 was only begun"),
+        "{told}"
+    );
+
+    let mut session = Start::debugger(&["resume"])
+        .variable("XDG_STATE_HOME", &home)
+        .go();
+    session.see("resumed after 5 entries; line 9 was only begun, and is left out");
+    assert_eq!(panes(&session), before);
+    // The journal is this session's alone.
+    let other = Start::debugger(&["resume"])
+        .variable("XDG_STATE_HOME", &home)
+        .go();
+    other.see("another session is writing this journal");
+    session.type_and_see("c", "the history is done");
+    session.quit();
+    let checked = run(
+        &["resume", "--check", file.to_str().unwrap()],
+        Stdio::null(),
+    );
+    let told = String::from_utf8_lossy(&checked.stderr).into_owned();
+    assert!(
+        told.contains("6 entries") && told.contains("equal to the last bit\n"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_session_that_was_killed_in_the_midst_of_a_run_resumes_before_it_and_says_so() {
+    let state = tempfile::tempdir().unwrap();
+    let home = state.path().to_str().unwrap().to_string();
+    let mut session = Start::debugger(&[FLOOR, "--set", "history.increment=1e-6"])
+        .variable("XDG_STATE_HOME", &home)
+        .go();
+    session.see("nothing is solved yet");
+    session.type_and_see("3s", "minor 3");
+    session.type_and_see("c", "solving: increment");
+    session.signal("KILL");
+    session.end();
+    let mut session = Start::debugger(&["resume"])
+        .variable("XDG_STATE_HOME", &home)
+        .go();
+    session.see("a motion was under way at the end, and is not repeated");
+    session.type_and_see("s", "minor 4");
+    session.quit();
+}
+
+#[test]
+fn no_journal_is_kept_where_none_is_wanted_or_nothing_is_done() {
+    let state = tempfile::tempdir().unwrap();
+    let home = state.path().to_str().unwrap().to_string();
+    for (arguments, keys) in [(vec![FLOOR], ""), (vec![FLOOR, "--no-journal"], "s")] {
+        let mut session = Start::debugger(&arguments)
+            .variable("XDG_STATE_HOME", &home)
+            .go();
+        session.see("nothing is solved yet");
+        session.keys(keys);
+        session.see_picture(FLOOR, keys, 120, 40);
+        session.quit();
+        assert!(!state.path().join("stickslip").exists());
+    }
+    // A file that is named is made at once, and never over another.
+    let file = state.path().join("mine");
+    let name = file.to_str().unwrap();
+    let session = Start::debugger(&[FLOOR, "--journal", name]).go();
+    session.see("nothing is solved yet");
+    assert!(file.exists());
+    session.quit();
+    let mut session = Start::debugger(&[FLOOR, "--journal", name]).go();
+    session.see("the file exists already");
+    assert_eq!(session.end().exit_code(), 2);
 }
 
 /// Tells the copies of this test program that the next test starts which part they play.

@@ -959,6 +959,33 @@ fn commands_by_name_reach_the_solver_and_its_refusals_the_screen() {
 }
 
 #[test]
+fn branches_breakpoints_and_watches_are_told_in_the_message_line() {
+    let mut debugger = debugger("osc-inclined-cantilever");
+    debugger.type_keys("c");
+    for (keys, line, shown) in [
+        (
+            "b",
+            "mode any sliding",
+            "breakpoint 1 (any node becomes sliding)",
+        ),
+        (":", "watch f_n", "f_n beam.5 = -5.75"),
+        ("S m s", "", "(in the new branch b2: beam.5 sliding)"),
+        ("s", "", "in b2: beam.5 sliding   f_n beam.5 = 5."),
+        ("[", "", "b1: start (cycle)"),
+        ("]", "", "in b2: beam.5 sliding"),
+        ("b", "dance", "'dance' is nothing to break at; mode, leaves"),
+    ] {
+        debugger.type_keys(keys);
+        if !line.is_empty() {
+            debugger.type_text(line);
+            debugger.type_keys("Enter");
+        }
+        let screen = debugger.text(120, 40);
+        assert!(screen.contains(shown), "after '{keys} {line}':\n{screen}");
+    }
+}
+
+#[test]
 fn a_long_outcome_goes_on_in_further_lines() {
     let model = model(5);
     let members = (0..5)

@@ -1,8 +1,10 @@
 //! `stickslip [SCENE]`: the debugger.
 
 use super::{Error, Exit, SetArgs};
+use crate::debug::journal::Keep;
 use crate::tui;
 use std::io::IsTerminal;
+use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -10,18 +12,39 @@ pub struct Args {
     scene: Option<String>,
     #[command(flatten)]
     set: SetArgs,
+    /// Keeps the journal of the session in a new file [default: in the user's directory for states]
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "no_journal",
+        requires = "scene"
+    )]
+    journal: Option<PathBuf>,
+    /// Keeps no journal; what is done cannot be resumed then
+    #[arg(long)]
+    no_journal: bool,
 }
 
 pub fn main(args: Args) -> Result<Exit, Error> {
     if args.scene.is_none() && !args.set.set.is_empty() {
         return Err(Error::Usage("--set needs a scene to change".into()));
     }
-    if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
+    if !has_terminal() {
         let scene = args.scene.as_deref().unwrap_or("SCENE");
         return Err(Error::Usage(format!(
             "the debugger needs a terminal, and standard input or output is none; `stickslip run {scene} --csv -` solves without one"
         )));
     }
-    tui::run(args.scene, &args.set.set).map_err(|error| Error::Usage(error.to_string()))?;
+    let keep = match args.journal {
+        _ if args.no_journal => Keep::Nowhere,
+        Some(file) => Keep::File(file),
+        None => Keep::Default,
+    };
+    tui::run(args.scene, &args.set.set, &keep).map_err(|error| Error::Usage(error.to_string()))?;
     Ok(Exit::Good)
+}
+
+/// Whether there is a terminal to debug in.
+pub fn has_terminal() -> bool {
+    std::io::stdin().is_terminal() && std::io::stdout().is_terminal()
 }

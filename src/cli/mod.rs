@@ -10,12 +10,15 @@ mod interrupt;
 mod list;
 mod record;
 mod replay;
+mod resume;
 mod run;
 mod sink;
+mod story;
 mod study;
 mod table;
 
 use crate::debug::files::FileError;
+use crate::debug::journal::JournalError;
 use crate::debug::snapshot::SnapshotError;
 use crate::scene::{Scene, SceneError};
 use clap::{Parser, Subcommand};
@@ -52,6 +55,8 @@ enum Error {
     Snapshot(#[from] SnapshotError),
     #[error("{}{}", .0, how_to_overwrite(.0))]
     File(#[from] FileError),
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     #[error("{0}")]
     Usage(String),
     #[error("standard output: {0}")]
@@ -95,6 +100,10 @@ enum Command {
     Replay(replay::Args),
     /// Compares two snapshots, node by node
     Diff(diff::Args),
+    /// Goes on with a session of the debugger where it was, from its journal
+    Resume(resume::Args),
+    /// Tells a session's journal as text
+    Story(story::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
 }
@@ -141,7 +150,7 @@ pub fn main() -> ExitCode {
     };
     if !matches!(
         cli.command,
-        None | Some(Command::Run(_) | Command::Record(_) | Command::Study(_))
+        None | Some(Command::Run(_) | Command::Record(_) | Command::Study(_) | Command::Resume(_))
     ) {
         // These have nothing to put away.
         interrupt::end_at_once();
@@ -154,6 +163,8 @@ pub fn main() -> ExitCode {
         Some(Command::Record(args)) => record::main(args),
         Some(Command::Replay(args)) => replay::main(args),
         Some(Command::Diff(args)) => diff::main(args),
+        Some(Command::Resume(args)) => resume::main(args),
+        Some(Command::Story(args)) => story::main(args),
         Some(Command::Study(args)) => study::main(args),
     };
     ended

@@ -5,11 +5,14 @@
 //! action that lacks an argument it needs asks for it ([`Ui::Ask`]). Keys are plain strings here (`"s"`, `"F10"`,
 //! `"Ctrl-c"`); no terminal library is known to this file.
 
+use crate::debug::breakpoints::Condition;
+use crate::debug::watches::{Quantity, Watch};
 use crate::scene::{Mode, Model, Scene};
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// What the debugger can be told to do to the solver.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Command {
     /// Forward by `count` of `unit`.
     Forward { unit: Unit, count: u32 },
@@ -27,6 +30,28 @@ pub enum Command {
     Increment(f64),
     /// Change a scalar that may change during a run: `friction.angle`, `friction.cohesion`, `settings.*`.
     Set { path: String, value: String },
+    /// Go to a point of the current branch's line, by its place; the start is 0.
+    Goto { step: usize },
+    /// Go to the tip of another branch.
+    Branch(To),
+    /// Call the current branch so.
+    Rename(String),
+    /// List the branches.
+    Branches,
+    /// Compare the current branch with another: this one, or the one that it left.
+    Compare(Option<String>),
+    /// Set a breakpoint.
+    Break(Condition),
+    /// List the breakpoints.
+    Breakpoints,
+    /// Delete a breakpoint by its number, or all.
+    Delete(Option<u32>),
+    /// Switch a breakpoint by its number, or all, on or off.
+    Enable { id: Option<u32>, on: bool },
+    /// Watch a number.
+    Watch(Watch),
+    /// End a watch, by its name.
+    Unwatch(String),
     /// Write a snapshot of the shown state. `overwrite` only when asked.
     Snapshot {
         file: Option<PathBuf>,
@@ -34,8 +59,16 @@ pub enum Command {
     },
 }
 
+/// Which branch.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum To {
+    Next,
+    Previous,
+    Named(String),
+}
+
 /// How far a motion goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unit {
     Minor,
     /// To the end of the present major iteration.
@@ -166,6 +199,8 @@ pub enum Question {
     Node,
     /// Which scene to open.
     Scene,
+    /// Where to break.
+    Break,
 }
 
 /// What an action needs to know to understand its arguments.
@@ -186,19 +221,30 @@ pub struct Context<'a> {
 pub enum Group {
     Go,
     Change,
+    Branches,
+    Breakpoints,
     Look,
     Program,
 }
 
 impl Group {
     /// All, in the order of the help page.
-    pub const ALL: [Group; 4] = [Group::Go, Group::Change, Group::Look, Group::Program];
+    pub const ALL: [Group; 6] = [
+        Group::Go,
+        Group::Change,
+        Group::Branches,
+        Group::Breakpoints,
+        Group::Look,
+        Group::Program,
+    ];
 
     /// The heading.
     pub fn title(self) -> &'static str {
         match self {
             Group::Go => "Go through the iterations",
             Group::Change => "Interfere",
+            Group::Branches => "Branches: what if",
+            Group::Breakpoints => "Breakpoints and watches",
             Group::Look => "Look around",
             Group::Program => "The program",
         }
@@ -232,6 +278,20 @@ enum Verb {
     Set,
     /// A short name for one path of `set`.
     SetPath(&'static str),
+    Goto,
+    /// Go to the branch that is named, or to this one.
+    Branch(Option<To>),
+    Rename,
+    Compare,
+    Break,
+    Delete,
+    Enable {
+        on: bool,
+    },
+    Watch,
+    Unwatch,
+    /// A command without arguments.
+    Plain(Command),
     Snapshot {
         overwrite: bool,
     },
@@ -270,11 +330,12 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Go, "step", "[COUNT]", &["s", "F11"], "step", "One minor iteration forward", Verb::Forward(Unit::Minor)),
     entry(Group::Go, "next", "[COUNT]", &["n", "F10"], "next", "To the end of this major iteration", Verb::Forward(Unit::Major)),
     entry(Group::Go, "finish", "[COUNT]", &["f", "Shift-F11"], "finish", "To the end of this increment", Verb::Forward(Unit::Increment)),
-    entry(Group::Go, "continue", "", &["c", "F5"], "continue", "On to the end of the history, or to a failure", Verb::Forward(Unit::Run)),
+    entry(Group::Go, "continue", "", &["c", "F5"], "continue", "On to a breakpoint, a failure, or the end of the history", Verb::Forward(Unit::Run)),
     entry(Group::Go, "reverse-step", "[COUNT]", &["S"], "", "One minor iteration back", Verb::Back(Unit::Minor)),
     entry(Group::Go, "reverse-next", "[COUNT]", &["N"], "", "Back by a major iteration", Verb::Back(Unit::Major)),
     entry(Group::Go, "reverse-finish", "[COUNT]", &["F"], "", "Back by an increment", Verb::Back(Unit::Increment)),
-    entry(Group::Go, "reverse-continue", "", &["C"], "", "Back to the start", Verb::Back(Unit::Run)),
+    entry(Group::Go, "reverse-continue", "", &["C"], "", "Back to the last breakpoint that held, the last failure, or the start", Verb::Back(Unit::Run)),
+    entry(Group::Go, "goto", "STEP", &[], "", "To a step of this branch by its number; 0 is the start", Verb::Goto),
     entry(Group::Go, "repeat", "", &["Enter"], "", "The last motion again (digits before a motion are its count)", Verb::Do(Ui::Repeat)),
     entry(Group::Go, "interrupt", "", &["Ctrl-c"], "", "Stop a run after the present minor iteration", Verb::Do(Ui::Interrupt)),
 
@@ -287,6 +348,21 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Change, "minors", "LIMIT", &[], "", "Change the limit of minor iterations", Verb::SetPath("settings.minors")),
     entry(Group::Change, "majors", "LIMIT", &[], "", "Change the limit of major iterations", Verb::SetPath("settings.majors")),
     entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*", Verb::Set),
+
+    entry(Group::Branches, "branch", "NAME", &[], "", "To the tip of another branch: b2, its name, or the beginning of it", Verb::Branch(None)),
+    entry(Group::Branches, "branch-next", "", &["]"], "", "To the tip of the next branch", Verb::Branch(Some(To::Next))),
+    entry(Group::Branches, "branch-previous", "", &["["], "", "To the tip of the branch before", Verb::Branch(Some(To::Previous))),
+    entry(Group::Branches, "branches", "", &[], "", "All branches, and how each ended", Verb::Plain(Command::Branches)),
+    entry(Group::Branches, "rename", "NAME", &[], "", "Call this branch so", Verb::Rename),
+    entry(Group::Branches, "compare", "[BRANCH]", &[], "", "This branch beside another, or beside the one that it left", Verb::Compare),
+
+    entry(Group::Breakpoints, "break", "CONDITION", &["b"], "", "Stop when: mode|leaves [NODE] [MODE], margin [NODE] VALUE, element [NODE], cycle, residual, failure, at INC[.MAJOR[.MINOR]]", Verb::Break),
+    entry(Group::Breakpoints, "breakpoints", "", &[], "", "All breakpoints", Verb::Plain(Command::Breakpoints)),
+    entry(Group::Breakpoints, "delete", "NUMBER|all", &[], "", "Delete a breakpoint", Verb::Delete),
+    entry(Group::Breakpoints, "disable", "NUMBER|all", &[], "", "Pass a breakpoint without stopping", Verb::Enable { on: false }),
+    entry(Group::Breakpoints, "enable", "NUMBER|all", &[], "", "Stop at it again", Verb::Enable { on: true }),
+    entry(Group::Breakpoints, "watch", "WHAT [NODE]", &[], "", "Watch gap, f_n, f_t, t_max, slip or margin of a node, or residual or interface; `as NAME` names it", Verb::Watch),
+    entry(Group::Breakpoints, "unwatch", "NAME", &[], "", "End a watch", Verb::Unwatch),
 
     entry(Group::Look, "up", "", &["Up", "k"], "", "Node above; scroll or pan in other panes", Verb::Do(Ui::Move(Step::Up))),
     entry(Group::Look, "down", "", &["Down", "j"], "", "Node below", Verb::Do(Ui::Move(Step::Down))),
@@ -418,6 +494,31 @@ impl Entry {
                 },
                 _ => return Err(self.usage()),
             },
+            Verb::Goto => match words[..] {
+                [word] => Command::Goto {
+                    step: word
+                        .parse()
+                        .map_err(|_| format!("'{word}' is no step's number; {}", self.usage()))?,
+                },
+                _ => return Err(self.usage()),
+            },
+            Verb::Branch(Some(to)) => Command::Branch(to.clone()),
+            Verb::Branch(None) | Verb::Rename | Verb::Unwatch if rest.is_empty() => {
+                return Err(self.usage());
+            }
+            Verb::Branch(None) => Command::Branch(To::Named(rest.into())),
+            Verb::Rename => Command::Rename(rest.into()),
+            Verb::Unwatch => Command::Unwatch(rest.into()),
+            Verb::Compare => Command::Compare((!rest.is_empty()).then(|| rest.into())),
+            Verb::Break if words.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Break))),
+            Verb::Break => Command::Break(condition(&words, context)?),
+            Verb::Delete => Command::Delete(self.number_or_all(&words)?),
+            Verb::Enable { on } => Command::Enable {
+                id: self.number_or_all(&words)?,
+                on: *on,
+            },
+            Verb::Watch => Command::Watch(self.watch(&words, context)?),
+            Verb::Plain(command) => command.clone(),
             Verb::Snapshot { overwrite: true } if rest.is_empty() => return Err(self.usage()),
             Verb::Snapshot { overwrite } => {
                 let file = (!rest.is_empty()).then(|| PathBuf::from(rest));
@@ -461,6 +562,8 @@ impl Entry {
     fn most_words(&self) -> usize {
         match self.verb {
             Verb::Snapshot { .. } | Verb::Open | Verb::Monitor => usize::MAX,
+            Verb::Branch(None) | Verb::Rename | Verb::Compare => usize::MAX,
+            Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,
             _ => self.arguments.split_whitespace().count(),
         }
     }
@@ -473,6 +576,49 @@ impl Entry {
             Ok(count) if count > 0 => Ok(count),
             _ => Err(format!("'{word}' is no count; {}", self.usage())),
         }
+    }
+
+    /// The number of a breakpoint; none for all.
+    fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, String> {
+        match words[..] {
+            ["all"] => Ok(None),
+            [word] => match word.parse() {
+                Ok(number) => Ok(Some(number)),
+                Err(_) => Err(format!(
+                    "'{word}' is no breakpoint's number; {}",
+                    self.usage()
+                )),
+            },
+            _ => Err(self.usage()),
+        }
+    }
+
+    fn watch(&self, words: &[&str], context: &Context) -> Result<Watch, String> {
+        let (what, name) = match words.iter().position(|word| *word == "as") {
+            Some(at) if at + 1 == words.len() => return Err(self.usage()),
+            Some(at) => (&words[..at], Some(words[at + 1..].join(" "))),
+            None => (words, None),
+        };
+        let Some((word, rest)) = what.split_first() else {
+            return Err(self.usage());
+        };
+        let model = slaves(context)?;
+        let quantity = Quantity::ALL.into_iter().find(|q| q.word() == *word);
+        let quantity = quantity.ok_or_else(|| {
+            let all = Quantity::ALL.map(Quantity::word).join(", ");
+            format!("'{word}' cannot be watched; {all} can")
+        })?;
+        let slave = match (quantity.is_nodal(), rest) {
+            (true, []) => chosen(None, context)?,
+            (true, [node]) => exact(node, context)?,
+            (false, []) => 0,
+            _ => return Err(self.usage()),
+        };
+        let watch = Watch::new(model, quantity, slave);
+        Ok(match name {
+            Some(name) => Watch { name, ..watch },
+            None => watch,
+        })
     }
 
     fn force(&self, words: &[&str], hold: bool, context: &Context) -> Result<Action, String> {
@@ -499,6 +645,79 @@ impl Entry {
             path: path.into(),
             value: value.into(),
         })
+    }
+}
+
+/// What a breakpoint can wait for.
+const CONDITIONS: [&str; 8] = [
+    "mode", "leaves", "margin", "element", "cycle", "residual", "failure", "at",
+];
+
+/// A breakpoint's condition. A node may be left out, or be `any`, for any node.
+fn condition(words: &[&str], context: &Context) -> Result<Condition, String> {
+    let (word, rest) = words
+        .split_first()
+        .map_or(("", words), |(w, rest)| (*w, rest));
+    let usage = |how: &str| format!("usage: break {word} {how}");
+    match (word, rest) {
+        ("mode" | "leaves", _) if rest.len() <= 2 => {
+            let (node, mode) = node_and_mode(rest, context)?;
+            let (from, to) = match word {
+                "mode" => (None, mode),
+                _ if mode.is_none() => return Err(usage("[NODE] MODE")),
+                _ => (mode, None),
+            };
+            Ok(Condition::Mode { node, from, to })
+        }
+        ("mode" | "leaves", _) => Err(usage("[NODE] [MODE]")),
+        ("margin", [.., value]) if rest.len() <= 2 => {
+            let below = value.parse::<f64>().ok().filter(|below| below.is_finite());
+            let below =
+                below.ok_or_else(|| format!("'{value}' is no margin; a number would be"))?;
+            let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
+            Ok(Condition::Margin { node, below })
+        }
+        ("margin", _) => Err(usage("[NODE] VALUE")),
+        ("element", [] | [_]) => Ok(Condition::Element {
+            node: any_or_exact(rest.first(), context)?,
+        }),
+        ("element", _) => Err(usage("[NODE]")),
+        ("cycle", []) => Ok(Condition::Cycle),
+        ("residual", []) => Ok(Condition::Residual),
+        ("failure", []) => Ok(Condition::Failure),
+        ("cycle" | "residual" | "failure", _) => Err(usage("")),
+        ("at", [place]) => Ok(Condition::At(place.parse()?)),
+        ("at", _) => Err(usage("INC[.MAJOR[.MINOR]]")),
+        _ => Err(format!(
+            "'{word}' is nothing to break at; {} are",
+            CONDITIONS.join(", ")
+        )),
+    }
+}
+
+/// `[NODE] [MODE]`: a single word that is a mode is one, anything else is a node.
+fn node_and_mode(
+    words: &[&str],
+    context: &Context,
+) -> Result<(Option<usize>, Option<Mode>), String> {
+    match words {
+        [] => Ok((None, None)),
+        [word] => match mode(word) {
+            Some(mode) => Ok((None, Some(mode))),
+            None => Ok((any_or_exact(Some(word), context)?, None)),
+        },
+        [node, word, ..] => {
+            let mode = mode(word)
+                .ok_or_else(|| format!("'{word}' is no mode; free, sliding or fixed would be"))?;
+            Ok((any_or_exact(Some(node), context)?, Some(mode)))
+        }
+    }
+}
+
+fn any_or_exact(word: Option<&&str>, context: &Context) -> Result<Option<usize>, String> {
+    match word {
+        None | Some(&"any") => Ok(None),
+        Some(word) => exact(word, context).map(Some),
     }
 }
 
@@ -660,6 +879,19 @@ impl Entry {
             (Verb::Force { .. }, 0) => modes.into_iter().chain(nodes()).collect(),
             (Verb::Force { .. }, 1) => modes.into(),
             (Verb::Release | Verb::Node, 0) => nodes().collect(),
+            (Verb::Break, 0) => CONDITIONS.map(String::from).into(),
+            (Verb::Break, _) => {
+                let any = || std::iter::once("any".into()).chain(nodes());
+                match (before.split_whitespace().nth(1), given) {
+                    (Some("mode" | "leaves"), 1) => modes.into_iter().chain(any()).collect(),
+                    (Some("mode" | "leaves"), 2) => modes.into(),
+                    (Some("margin" | "element"), 1) => any().collect(),
+                    _ => Vec::new(),
+                }
+            }
+            (Verb::Delete | Verb::Enable { .. }, 0) => vec!["all".into()],
+            (Verb::Watch, 0) => Quantity::ALL.map(|quantity| quantity.word().into()).into(),
+            (Verb::Watch, 1) => nodes().chain(std::iter::once("as".into())).collect(),
             (Verb::Set, 0) => PATHS.iter().map(|path| path.to_string()).collect(),
             (Verb::Set, 1) => values(before)
                 .iter()
@@ -807,7 +1039,7 @@ mod tests {
         );
         assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
         assert_eq!(read("re"), Err(
-            "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, redraw".into()
+            "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, redraw".into()
         ));
     }
 
@@ -866,6 +1098,105 @@ mod tests {
     }
 
     #[test]
+    fn breakpoints_name_a_condition_a_node_and_what_it_is_held_against() {
+        let set = |condition| Ok(Action::Session(Command::Break(condition)));
+        let mode = |node, from, to| set(Condition::Mode { node, from, to });
+        assert_eq!(read("break mode"), mode(None, None, None));
+        assert_eq!(
+            read("break mode sliding"),
+            mode(None, None, Some(Mode::Sliding))
+        );
+        assert_eq!(read("break mode beam.5"), mode(Some(1), None, None));
+        assert_eq!(
+            read("b leaves beam.4 s"),
+            mode(Some(0), Some(Mode::Sliding), None)
+        );
+        assert_eq!(
+            read("break leaves any free"),
+            mode(None, Some(Mode::Free), None)
+        );
+        let margin = |node, below| set(Condition::Margin { node, below });
+        assert_eq!(read("break margin 1e-3"), margin(None, 1e-3));
+        assert_eq!(read("break margin beam.4 -2"), margin(Some(0), -2.0));
+        assert_eq!(
+            read("break element"),
+            set(Condition::Element { node: None })
+        );
+        assert_eq!(read("break cycle"), set(Condition::Cycle));
+        let place = "3.2".parse().unwrap();
+        assert_eq!(read("break at 3.2"), set(Condition::At(place)));
+        assert_eq!(read("b"), Ok(Action::Ui(Ui::Ask(Question::Break))));
+        for (line, told) in [
+            ("break leaves beam.4", "usage: break leaves [NODE] MODE"),
+            (
+                "break mode beam.4 glued",
+                "'glued' is no mode; free, sliding or fixed would be",
+            ),
+            (
+                "break mode tip",
+                "no node is called 'tip'; slave nodes are beam.4, beam.5",
+            ),
+            ("break margin", "usage: break margin [NODE] VALUE"),
+            (
+                "break margin beam.4 NaN",
+                "'NaN' is no margin; a number would be",
+            ),
+            ("break cycle 2", "usage: break cycle "),
+            (
+                "break at 0",
+                "'0' is no place; INC, INC.MAJOR or INC.MAJOR.MINOR would be",
+            ),
+            (
+                "break dance",
+                "'dance' is nothing to break at; mode, leaves, margin, element, cycle, residual, failure, at are",
+            ),
+            (
+                "delete x",
+                "'x' is no breakpoint's number; usage: delete NUMBER|all",
+            ),
+        ] {
+            assert_eq!(read(line), Err(told.into()), "{line}");
+        }
+        assert_eq!(
+            read("disable all"),
+            Ok(Action::Session(Command::Enable {
+                id: None,
+                on: false
+            }))
+        );
+        assert_eq!(
+            read("delete 2"),
+            Ok(Action::Session(Command::Delete(Some(2))))
+        );
+    }
+
+    #[test]
+    fn watches_have_the_name_that_is_given_or_their_own() {
+        let watch = |name: &str, quantity, slave| {
+            let name = name.into();
+            Ok(Action::Session(Command::Watch(Watch {
+                name,
+                quantity,
+                slave,
+            })))
+        };
+        assert_eq!(read("watch gap"), watch("gap beam.5", Quantity::Gap, 1));
+        assert_eq!(
+            read("watch f_n beam.4 as heel force"),
+            watch("heel force", Quantity::NormalForce, 0)
+        );
+        assert_eq!(
+            read("watch residual"),
+            watch("residual", Quantity::Residual, 0)
+        );
+        assert_eq!(
+            read("watch temperature"),
+            Err("'temperature' cannot be watched; gap, f_n, f_t, t_max, slip, margin, residual, interface can".into())
+        );
+        assert!(read("watch gap as").is_err() && read("watch residual beam.4").is_err());
+    }
+
+    #[test]
     fn finding_goes_round_from_the_selected_node() {
         assert_eq!(read("node beam.5"), Ok(Action::Ui(Ui::Select(1))));
         assert_eq!(read("/ beam"), Ok(Action::Ui(Ui::Select(0))));
@@ -893,6 +1224,13 @@ mod tests {
             ["set friction.angle", "set friction.cohesion"]
         );
         assert_eq!(ask("set settings.ties p"), ["set settings.ties printed"]);
+        assert_eq!(ask("break m"), ["break mode", "break margin"]);
+        assert_eq!(ask("break margin beam.4"), ["break margin beam.4"]);
+        assert_eq!(
+            ask("break leaves beam.4 s"),
+            ["break leaves beam.4 sliding"]
+        );
+        assert_eq!(ask("watch f_"), ["watch f_n", "watch f_t"]);
         assert_eq!(ask("open "), ["open 01-pinned"]);
         assert!(ask("nonsense ").is_empty());
     }

@@ -1,17 +1,29 @@
 //! The debugger as a state machine without a terminal: commands in, frames out.
 //!
 //! - [`session`]: the history and a cursor in it; [`command`]: what it can be told.
+//! - [`tree`]: the history's branches and its memory; [`strip`]: what is kept of every iteration; [`branches`] and
+//!   [`compare`]: how branches ended, and two side by side.
+//! - [`journal`]: the record of a session, written as it happens, and replayed; [`story`]: it as text to read.
+//! - [`breakpoints`], [`watches`]: where a run stops, and what is looked at.
 //! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
 //! - [`report`]: what happened, in words.
 
+pub mod branches;
+pub mod breakpoints;
 pub mod census;
 pub mod command;
+pub mod compare;
 pub mod core;
 pub mod diagnosis;
 pub mod differences;
 pub mod files;
 pub mod influence;
+pub mod journal;
 pub mod report;
 pub mod session;
 pub mod snapshot;
+pub mod story;
+pub mod strip;
+pub mod tree;
+pub mod watches;
 mod worker;

@@ -4,20 +4,32 @@
 //! script) stays free to answer keys. [`Session::submit`] takes a command, [`Session::poll`] gathers what the
 //! worker has done since, [`Session::wait`] blocks until it is idle.
 //!
-//! The history is a line of [`Frame`]s. A frame is what one minor iteration left behind, or what one intervention
-//! changed; going back moves the cursor, going forward moves it again and solves only past the line's end. An
-//! intervention before the end forgets what came after it.
+//! The history is a [`Tree`] of branches; what is shown is a line of it, from the start to the tip of the current
+//! branch. A frame is what one minor iteration left behind, or what one intervention changed; going back moves the
+//! cursor, going forward moves it again and solves only past the line's end. An intervention before the end starts a
+//! new branch, so that nothing is lost. Frames that were thinned to save memory are computed again on the worker when
+//! the cursor goes there.
 
-use crate::debug::command::{Command, Unit};
+use crate::debug::branches::{self, Summary};
+use crate::debug::breakpoints::{self, Breakpoint, Condition};
+use crate::debug::command::{Command, To, Unit};
+use crate::debug::compare::{self, Comparison};
+use crate::debug::journal::{self, Entry, Journal, JournalError};
 use crate::debug::report;
 use crate::debug::snapshot::{Applied, Snapshot};
+use crate::debug::strip::{Kind, Strip};
+use crate::debug::tree::{self, Tree};
+use crate::debug::watches::Watch;
 use crate::debug::worker::{Job, Message, Worker};
 use crate::scene::{Model, Scene, paths};
-use crate::solve::{Event, Intervention, Norms, Outcome, State, Status};
+use crate::solve::{Event, Intervention, Norms, State, Status, Stepper};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A point of the history.
+///
+/// A frame that was thinned has neither event nor slave nodes nor displacements ([`Frame::is_whole`]); its
+/// intervention and monitors stay. The frame under the cursor and the last one are always whole.
 #[derive(Debug, Clone)]
 pub struct Frame {
     /// The state from which the next minor iteration goes on.
@@ -30,6 +42,13 @@ pub struct Frame {
     pub monitors: Option<Arc<Vec<f64>>>,
 }
 
+impl Frame {
+    /// Whether state and event are there, and were not thinned.
+    pub fn is_whole(&self) -> bool {
+        !self.state.u.is_empty()
+    }
+}
+
 /// What a command led to, as a line for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply(pub String);
@@ -37,31 +56,85 @@ pub struct Reply(pub String);
 /// A debugging session.
 pub struct Session {
     scene: Scene,
-    model: Arc<Model>,
-    frames: Vec<Frame>,
+    tree: Tree,
     cursor: usize,
     worker: Worker,
-    running: bool,
+    task: Option<Task>,
+    breakpoints: Vec<Breakpoint>,
+    /// Number that the last breakpoint was given.
+    numbered: u32,
+    watches: Vec<Watch>,
+    journal: Kept,
+    /// The command that the worker is at.
+    pending: Option<Command>,
+    /// Minor iterations solved by the present command, and increments accepted among them.
+    solved: u64,
+    accepted: u64,
+}
+
+/// Where the journal of a session is.
+enum Kept {
+    Nowhere,
+    /// At the default place, once there is something to write.
+    Due,
+    Open(Journal),
+}
+
+/// What the worker is at.
+#[derive(Debug, Clone, Copy)]
+enum Task {
+    /// New minor iterations.
+    Run,
+    /// Thinned frames again: the next to come, and the one that is wanted. `sound` as long as each tells what it told
+    /// the first time.
+    Again {
+        next: usize,
+        target: usize,
+        sound: bool,
+    },
 }
 
 impl Session {
     /// A session at the start of a scene.
     pub fn new(scene: Scene) -> Self {
+        Session::with_budget(scene, tree::BUDGET)
+    }
+
+    /// A session whose whole frames take no more than so many bytes ([`tree::BUDGET`] for others).
+    pub fn with_budget(scene: Scene, bytes: usize) -> Self {
         let model = Arc::new(scene.model.clone());
-        let worker = Worker::new(model.clone());
-        let start = Frame {
-            state: crate::solve::Stepper::new(model.clone()).state().clone(),
-            event: None,
-            intervention: None,
-            monitors: None,
-        };
+        let start = Stepper::new(model.clone()).state().clone();
         Session {
             scene,
-            model,
-            frames: vec![start],
+            tree: Tree::new(model.clone(), start, bytes),
             cursor: 0,
-            worker,
-            running: false,
+            worker: Worker::new(model),
+            task: None,
+            breakpoints: Vec::new(),
+            numbered: 0,
+            watches: Vec::new(),
+            journal: Kept::Nowhere,
+            pending: None,
+            solved: 0,
+            accepted: 0,
+        }
+    }
+
+    /// Keeps a journal from now on.
+    pub fn keep(&mut self, journal: Journal) {
+        self.journal = Kept::Open(journal);
+    }
+
+    /// Keeps a journal at the default place, which is made when there is something to write.
+    pub fn keep_at_default_place(&mut self) {
+        self.journal = Kept::Due;
+    }
+
+    /// Where the journal is, if there is one.
+    pub fn journal(&self) -> Option<&Path> {
+        match &self.journal {
+            Kept::Open(journal) => Some(journal.path()),
+            _ => None,
         }
     }
 
@@ -72,7 +145,7 @@ impl Session {
 
     /// Scene as checked.
     pub fn model(&self) -> &Model {
-        &self.model
+        self.tree.model()
     }
 
     /// Path or built-in name that the scene came from.
@@ -80,9 +153,19 @@ impl Session {
         &self.scene.name
     }
 
-    /// All frames so far, oldest first; never empty. Frame 0 is the start.
+    /// The frames of the current branch's line, oldest first; never empty. Frame 0 is the start.
     pub fn frames(&self) -> &[Frame] {
-        &self.frames
+        self.tree.frames()
+    }
+
+    /// The compact records of the same points: all there, whether their frames were thinned or not.
+    pub fn strips(&self) -> &[Strip] {
+        self.tree.strips()
+    }
+
+    /// The whole history, for [`branches`] and [`compare`].
+    pub fn tree(&self) -> &Tree {
+        &self.tree
     }
 
     /// Index of the frame that is shown.
@@ -92,12 +175,60 @@ impl Session {
 
     /// The frame that is shown.
     pub fn frame(&self) -> &Frame {
-        &self.frames[self.cursor]
+        &self.tree.frames()[self.cursor]
+    }
+
+    /// All branches, summed up.
+    pub fn branches(&self) -> Vec<Summary> {
+        branches::summaries(&self.tree)
+    }
+
+    /// Two branches side by side, by number; none where one does not exist.
+    pub fn compare(&self, a: usize, b: usize) -> Option<Comparison> {
+        let count = self.tree.branches().len();
+        (a < count && b < count)
+            .then(|| compare::compare(&self.tree, a, b))
+            .flatten()
+    }
+
+    /// Breakpoints, oldest first.
+    pub fn breakpoints(&self) -> &[Breakpoint] {
+        &self.breakpoints
+    }
+
+    /// Watches, oldest first.
+    pub fn watches(&self) -> &[Watch] {
+        &self.watches
+    }
+
+    /// The watches and their values at the cursor; none where nothing was solved for one.
+    pub fn watched(&self) -> Vec<(&str, Option<f64>)> {
+        let value = |watch: &Watch| watch.value(self.frame());
+        self.watches
+            .iter()
+            .map(|watch| (watch.name.as_str(), value(watch)))
+            .collect()
+    }
+
+    /// The branch, if there are several, and the watches with their values, in a line; empty where there is neither.
+    pub fn aside(&self) -> String {
+        let several = self.tree.branches().len() > 1;
+        let branch =
+            several.then(|| format!("in {}", branches::name(&self.tree, self.tree.current())));
+        let watches = self.watched().into_iter().map(|(name, value)| match value {
+            Some(value) => format!("{name} = {value:.6e}"),
+            None => format!("{name} = none"),
+        });
+        branch
+            .into_iter()
+            .chain(watches)
+            .collect::<Vec<_>>()
+            .join("   ")
     }
 
     /// Whether the worker is busy.
     pub fn is_running(&self) -> bool {
-        self.running
+        self.task.is_some()
     }
 
     /// Asks a running job to stop after the present minor iteration.
@@ -110,28 +241,53 @@ impl Session {
     /// # Errors
     /// A message that says what is wrong and what would be right.
     pub fn submit(&mut self, command: Command) -> Result<Reply, String> {
-        if self.running {
+        if self.is_running() {
             return Err("the solver is running; interrupt it first (Ctrl-C)".into());
         }
+        (self.solved, self.accepted) = (0, 0);
+        let kept = command.clone();
+        let reply = self.carry_out(command)?;
+        if self.is_running() {
+            let begun = self.begin(&kept);
+            self.pending = Some(kept);
+            return Ok(Reply(reply.0 + &begun));
+        }
+        Ok(self.note(kept, reply))
+    }
+
+    fn carry_out(&mut self, command: Command) -> Result<Reply, String> {
         match command {
             Command::Forward { unit, count } => Ok(self.forward(unit, count.max(1))),
             Command::Back { unit, count } => self.back(unit, count.max(1)),
+            Command::Goto { step } => self.jump(step),
             Command::Force { slave, mode, hold } => {
-                self.intervene(Intervention::Force { slave, mode, hold })
+                self.intervene(Intervention::Force { slave, mode, hold }, None)
             }
-            Command::Release { slave } => self.intervene(Intervention::Release { slave }),
-            Command::Increment(increment) => self.intervene(Intervention::Increment(increment)),
+            Command::Release { slave } => self.intervene(Intervention::Release { slave }, None),
+            Command::Increment(increment) => {
+                self.intervene(Intervention::Increment(increment), None)
+            }
             Command::Set { path, value } => {
                 let intervention = self.setting(&path, &value)?;
-                self.intervene(intervention)
+                self.intervene(intervention, Some((&path, &value)))
             }
+            Command::Branch(to) => self.branch(&to),
+            Command::Rename(label) => self.rename(label),
+            Command::Branches => Ok(Reply(branches::listed(&self.tree))),
+            Command::Compare(with) => self.side_by_side(with.as_deref()),
+            Command::Break(condition) => Ok(self.add_breakpoint(condition)),
+            Command::Breakpoints => Ok(Reply(self.list_breakpoints())),
+            Command::Delete(id) => self.delete(id),
+            Command::Enable { id, on } => self.enable(id, on),
+            Command::Watch(watch) => self.watch(watch),
+            Command::Unwatch(name) => self.unwatch(&name),
             Command::Snapshot { file, overwrite } => self.snapshot(file, overwrite),
         }
     }
 
     /// Gathers what the worker did since the last call; a message when a job came to its end. Never blocks.
     pub fn poll(&mut self) -> Option<Reply> {
-        while self.running {
+        while self.is_running() {
             let message = self.worker.try_next()?;
             if let Some(reply) = self.take(message) {
                 return Some(reply);
@@ -142,7 +298,7 @@ impl Session {
 
     /// Blocks until the worker is idle and returns its last message.
     pub fn wait(&mut self) -> Option<Reply> {
-        while self.running {
+        while self.is_running() {
             let message = self.worker.next();
             if let Some(reply) = self.take(message) {
                 return Some(reply);
@@ -152,28 +308,29 @@ impl Session {
     }
 
     fn take(&mut self, message: Message) -> Option<Reply> {
+        let reply = self.gather(message)?;
+        Some(match self.pending.take() {
+            Some(command) => self.note(command, reply),
+            None => reply,
+        })
+    }
+
+    fn gather(&mut self, message: Message) -> Option<Reply> {
         match message {
-            Message::Frame(state, event, monitors) => {
-                self.frames.push(Frame {
-                    state: *state,
-                    event: Some(event),
-                    intervention: None,
-                    monitors,
-                });
-                self.cursor = self.frames.len() - 1;
+            Message::Made(frame, strip) => {
+                self.solved += 1;
+                self.accepted += u64::from(strip.kind.is_accepted());
+                self.tree.push(*frame, *strip);
+                self.cursor = self.frames().len() - 1;
                 None
             }
-            Message::Done { interrupted } => {
-                self.running = false;
-                let here = self.told();
-                Some(Reply(if interrupted {
-                    format!("interrupted; {here}")
-                } else {
-                    here
-                }))
+            Message::Again(state, event) => {
+                self.refill(*state, event);
+                None
             }
+            Message::Done { interrupted, hits } => Some(self.done(interrupted, &hits)),
             Message::Died => {
-                self.running = false;
+                self.task = None;
                 Some(Reply(
                     "the solver stopped unexpectedly; what was done so far is kept".into(),
                 ))
@@ -181,68 +338,423 @@ impl Session {
         }
     }
 
-    /// Moves the cursor over what is known already, then solves on.
-    fn forward(&mut self, unit: Unit, count: u32) -> Reply {
-        let mut left = count;
-        while left > 0 && self.cursor + 1 < self.frames.len() {
-            self.cursor += 1;
-            let frame = &self.frames[self.cursor];
-            if let (Some(event), None) = (&frame.event, &frame.intervention) {
-                left -= u32::from(ends(unit, &event.outcome));
-                if matches!(event.outcome, Outcome::Failed(_)) {
-                    left = 0;
+    fn done(&mut self, interrupted: bool, hits: &[u32]) -> Reply {
+        let mut told = self.stops(hits);
+        if let Some(Task::Again {
+            next,
+            target,
+            sound,
+        }) = self.task.take()
+            && next > target
+        {
+            self.cursor = target;
+            if !sound {
+                told += "computed again, it is not what it was, please report this; ";
+            }
+        }
+        if interrupted {
+            told += "interrupted; ";
+        }
+        Reply(told + &self.told())
+    }
+
+    /// Notes in the journal that a motion begins to solve; what is to be said where that fails.
+    fn begin(&mut self, command: &Command) -> String {
+        if !matches!(self.task, Some(Task::Run)) {
+            return String::new();
+        }
+        self.journal_with(|journal| journal.begun(command))
+    }
+
+    /// Notes in the journal what a command led to.
+    fn note(&mut self, command: Command, Reply(said): Reply) -> Reply {
+        let looks = matches!(
+            command,
+            Command::Branches
+                | Command::Compare(_)
+                | Command::Breakpoints
+                | Command::Snapshot { .. }
+        );
+        if looks || matches!(self.journal, Kept::Nowhere) {
+            return Reply(said);
+        }
+        let changes = self.solved > 0 || !is_motion(&command);
+        let entry = Entry {
+            at: journal::now(),
+            command,
+            solved: self.solved,
+            accepted: self.accepted,
+            branch: self.tree.current(),
+            cursor: self.cursor,
+            digest: journal::digest(&self.frame().state),
+            said: said.clone(),
+        };
+        let trouble = self.journal_with(|journal| journal.done(entry, changes));
+        Reply(said + &trouble)
+    }
+
+    /// Writes to the journal, if there is one. Where that fails it ends, and a message says so.
+    fn journal_with(
+        &mut self,
+        write: impl FnOnce(&mut Journal) -> Result<(), JournalError>,
+    ) -> String {
+        if matches!(self.journal, Kept::Due) {
+            match Journal::create_default(&self.scene) {
+                Ok(journal) => self.journal = Kept::Open(journal),
+                Err(error) => {
+                    self.journal = Kept::Nowhere;
+                    return format!("; there is no journal: {error}");
                 }
             }
         }
-        if left == 0 || self.frame().state.status == Status::Finished {
-            return Reply(self.told());
+        let Kept::Open(journal) = &mut self.journal else {
+            return String::new();
+        };
+        match write(journal) {
+            Ok(()) => String::new(),
+            Err(error) => {
+                self.journal = Kept::Nowhere;
+                format!("; the journal ends here: {error}")
+            }
         }
-        self.running = true;
-        self.worker.start(Job {
-            state: self.frame().state.clone(),
-            unit,
-            count: left,
-        });
+    }
+
+    /// Does what an entry of a journal says.
+    ///
+    /// # Errors
+    /// A message where it leads elsewhere than it did.
+    pub(super) fn replay(&mut self, entry: &Entry) -> Result<(), String> {
+        match &entry.command {
+            command if is_motion(command) => self.travel(entry.solved, entry.cursor)?,
+            command => {
+                self.submit(command.clone())?;
+                self.wait();
+            }
+        }
+        let place = (self.tree.current(), self.cursor);
+        if place != (entry.branch, entry.cursor) {
+            let (branch, cursor) = place;
+            return Err(format!(
+                "it leads to step {cursor} of branch b{}, and led to step {} of b{}",
+                branch + 1,
+                entry.cursor,
+                entry.branch + 1
+            ));
+        }
+        let digest = journal::digest(&self.frame().state);
+        if digest != entry.digest {
+            return Err(format!("the state is {digest}, and was {}", entry.digest));
+        }
+        Ok(())
+    }
+
+    /// Solves so many minor iterations from the tip of the branch, then goes to a step.
+    fn travel(&mut self, solved: u64, step: usize) -> Result<(), String> {
+        if solved > 0 {
+            self.solved = 0;
+            self.cursor = self.frames().len() - 1;
+            let count = u32::try_from(solved).map_err(|_| "it solves too much for one motion")?;
+            self.solve(Unit::Minor, count, Vec::new());
+            self.wait();
+        }
+        if solved > 0 && self.solved != solved {
+            return Err(format!(
+                "it solves {} minor iterations, and solved {solved}",
+                self.solved
+            ));
+        }
+        self.jump(step)?;
+        self.wait();
+        Ok(())
+    }
+
+    /// Moves the cursor over what is known already, then solves on.
+    fn forward(&mut self, unit: Unit, count: u32) -> Reply {
+        let mut left = count;
+        let (mut at, mut hits) = (self.cursor, Vec::new());
+        let strips = self.strips();
+        while left > 0 && hits.is_empty() && at + 1 < strips.len() {
+            at += 1;
+            left -= u32::from(ends(unit, strips[at].kind));
+            if strips[at].kind.is_failure() {
+                left = 0;
+            }
+            hits = breakpoints::hits(&self.breakpoints, &strips[at - 1], &strips[at]);
+        }
+        let finished = self.frames()[at].state.status == Status::Finished;
+        if left == 0 || !hits.is_empty() || finished {
+            return self.go_to(at, &hits);
+        }
+        self.cursor = at;
+        self.solve(unit, left, self.breakpoints.clone());
         Reply("running; Ctrl-C interrupts".into())
+    }
+
+    /// Starts new minor iterations from the cursor, which is at the tip.
+    fn solve(&mut self, unit: Unit, count: u32, breakpoints: Vec<Breakpoint>) {
+        self.task = Some(Task::Run);
+        self.worker.start(Job::Run {
+            state: Box::new(self.frame().state.clone()),
+            before: Box::new(self.strips()[self.cursor].clone()),
+            unit,
+            count,
+            breakpoints,
+        });
     }
 
     fn back(&mut self, unit: Unit, count: u32) -> Result<Reply, String> {
         if self.cursor == 0 {
             return Err("this is the start".into());
         }
+        let strips = self.strips();
+        let (mut at, mut hits) = (self.cursor, Vec::new());
         for _ in 0..count {
-            let stops = |frame: &Frame| match (unit, &frame.event) {
-                (Unit::Minor, _) => true,
-                (_, None) => false,
-                (Unit::Run, Some(event)) => matches!(event.outcome, Outcome::Failed(_)),
-                (_, Some(event)) => frame.intervention.is_none() && ends(unit, &event.outcome),
+            let here = |k: usize| match k {
+                0 => Vec::new(),
+                k => breakpoints::hits(&self.breakpoints, &strips[k - 1], &strips[k]),
             };
-            self.cursor = (0..self.cursor)
-                .rev()
-                .find(|&k| stops(&self.frames[k]))
-                .unwrap_or(0);
+            let stops = |k: &usize| match unit {
+                Unit::Minor => true,
+                Unit::Run => strips[*k].kind.is_failure() || !here(*k).is_empty(),
+                _ => ends(unit, strips[*k].kind),
+            };
+            at = (0..at).rev().find(stops).unwrap_or(0);
+            hits = if unit == Unit::Run {
+                here(at)
+            } else {
+                Vec::new()
+            };
         }
-        Ok(Reply(self.told()))
+        Ok(self.go_to(at, &hits))
     }
 
-    fn intervene(&mut self, intervention: Intervention) -> Result<Reply, String> {
-        let mut state = self.frame().state.clone();
-        state.intervene(&self.model, &intervention)?;
-        let forgotten = self.frames.len() - 1 - self.cursor;
-        self.frames.truncate(self.cursor + 1);
-        let event = self.frame().event.clone();
-        let mut told = report::intervention(&self.model, &intervention);
-        self.frames.push(Frame {
-            state,
-            event,
-            intervention: Some(intervention),
-            monitors: None,
+    fn jump(&mut self, step: usize) -> Result<Reply, String> {
+        let last = self.frames().len() - 1;
+        if step > last {
+            return Err(format!(
+                "there is no step {step} yet; the last one is {last}"
+            ));
+        }
+        Ok(self.go_to(step, &[]))
+    }
+
+    /// Puts the cursor on a point of the line; a thinned one is computed first, from the nearest whole one before it.
+    fn go_to(&mut self, target: usize, hits: &[u32]) -> Reply {
+        let from = self.tree.whole_before(target);
+        if from == target {
+            self.cursor = target;
+            return Reply(self.stops(hits) + &self.told());
+        }
+        let frames = &self.frames()[from..=target];
+        let job = Job::Again {
+            state: Box::new(frames[0].state.clone()),
+            event: frames[0].event.clone(),
+            steps: frames[1..]
+                .iter()
+                .map(|frame| frame.intervention.clone())
+                .collect(),
+        };
+        self.task = Some(Task::Again {
+            next: from + 1,
+            target,
+            sound: true,
         });
+        self.worker.start(job);
+        Reply(format!(
+            "computing {} steps again; Ctrl-C interrupts",
+            target - from
+        ))
+    }
+
+    fn refill(&mut self, state: State, event: Option<Arc<Event>>) {
+        if let Some(Task::Again { next, sound, .. }) = &mut self.task {
+            *sound &= self.tree.refill(*next, state, event);
+            self.tree.thin([*next, self.cursor]);
+            *next += 1;
+        }
+    }
+
+    /// Which breakpoints a run stopped at, as the beginning of a reply.
+    fn stops(&self, hits: &[u32]) -> String {
+        let hit = self.breakpoints.iter().filter(|b| hits.contains(&b.id));
+        let told: Vec<String> = hit
+            .map(|b| breakpoints::describe(self.model(), b))
+            .collect();
+        match told.len() {
+            0 => String::new(),
+            1 => format!("breakpoint {}: ", told[0]),
+            _ => format!("breakpoints {}: ", told.join(", ")),
+        }
+    }
+
+    /// Changes something at the cursor; `setting` is the path and the value that it came from.
+    fn intervene(
+        &mut self,
+        intervention: Intervention,
+        setting: Option<(&str, &str)>,
+    ) -> Result<Reply, String> {
+        let mut state = self.frame().state.clone();
+        state.intervene(self.model(), &intervention)?;
+        let mut told = report::intervention(self.model(), &intervention);
+        let label = branches::label(self.model(), &intervention, setting);
+        let before = self.strips()[self.cursor].kind;
+        let forks = self.tree.intervene(self.cursor, state, intervention);
         self.cursor += 1;
-        if forgotten > 0 {
-            told += &format!(" ({forgotten} later steps are forgotten)");
+        let branch = &self.tree.branches()[self.tree.current()];
+        if forks {
+            self.tree.rename(label, false);
+            let name = branches::name(&self.tree, self.tree.current());
+            told += &format!(" (in the new branch {name})");
+        } else if !branch.named
+            && before == Kind::Intervention
+            && branch.from < self.cursor
+            && branch.parent.is_some()
+        {
+            // What is done before anything is solved belongs to the same trial.
+            let label = format!("{}, {label}", branch.label);
+            self.tree.rename(label, false);
         }
         Ok(Reply(told))
+    }
+
+    fn branch(&mut self, to: &To) -> Result<Reply, String> {
+        let (count, current) = (self.tree.branches().len(), self.tree.current());
+        let to = match to {
+            To::Next => (current + 1) % count,
+            To::Previous => (current + count - 1) % count,
+            To::Named(name) => branches::find(&self.tree, name)?,
+        };
+        if count == 1 {
+            return Err(
+                "there is no other branch; an intervention before the tip starts one".into(),
+            );
+        }
+        self.tree.switch(to);
+        self.cursor = self.frames().len() - 1;
+        let name = branches::name(&self.tree, to);
+        let verdict = branches::describe(&self.tree, &branches::verdict(&self.tree, to));
+        Ok(Reply(format!("{name} ({verdict}): {}", self.told())))
+    }
+
+    fn rename(&mut self, label: String) -> Result<Reply, String> {
+        let label = label.trim().to_owned();
+        let number = |text: &str| {
+            text.strip_prefix('b')
+                .is_some_and(|n| n.parse::<u32>().is_ok())
+        };
+        let taken = self
+            .tree
+            .branches()
+            .iter()
+            .any(|branch| branch.label == label);
+        if label.is_empty() || label.chars().any(char::is_control) {
+            return Err("a branch's name is one line of text".into());
+        } else if taken {
+            return Err(format!("another branch is called '{label}'"));
+        } else if number(&label) {
+            return Err(format!(
+                "'{label}' looks like a branch's number; any other name would do"
+            ));
+        }
+        self.tree.rename(label, true);
+        let name = branches::name(&self.tree, self.tree.current());
+        Ok(Reply(format!("this branch is {name}")))
+    }
+
+    /// Compares the current branch with another, by default the one that it left.
+    fn side_by_side(&self, with: Option<&str>) -> Result<Reply, String> {
+        let current = self.tree.current();
+        let with = match with {
+            Some(name) => branches::find(&self.tree, name)?,
+            None => self.tree.branches()[current]
+                .parent
+                .ok_or("which branch? :compare BRANCH")?,
+        };
+        if with == current {
+            return Err("that is this branch; another one would be compared with it".into());
+        }
+        let comparison = self
+            .compare(current, with)
+            .ok_or("there is nothing to compare")?;
+        Ok(Reply(compare::describe(&self.tree, &comparison)))
+    }
+
+    fn add_breakpoint(&mut self, condition: Condition) -> Reply {
+        self.numbered += 1;
+        let breakpoint = Breakpoint {
+            id: self.numbered,
+            condition,
+            enabled: true,
+        };
+        let told = breakpoints::describe(self.model(), &breakpoint);
+        self.breakpoints.push(breakpoint);
+        Reply(format!("breakpoint {told}"))
+    }
+
+    fn list_breakpoints(&self) -> String {
+        let told = |b: &Breakpoint| breakpoints::describe(self.model(), b);
+        let all: Vec<String> = self.breakpoints.iter().map(told).collect();
+        match all.is_empty() {
+            true => "there are no breakpoints; :break sets one".into(),
+            false => format!("breakpoints {}", all.join(", ")),
+        }
+    }
+
+    /// The breakpoint of a number.
+    fn breakpoint(&mut self, id: u32) -> Result<&mut Breakpoint, String> {
+        let listed = self.list_breakpoints();
+        let found = self.breakpoints.iter_mut().find(|b| b.id == id);
+        found.ok_or(format!("there is no breakpoint {id}; {listed}"))
+    }
+
+    fn delete(&mut self, id: Option<u32>) -> Result<Reply, String> {
+        match id {
+            Some(id) => {
+                self.breakpoint(id)?;
+                self.breakpoints.retain(|b| b.id != id);
+            }
+            None => self.breakpoints.clear(),
+        }
+        Ok(Reply(self.list_breakpoints()))
+    }
+
+    fn enable(&mut self, id: Option<u32>, on: bool) -> Result<Reply, String> {
+        match id {
+            Some(id) => self.breakpoint(id)?.enabled = on,
+            None => self.breakpoints.iter_mut().for_each(|b| b.enabled = on),
+        }
+        Ok(Reply(self.list_breakpoints()))
+    }
+
+    fn watch(&mut self, watch: Watch) -> Result<Reply, String> {
+        if self.watches.iter().any(|other| other.name == watch.name) {
+            return Err(format!(
+                "there is a watch '{}' already; unwatch ends it",
+                watch.name
+            ));
+        }
+        let value = watch.value(self.frame());
+        let told = match value {
+            Some(value) => format!("{} = {value:e}", watch.name),
+            None => format!("{}: nothing is solved for it here", watch.name),
+        };
+        self.watches.push(watch);
+        Ok(Reply(told))
+    }
+
+    fn unwatch(&mut self, name: &str) -> Result<Reply, String> {
+        let names: Vec<String> = self.watches.iter().map(|w| w.name.clone()).collect();
+        if !names.iter().any(|other| other == name) {
+            return Err(match names.is_empty() {
+                true => "there are no watches; :watch adds one".into(),
+                false => format!(
+                    "no watch is called '{name}'; there are {}",
+                    names.join(", ")
+                ),
+            });
+        }
+        self.watches.retain(|watch| watch.name != name);
+        Ok(Reply(format!("{name} is not watched any more")))
     }
 
     /// What `:set` means, on top of what was set before.
@@ -272,7 +784,7 @@ impl Session {
     /// Number of minor iterations done up to the cursor, and the interventions among them.
     fn record(&self) -> (u64, Vec<Applied>) {
         let (mut step, mut applied) = (0, Vec::new());
-        for frame in &self.frames[1..=self.cursor] {
+        for frame in &self.frames()[1..=self.cursor] {
             match &frame.intervention {
                 Some(intervention) => applied.push(Applied {
                     step,
@@ -329,27 +841,20 @@ impl Session {
     /// Residual norms of the shown increment attempt up to the cursor: before its first major iteration (0), and
     /// after each.
     pub fn residual_history(&self) -> Vec<(u32, Norms)> {
-        let Some(shown) = self.frame().event.as_ref().map(|e| e.position) else {
+        let Some(event) = &self.frame().event else {
             return Vec::new();
         };
+        let shown = event.position;
         let mut history: Vec<(u32, Norms)> = Vec::new();
-        for frame in self.frames[..=self.cursor].iter().rev() {
-            let Some(event) = &frame.event else { break };
-            let at = event.position;
-            if (at.increment, at.attempt) != (shown.increment, shown.attempt) {
+        for strip in self.strips()[..=self.cursor].iter().rev() {
+            let at = strip.position;
+            if strip.kind == Kind::Start
+                || (at.increment, at.attempt) != (shown.increment, shown.attempt)
+            {
                 break;
             }
-            let after = match &event.outcome {
-                Outcome::Major { after, .. } | Outcome::Increment { after, .. } => {
-                    Some((at.major, *after))
-                }
-                _ => None,
-            };
-            history.extend(
-                after
-                    .into_iter()
-                    .chain((at.major == 1).then_some((0, event.before))),
-            );
+            history.extend(strip.after.as_deref().map(|after| (at.major, *after)));
+            history.extend(strip.first.as_deref().map(|first| (0, *first)));
         }
         history.reverse();
         history.dedup_by_key(|entry| entry.0);
@@ -358,36 +863,48 @@ impl Session {
 
     /// A monitor against the load factor, at the end of every accepted increment up to the cursor.
     pub fn curve(&self, monitor: usize) -> Vec<[f64; 2]> {
-        curve(&self.frames[..=self.cursor], monitor)
+        curve(&self.frames()[..=self.cursor], monitor)
     }
 
     fn told(&self) -> String {
         let frame = self.frame();
         match &frame.event {
             None => "at the start".into(),
-            Some(event) => report::outcome(&self.model, event),
+            Some(event) => report::outcome(self.model(), event),
         }
     }
+}
+
+/// Whether a command only goes along a branch.
+fn is_motion(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Forward { .. } | Command::Back { .. } | Command::Goto { .. }
+    )
 }
 
 /// A monitor's value and the load factor at the end of every accepted increment among these frames.
 pub fn curve(frames: &[Frame], monitor: usize) -> Vec<[f64; 2]> {
     let point = |frame: &Frame| {
         let value = *frame.monitors.as_ref()?.get(monitor)?;
-        Some([value, frame.event.as_ref()?.load_factor])
+        let accepted = frame.state.start.load_factor;
+        Some([
+            value,
+            frame
+                .event
+                .as_ref()
+                .map_or(accepted, |event| event.load_factor),
+        ])
     };
     frames.iter().filter_map(point).collect()
 }
 
-/// Whether a minor iteration that ended like this ends a motion by this unit.
-pub(super) fn ends(unit: Unit, outcome: &Outcome) -> bool {
+/// Whether a point of this kind ends a motion by this unit.
+pub(super) fn ends(unit: Unit, kind: Kind) -> bool {
     match unit {
-        Unit::Minor => true,
-        Unit::Major => !matches!(outcome, Outcome::Minor | Outcome::Damped { .. }),
-        Unit::Increment => matches!(outcome, Outcome::Increment { .. } | Outcome::Failed(_)),
-        Unit::Run => matches!(
-            outcome,
-            Outcome::Failed(_) | Outcome::Increment { last: true, .. }
-        ),
+        Unit::Minor => kind.is_solved(),
+        Unit::Major => kind.is_solved() && !matches!(kind, Kind::Minor | Kind::Damped),
+        Unit::Increment => kind.is_accepted() || kind.is_failure(),
+        Unit::Run => kind == Kind::Last || kind.is_failure(),
     }
 }

@@ -1,27 +1,44 @@
 //! The thread on which a session's solver runs.
 
+use crate::debug::breakpoints::{self, Breakpoint};
 use crate::debug::command::Unit;
-use crate::debug::session::ends;
+use crate::debug::session::{Frame, ends};
+use crate::debug::strip::Strip;
 use crate::scene::Model;
-use crate::solve::{Event, Outcome, State, Stepper};
+use crate::solve::{Event, Intervention, State, Stepper};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
+use std::time::Instant;
 
-/// Minor iterations to do: from a state, until so many of a unit are complete, or a failure, or the end.
-pub struct Job {
-    pub state: State,
-    pub unit: Unit,
-    pub count: u32,
+/// What the worker is to do.
+pub enum Job {
+    /// Minor iterations from a state, until so many of a unit are complete, or a breakpoint holds, or a failure, or the
+    /// end. `before` is the strip of the frame that it starts from.
+    Run {
+        state: Box<State>,
+        before: Box<Strip>,
+        unit: Unit,
+        count: u32,
+        breakpoints: Vec<Breakpoint>,
+    },
+    /// The same steps as once before, from a state: each a minor iteration, or an intervention.
+    Again {
+        state: Box<State>,
+        event: Option<Arc<Event>>,
+        steps: Vec<Option<Intervention>>,
+    },
 }
 
 /// What the worker tells.
 pub enum Message {
-    /// A minor iteration and the state after it; where it ended an increment, the values of the scene's monitors too.
-    Frame(Box<State>, Arc<Event>, Option<Arc<Vec<f64>>>),
-    /// The job is over.
-    Done { interrupted: bool },
+    /// A new minor iteration.
+    Made(Box<Frame>, Box<Strip>),
+    /// A step done again.
+    Again(Box<State>, Option<Arc<Event>>),
+    /// The job is over; the breakpoints at which it stopped.
+    Done { interrupted: bool, hits: Vec<u32> },
     /// The thread is gone.
     Died,
 }
@@ -43,7 +60,34 @@ impl Worker {
         thread::spawn(move || {
             let mut stepper = Stepper::new(model);
             while let Ok(job) = orders.recv() {
-                if work(&mut stepper, &job, &news, &flag).is_none() {
+                let done = match job {
+                    Job::Run {
+                        state,
+                        before,
+                        unit,
+                        count,
+                        breakpoints,
+                    } => {
+                        stepper.restore(&state);
+                        run(
+                            &mut stepper,
+                            *before,
+                            (unit, count),
+                            &breakpoints,
+                            &news,
+                            &flag,
+                        )
+                    }
+                    Job::Again {
+                        state,
+                        event,
+                        steps,
+                    } => {
+                        stepper.restore(&state);
+                        again(&mut stepper, event, &steps, &news, &flag)
+                    }
+                };
+                if done.is_none() {
                     return;
                 }
             }
@@ -88,30 +132,79 @@ impl Drop for Worker {
     }
 }
 
-/// Does a job; none if nobody listens any more.
-fn work(stepper: &mut Stepper, job: &Job, news: &Sender<Message>, stop: &AtomicBool) -> Option<()> {
-    stepper.restore(&job.state);
-    let mut left = job.count;
+/// Goes on; none if nobody listens any more.
+fn run(
+    stepper: &mut Stepper,
+    mut before: Strip,
+    (unit, count): (Unit, u32),
+    breakpoints: &[Breakpoint],
+    news: &Sender<Message>,
+    stop: &AtomicBool,
+) -> Option<()> {
+    let mut left = count;
     let mut interrupted = false;
-    while left > 0 {
+    let mut hits = Vec::new();
+    while left > 0 && hits.is_empty() {
         if stop.load(Ordering::Relaxed) {
             interrupted = true;
             break;
         }
+        let began = Instant::now();
         let Some(event) = stepper.step() else { break };
         let event = Arc::new(event.clone());
-        left -= u32::from(ends(job.unit, &event.outcome));
-        if matches!(event.outcome, Outcome::Failed(_)) {
+        let seconds = began.elapsed().as_secs_f32();
+        let strip = Strip::of(
+            stepper.model(),
+            stepper.state(),
+            Some(&event),
+            Some(&before),
+            seconds,
+        );
+        left -= u32::from(ends(unit, strip.kind));
+        if strip.kind.is_failure() {
             left = 0;
         }
-        let state = Box::new(stepper.state().clone());
-        let accepted = matches!(event.outcome, Outcome::Increment { .. });
-        let monitors = accepted.then(|| {
-            let mut values = Vec::new();
-            stepper.monitors(&mut values);
-            Arc::new(values)
-        });
-        news.send(Message::Frame(state, event, monitors)).ok()?;
+        hits = breakpoints::hits(breakpoints, &before, &strip);
+        before = strip.clone();
+        let frame = Frame {
+            state: stepper.state().clone(),
+            event: Some(event),
+            intervention: None,
+            monitors: strip.kind.is_accepted().then(|| {
+                let mut values = Vec::new();
+                stepper.monitors(&mut values);
+                Arc::new(values)
+            }),
+        };
+        news.send(Message::Made(Box::new(frame), Box::new(strip)))
+            .ok()?;
     }
-    news.send(Message::Done { interrupted }).ok()
+    news.send(Message::Done { interrupted, hits }).ok()
+}
+
+/// Does what was done before; none if nobody listens any more.
+fn again(
+    stepper: &mut Stepper,
+    mut event: Option<Arc<Event>>,
+    steps: &[Option<Intervention>],
+    news: &Sender<Message>,
+    stop: &AtomicBool,
+) -> Option<()> {
+    let mut interrupted = false;
+    for step in steps {
+        if stop.load(Ordering::Relaxed) {
+            interrupted = true;
+            break;
+        }
+        match step {
+            // It was sound the first time, from the same state.
+            Some(intervention) if stepper.intervene(intervention).is_err() => break,
+            Some(_) => {}
+            None => event = stepper.step().map(|event| Arc::new(event.clone())),
+        }
+        let state = Box::new(stepper.state().clone());
+        news.send(Message::Again(state, event.clone())).ok()?;
+    }
+    let hits = Vec::new();
+    news.send(Message::Done { interrupted, hits }).ok()
 }

@@ -169,6 +169,11 @@ impl Trail {
         self.entries.is_empty()
     }
 
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        self.entries.capacity() * size_of::<Input>()
+    }
+
     /// Remembers what goes into the next minor iteration.
     pub fn push(&mut self, nodes: &[NodeState]) {
         self.entries.extend(nodes.iter().map(Input::of));

@@ -410,6 +410,9 @@ impl App {
             }
             Question::Node => self.overlay = Overlay::Line(CommandLine::new(Purpose::Node, "")),
             Question::Scene => self.choose(),
+            Question::Break => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "break "))
+            }
         }
     }
 

@@ -29,5 +29,5 @@ pub mod view;
 
 pub use app::{App, Effect};
 pub use draw::picture;
-pub use run::{Debugger, Error, run, screen};
+pub use run::{Debugger, Error, resume, run, screen};
 pub use view::View;

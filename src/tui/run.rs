@@ -1,6 +1,7 @@
 //! The event loop, and what it loops over: an app, a session, and commands that wait for the solver.
 
 use crate::debug::command::{Command, Unit};
+use crate::debug::journal::{JournalError, Keep};
 use crate::debug::report;
 use crate::debug::session::{Reply, Session};
 use crate::scene::{Scene, builtin};
@@ -24,6 +25,9 @@ pub enum Error {
     /// The scene could not be loaded.
     #[error("{0}")]
     Scene(String),
+    /// The journal cannot be written.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// The terminal failed.
     #[error("terminal: {0}")]
     Terminal(#[from] io::Error),
@@ -34,15 +38,40 @@ pub enum Error {
 ///
 /// # Errors
 /// If there is no terminal, the scene cannot be loaded, or the terminal fails.
-pub fn run(scene: Option<String>, overrides: &[(String, String)]) -> Result<(), Error> {
+pub fn run(
+    scene: Option<String>,
+    overrides: &[(String, String)],
+    journal: &Keep,
+) -> Result<(), Error> {
+    let session = match scene {
+        Some(scene) => {
+            let mut session = load(&scene, overrides).map_err(Error::Scene)?;
+            journal.begin(&mut session)?;
+            Some(session)
+        }
+        None => None,
+    };
+    go(session, *journal != Keep::Nowhere, None)
+}
+
+/// Goes on with a session, and says something first.
+///
+/// # Errors
+/// If there is no terminal, or it fails.
+pub fn resume(session: Session, told: &str) -> Result<(), Error> {
+    go(Some(session), true, Some(told))
+}
+
+/// The debugger on a session; `keeps` journals of further scenes, too.
+fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), Error> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let session = scene
-        .map(|scene| load(&scene, overrides))
-        .transpose()
-        .map_err(Error::Scene)?;
     let mut debugger = Debugger::new(Theme::from_environment(), offers(), session);
+    debugger.keeps = keeps;
+    if let Some(told) = told {
+        debugger.app.say(told);
+    }
     let signals = Signals::listen()?;
     let mut terminal = Terminal::enter()?;
     let ended = events(&mut debugger, &mut terminal, &signals);
@@ -144,6 +173,8 @@ pub struct Debugger {
     endless: bool,
     /// Frames of the session when the screen was last drawn.
     frames: usize,
+    /// Whether scenes that are opened here get a journal.
+    keeps: bool,
 }
 
 /// Most commands that wait; more come only from a key that is held down.
@@ -163,6 +194,7 @@ impl Debugger {
             queue: VecDeque::new(),
             endless: false,
             frames: 0,
+            keeps: false,
         }
     }
 
@@ -273,11 +305,19 @@ impl Debugger {
                 (false, None) => None,
             }
         });
-        self.app.say(if known.is_some_and(|known| known == text) {
-            String::new()
+        let known = known.is_some_and(|known| known == text);
+        let said = if known { String::new() } else { text };
+        let idle = self
+            .session
+            .as_ref()
+            .filter(|session| !session.is_running());
+        let aside = idle.map_or(String::new(), Session::aside);
+        let between = if said.is_empty() || aside.is_empty() {
+            ""
         } else {
-            text
-        });
+            "   "
+        };
+        self.app.say(format!("{said}{between}{aside}"));
     }
 
     fn interrupt(&mut self) {
@@ -290,7 +330,10 @@ impl Debugger {
 
     fn open(&mut self, scene: &str) {
         match load(scene, &[]) {
-            Ok(session) => {
+            Ok(mut session) => {
+                if self.keeps {
+                    session.keep_at_default_place();
+                }
                 self.session = Some(session);
                 self.queue.clear();
                 self.app.opened();

@@ -1,0 +1,63 @@
+//! `stickslip resume [JOURNAL]`: replays a journal to its end, and goes on with the debugger.
+
+use super::debugger::has_terminal;
+use super::{Error, Exit, tell};
+use crate::debug::journal::{self, Journal, JournalError, Record};
+use crate::tui;
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A journal [default: the one that was written last]
+    journal: Option<PathBuf>,
+    /// Only proves that the journal leads to the same bits again, without the debugger
+    #[arg(long)]
+    check: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    if !args.check && !has_terminal() {
+        return Err(Error::Usage(
+            "the debugger needs a terminal, and standard input or output is none; `stickslip resume --check` replays without one".into(),
+        ));
+    }
+    let path = match &args.journal {
+        Some(path) => path.clone(),
+        None => journal::newest()?,
+    };
+    let mut record = Record::read(&path)?;
+    let mut kept = None;
+    if !args.check {
+        // Nobody else may go on with it while it is replayed; what came in the meantime is replayed, too.
+        let journal = Journal::open(&path)?;
+        record = Record::read(&path)?;
+        kept = Some(journal);
+    }
+    let solved: u64 = record.entries.iter().map(|(_, entry)| entry.solved).sum();
+    let told = format!(
+        "{}: {} entries, {solved} minor iterations",
+        path.display(),
+        record.entries.len()
+    );
+    tell(&format!("replaying {told}"));
+    let mut session = match record.replay() {
+        Err(error @ JournalError::Differs { .. }) => {
+            tell(&error.to_string());
+            return Ok(Exit::Differ);
+        }
+        replayed => replayed?,
+    };
+    let reservations = record.reservations();
+    let Some(mut journal) = kept else {
+        tell(&format!("equal to the last bit{reservations}"));
+        return Ok(Exit::Good);
+    };
+    journal.cut(record.whole_bytes)?;
+    session.keep(journal);
+    let told = format!(
+        "resumed after {} entries{reservations}",
+        record.entries.len()
+    );
+    tui::resume(session, &told).map_err(|error| Error::Usage(error.to_string()))?;
+    Ok(Exit::Good)
+}

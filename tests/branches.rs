@@ -1,0 +1,360 @@
+//! What-if branches: nothing done is lost by going back, and how branches end is judged.
+
+use stickslip::debug::branches::Verdict;
+use stickslip::debug::command::{Command, To, Unit};
+use stickslip::debug::compare::Sameness;
+use stickslip::debug::session::{Frame, Session};
+use stickslip::debug::strip::Kind;
+use stickslip::scene::{Mode, Scene};
+use stickslip::solve::State;
+
+const FLOOR: &str = "01-pinned-beam-rough-floor";
+const OSCILLATES: &str = "osc-inclined-cantilever";
+
+fn session(scene: &str) -> Session {
+    Session::new(Scene::open(scene, &[]).expect("a built-in scene"))
+}
+
+/// Carries a command out to its end and returns what is said last.
+#[track_caller]
+fn submit(session: &mut Session, command: Command) -> String {
+    let reply = session.submit(command).unwrap_or_else(|e| panic!("{e}"));
+    session.wait().unwrap_or(reply).0
+}
+
+fn forward(session: &mut Session, unit: Unit, count: u32) -> String {
+    submit(session, Command::Forward { unit, count })
+}
+
+fn back(session: &mut Session, unit: Unit, count: u32) -> String {
+    submit(session, Command::Back { unit, count })
+}
+
+fn force(session: &mut Session, mode: Mode) -> String {
+    let hold = false;
+    submit(
+        session,
+        Command::Force {
+            slave: 0,
+            mode,
+            hold,
+        },
+    )
+}
+
+fn branch(session: &mut Session, name: &str) -> String {
+    submit(session, Command::Branch(To::Named(name.into())))
+}
+
+fn set(session: &mut Session, path: &str, value: &str) -> String {
+    let (path, value) = (path.into(), value.into());
+    submit(session, Command::Set { path, value })
+}
+
+fn verdicts(session: &Session) -> Vec<Verdict> {
+    session.branches().into_iter().map(|b| b.verdict).collect()
+}
+
+fn names(session: &Session) -> Vec<String> {
+    session.branches().into_iter().map(|b| b.name).collect()
+}
+
+fn states(session: &Session) -> Vec<State> {
+    session
+        .frames()
+        .iter()
+        .map(|frame: &Frame| frame.state.clone())
+        .collect()
+}
+
+#[test]
+fn an_intervention_in_the_past_starts_a_branch_and_the_old_future_stays() {
+    let mut session = session(FLOOR);
+    forward(&mut session, Unit::Increment, 5);
+    let old = states(&session);
+    back(&mut session, Unit::Increment, 2);
+    let fork = session.cursor();
+    let told = force(&mut session, Mode::Fixed);
+    assert!(told.contains("new branch b2: beam.5 fixed"), "{told}");
+    assert_eq!(session.frames().len(), fork + 2);
+    forward(&mut session, Unit::Minor, 3);
+    let new = states(&session);
+    assert_eq!(new[..=fork], old[..=fork]);
+
+    branch(&mut session, "b1");
+    assert_eq!(states(&session), old);
+    assert_eq!(session.cursor(), old.len() - 1);
+    branch(&mut session, "beam.5 f");
+    assert_eq!(states(&session), new);
+    // An increment goes on from the tip of either.
+    forward(&mut session, Unit::Minor, 1);
+    assert_eq!(states(&session)[..new.len()], new);
+}
+
+#[test]
+fn an_intervention_at_the_tip_goes_on_in_the_same_branch() {
+    let mut session = session(OSCILLATES);
+    forward(&mut session, Unit::Run, 1);
+    force(&mut session, Mode::Sliding);
+    forward(&mut session, Unit::Run, 1);
+    assert_eq!(names(&session), ["b1: start"]);
+    assert_eq!(session.strips().last().map(|s| s.kind), Some(Kind::Last));
+}
+
+#[test]
+fn branches_of_branches_keep_their_lines_and_motions_stay_on_the_present_one() {
+    let mut session = session(FLOOR);
+    forward(&mut session, Unit::Increment, 6);
+    let first = states(&session);
+    back(&mut session, Unit::Increment, 2);
+    set(&mut session, "friction.angle", "25");
+    forward(&mut session, Unit::Increment, 4);
+    let second = states(&session);
+    // A branch of the branch, one that leaves it before it began, and one from the start of all.
+    back(&mut session, Unit::Increment, 1);
+    set(&mut session, "friction.angle", "20");
+    forward(&mut session, Unit::Increment, 1);
+    let third = states(&session);
+    back(&mut session, Unit::Increment, 5);
+    set(&mut session, "friction.angle", "10");
+    forward(&mut session, Unit::Increment, 1);
+    let fourth = states(&session);
+    submit(&mut session, Command::Goto { step: 0 });
+    set(&mut session, "history.increment", "0.02");
+    forward(&mut session, Unit::Increment, 1);
+    let fifth = states(&session);
+
+    let parents: Vec<_> = session.branches().iter().map(|b| b.parent).collect();
+    assert_eq!(parents, [None, Some(0), Some(1), Some(0), Some(0)]);
+    assert_eq!(names(&session)[1], "b2: friction.angle 25");
+    let all = [first, second, third, fourth, fifth];
+    for k in [2, 0, 4, 1, 3, 2, 4, 3, 1, 0] {
+        branch(&mut session, &format!("b{}", k + 1));
+        assert_eq!(states(&session), all[k], "b{}", k + 1);
+        let lengths: Vec<usize> = session.branches().iter().map(|b| b.length).collect();
+        assert_eq!(lengths, all.each_ref().map(Vec::len));
+        for (other, line) in all.iter().enumerate() {
+            for (at, state) in line.iter().enumerate() {
+                let (frame, _) = session.tree().point(other, at).expect("a point");
+                assert_eq!(frame.state, *state, "b{} at {at}", other + 1);
+            }
+        }
+        back(&mut session, Unit::Run, 1);
+        forward(&mut session, Unit::Minor, 3);
+        assert_eq!(session.frame().state, all[k][session.cursor()]);
+        submit(
+            &mut session,
+            Command::Goto {
+                step: all[k].len() - 1,
+            },
+        );
+    }
+    submit(&mut session, Command::Branch(To::Previous));
+    assert_eq!(states(&session), all[4]);
+    submit(&mut session, Command::Branch(To::Next));
+    assert_eq!(states(&session), all[0]);
+}
+
+#[test]
+fn branches_are_renamed_and_wrong_names_are_told() {
+    let mut session = session(OSCILLATES);
+    let refused = |session: &mut Session, command| session.submit(command).expect_err("refused");
+    let only = refused(&mut session, Command::Branch(To::Next));
+    assert!(
+        only.contains("an intervention before the tip starts one"),
+        "{only}"
+    );
+    forward(&mut session, Unit::Run, 1);
+    back(&mut session, Unit::Minor, 1);
+    force(&mut session, Mode::Sliding);
+    set(&mut session, "settings.minors", "50");
+    assert_eq!(names(&session)[1], "b2: beam.5 sliding, minors 50");
+    submit(&mut session, Command::Rename("way out".into()));
+    assert_eq!(names(&session), ["b1: start", "b2: way out"]);
+    for (name, told) in [
+        ("", "one line"),
+        ("start", "another branch is called 'start'"),
+        ("b7", "looks like a branch's number"),
+    ] {
+        let said = refused(&mut session, Command::Rename(name.into()));
+        assert!(said.contains(told), "{said}");
+    }
+    let said = refused(&mut session, Command::Branch(To::Named("nowhere".into())));
+    assert!(said.contains("there are b1: start, b2: way out"), "{said}");
+    branch(&mut session, "sta");
+    branch(&mut session, "b2: way out");
+    assert_eq!(session.tree().current(), 1);
+}
+
+#[test]
+fn ends_are_judged_as_cycle_same_cycle_accepted_same_state_and_running() {
+    let mut session = session(OSCILLATES);
+    forward(&mut session, Unit::Run, 1);
+    submit(&mut session, Command::Goto { step: 1 });
+    // Another limit changes nothing: the same cycle.
+    set(&mut session, "settings.minors", "50");
+    forward(&mut session, Unit::Run, 1);
+    assert_eq!(
+        verdicts(&session),
+        [Verdict::Cycle, Verdict::SameCycle { branch: 0 }]
+    );
+    // The way out, twice, from different iterations of the cycle; the second only begun at first.
+    for step in [1, 2] {
+        branch(&mut session, "b1");
+        submit(&mut session, Command::Goto { step: step - 1 });
+        force(&mut session, Mode::Sliding);
+        assert_eq!(verdicts(&session).last(), Some(&Verdict::Running));
+        forward(&mut session, Unit::Run, 1);
+    }
+    assert_eq!(
+        verdicts(&session)[2..],
+        [
+            Verdict::Accepted,
+            Verdict::Same {
+                branch: 2,
+                load: 1.0
+            }
+        ]
+    );
+    // Rougher than before, it ends elsewhere.
+    let step = session.frames().len() / 2;
+    submit(&mut session, Command::Goto { step });
+    set(&mut session, "friction.angle", "25");
+    forward(&mut session, Unit::Run, 1);
+    let rougher = verdicts(&session)[4].clone();
+    assert_eq!(
+        rougher,
+        Verdict::Other {
+            branch: 2,
+            load: 1.0
+        }
+    );
+    let listed = submit(&mut session, Command::Branches);
+    assert!(
+        listed.contains("b2: minors 50 (same cycle as b1: start, 3 minors)"),
+        "{listed}"
+    );
+}
+
+#[test]
+fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() {
+    let mut session = session(FLOOR);
+    forward(&mut session, Unit::Increment, 6);
+    submit(&mut session, Command::Goto { step: 0 });
+    set(&mut session, "history.increment", "0.02");
+    forward(&mut session, Unit::Increment, 2);
+    let found = session.compare(0, 1).expect("two branches");
+    assert_eq!(
+        found.tips.each_ref().map(|side| side.load_factor),
+        [0.06, 0.04]
+    );
+    let common = found.common.as_ref().expect("load 0.04");
+    assert_eq!(common.each_ref().map(|side| side.load_factor), [0.04, 0.04]);
+    assert_eq!(common.each_ref().map(|side| side.cost.increments), [4, 2]);
+    assert_eq!(found.sameness, Some(Sameness::Same));
+    let [a, b] = common;
+    assert!(a.cost.minors > b.cost.minors && a.cost.majors > b.cost.majors);
+    assert!(a.cost.seconds > 0.0 && a.residual < 1e-9);
+    assert_eq!(a.nodes[0].mode, Mode::Sliding);
+    let forces = |side: &stickslip::debug::compare::Side| side.nodes[0].forces.expect("solved");
+    assert!((forces(a)[0] - forces(b)[0]).abs() < 1e-7);
+    assert!(session.compare(0, 7).is_none());
+    let told = submit(&mut session, Command::Compare(None));
+    assert!(told.contains("same state at load 0.04"), "{told}");
+    // Rougher, the same load is another state.
+    submit(&mut session, Command::Goto { step: 0 });
+    set(&mut session, "friction.angle", "5");
+    forward(&mut session, Unit::Increment, 3);
+    assert_eq!(
+        session.compare(0, 2).and_then(|c| c.sameness),
+        Some(Sameness::Different)
+    );
+}
+
+#[test]
+fn the_strip_of_an_iteration_tells_what_its_event_tells() {
+    let mut session = session("02-two-cantilevers-rough");
+    forward(&mut session, Unit::Increment, 3);
+    submit(
+        &mut session,
+        Command::Force {
+            slave: 0,
+            mode: Mode::Fixed,
+            hold: true,
+        },
+    );
+    forward(&mut session, Unit::Increment, 1);
+    let mut solved = 0;
+    for (frame, strip) in session.frames().iter().zip(session.strips()) {
+        assert_eq!(
+            frame.intervention.is_some(),
+            strip.kind == Kind::Intervention
+        );
+        if !strip.kind.is_solved() {
+            continue;
+        }
+        solved += 1;
+        let event = frame.event.as_ref().expect("an event");
+        assert_eq!(strip.position, event.position);
+        for (s, record) in event.nodes.iter().enumerate() {
+            assert_eq!(strip.before(s), record.decision.before);
+            assert_eq!(strip.next(s), frame.state.nodes[s].mode);
+            assert_eq!(strip.margin(s), record.decision.margin() as f32);
+            assert_eq!(
+                strip.is_forced(s),
+                record.forced != stickslip::solve::Forced::No
+            );
+            assert_eq!(
+                strip.element(s).is_some(),
+                frame.state.nodes[s].spot.is_some()
+            );
+        }
+    }
+    assert!(solved > 10);
+}
+
+#[test]
+fn a_session_with_hardly_any_memory_does_the_same() {
+    let scene = || Scene::open(FLOOR, &[]).expect("a built-in scene");
+    let whole_story = |session: &mut Session| {
+        let mut seen = Vec::new();
+        forward(session, Unit::Run, 1);
+        for (unit, count) in [(Unit::Minor, 7), (Unit::Major, 3), (Unit::Increment, 9)] {
+            back(session, unit, count);
+            seen.push((session.cursor(), session.frame().state.clone()));
+        }
+        set(session, "friction.angle", "25");
+        forward(session, Unit::Run, 1);
+        seen.push((session.cursor(), session.frame().state.clone()));
+        // Through an intervention, backward and forward.
+        for _ in 0..40 {
+            back(session, Unit::Minor, 1);
+            seen.push((session.cursor(), session.frame().state.clone()));
+        }
+        submit(session, Command::Goto { step: 3 });
+        branch(session, "b1");
+        submit(session, Command::Goto { step: 30 });
+        forward(session, Unit::Major, 2);
+        seen.push((session.cursor(), session.frame().state.clone()));
+        seen
+    };
+    let mut roomy = Session::new(scene());
+    let mut tight = Session::with_budget(scene(), 20_000);
+    let (a, b) = (whole_story(&mut roomy), whole_story(&mut tight));
+    assert!(roomy.frames().iter().all(Frame::is_whole));
+    let whole = tight
+        .frames()
+        .iter()
+        .filter(|frame| frame.is_whole())
+        .count();
+    assert!(
+        whole < tight.frames().len() / 4,
+        "{whole} of {}",
+        tight.frames().len()
+    );
+    assert_eq!(a, b);
+    // What panes show of the past does not depend on it.
+    assert_eq!(roomy.residual_history(), tight.residual_history());
+    assert_eq!(roomy.curve(0), tight.curve(0));
+    assert_eq!(verdicts(&roomy).len(), 2);
+}
