@@ -120,6 +120,7 @@ mod tests {
             name: "s".into(),
             elements,
             rigid: true,
+            endless: false,
         }
     }
 

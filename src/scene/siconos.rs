@@ -18,9 +18,9 @@
 //! The scene that comes of it has all contacts at gap 0 and free, and takes the unloaded motion q, and so u and r, in one
 //! increment. A trailing rest of the file is not read.
 
-use super::condensed::{Contact, Matrix, Problem};
+use super::condensed::{Contact, Matrix, Problem, at_once};
 use super::limits;
-use super::spec::{Friction, History, InitialState, Mode, Settings};
+use super::spec::{Friction, InitialState, Mode, Settings, Solver};
 
 /// A friction problem in the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -326,11 +326,12 @@ impl Friction2d {
             contacts: self.mu.iter().enumerate().map(contact).collect(),
             matrix: Matrix::Compliance(self.w.clone()),
             free: self.q.clone(),
-            history: History {
-                path: vec![0.0, 1.0],
-                increment: 1.0,
+            history: at_once(),
+            // W is sparse as a rule, and condensing it has nothing to take out.
+            settings: Settings {
+                solver: Solver::Augmented,
+                ..Settings::default()
             },
-            settings: Settings::default(),
         }
     }
 
