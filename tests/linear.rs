@@ -164,7 +164,7 @@ fn contacts_and_a_matrix_are_a_scene_by_themselves() {
     let broken = text.replace("gap: 0.05", "gab: 0.05");
     let error = Scene::from_text("t", &broken, &[]).unwrap_err().to_string();
     assert!(
-        error.starts_with("t:2:") && error.contains("did you mean gap"),
+        error.starts_with("t:2:") && error.contains("did you mean \"gap\""),
         "{error}"
     );
     let lacking = text.replace("[0.2, -0.5, 0.3, 2.0]", "");

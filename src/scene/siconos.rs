@@ -152,9 +152,10 @@ fn blocks(words: &mut Words<'_>, size: usize) -> Result<Vec<Vec<f64>>, Broken> {
         column_of.push(words.count_up_to(across - 1, "a block column")?);
     }
     for row in 0..down {
-        for block in begins[row]..begins[row + 1] {
-            words.exactly(block, "the number of a block")?;
-            for column in range(&column_ends, column_of[block]) {
+        let here = begins[row]..begins[row + 1];
+        for (number, &block_column) in here.clone().zip(&column_of[here]) {
+            words.exactly(number, "the number of a block")?;
+            for column in range(&column_ends, block_column) {
                 for line in range(&row_ends, row) {
                     w[line][column] = words.number("an entry of W")?;
                 }
