@@ -145,6 +145,35 @@ fn a_problem_survives_being_written_as_a_scene_and_read() {
     );
 }
 
+#[test]
+fn contacts_and_a_matrix_are_a_scene_by_themselves() {
+    let text = "// A comment.\nContacts(title: \"t\", contacts: [(id: \"a\", gap: 0.05, friction: (angle: 20.0), \
+                load: (-0.5, 0.3)), (id: \"b\", friction: (angle: 20.0), load: (0.0, -0.1))],\n\
+                matrix: Stiffness([[3.0, 0.4, -1.0, 0.2], [0.4, 2.0, 0.1, -0.5], [-1.0, 0.1, 4.0, 0.3], \
+                [0.2, -0.5, 0.3, 2.0]]), history: (path: [0.0, 1.0], increment: 0.25))";
+    let same = problem(
+        vec![
+            contact("a", 0.05, [-0.5, 0.3]),
+            contact("b", 0.0, [0.0, -0.1]),
+        ],
+        Matrix::Stiffness(rows(0.0)),
+        vec![],
+    );
+    let read = Scene::from_text("t", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(read.spec, same.spec());
+    let broken = text.replace("gap: 0.05", "gab: 0.05");
+    let error = Scene::from_text("t", &broken, &[]).unwrap_err().to_string();
+    assert!(
+        error.starts_with("t:2:") && error.contains("did you mean \"gap\""),
+        "{error}"
+    );
+    let lacking = text.replace("[0.2, -0.5, 0.3, 2.0]", "");
+    let error = Scene::from_text("t", &lacking, &[])
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("4 degrees of freedom"), "{error}");
+}
+
 fn single(k: f64) -> Matrix {
     Matrix::Stiffness(vec![vec![k, 0.0], vec![0.0, k]])
 }
@@ -331,7 +360,12 @@ fn each_fault_has_one_message_with_its_place() {
             5,
             "name at least one bar",
         ),
-        ("per_element: 2", "per_element: 3", 7, "can be endless"),
+        (
+            "Line(id: \"f\", from: (1.0, 0.0), to: (-1.0, 0.0), elements: 1, per_element: 2)",
+            "Through(id: \"f\", points: [(1.0, 0.0), (0.0, 0.1), (-1.0, 0.0)], per_element: 2)",
+            7,
+            "only a straight surface can be endless",
+        ),
         ("f_n: 0.0", "f_n: inf", 8, "must be a finite number"),
         (
             "surfaces: [(id: \"f\", along: \"f\"",

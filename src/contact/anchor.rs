@@ -119,8 +119,8 @@ mod tests {
         Surface {
             name: "s".into(),
             elements,
-            endless: false,
             rigid: true,
+            endless: false,
         }
     }
 

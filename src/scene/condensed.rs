@@ -8,16 +8,20 @@
 //! K (u − free λ) = load λ + f        or        u = free λ + W (load λ + f),        gap = gap_0 + u_n
 //! ```
 //!
-//! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless
+//! A RON file that begins with `Contacts(` is one, with the fields of [`Problem`]. [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless
 //! floor y = 0, where u_n = u_y and u_t = −u_x.
 
 use super::spec::{
     BodySpec, Friction, History, InitialState, LoadSpec, Mode, Nodes, Settings, SlaveSpec, Spec,
     SurfaceSpec,
 };
+use serde::{Deserialize, Serialize};
+
+/// What a file with an interface problem begins with.
+pub const HEAD: &str = "Contacts";
 
 /// How what carries the contacts answers; row by row.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Matrix {
     /// K, force by length.
     Stiffness(Vec<Vec<f64>>),
@@ -26,30 +30,53 @@ pub enum Matrix {
 }
 
 /// One contact.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Contact {
     /// What its node is called.
     pub id: String,
-    /// Distance to the master, undeformed; negative is penetration.
+    /// Distance to the master, undeformed; negative is penetration. Default: 0.
+    #[serde(default)]
     pub gap: f64,
+    /// Default: smooth.
+    #[serde(default)]
     pub friction: Friction,
-    /// Load on the node along n and t, at load factor 1.
+    /// Load on the node along n and t, at load factor 1. Default: none.
+    #[serde(default)]
     pub load: [f64; 2],
+    /// Default: free.
+    #[serde(default)]
     pub start: Mode,
+    /// Default: nothing.
+    #[serde(default)]
     pub state: InitialState,
 }
 
 /// An interface problem.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Contacts", deny_unknown_fields)]
 pub struct Problem {
     pub title: String,
+    #[serde(default)]
     pub about: String,
     pub contacts: Vec<Contact>,
     pub matrix: Matrix,
-    /// Displacement under no force, at load factor 1: two components a contact, or none at all.
+    /// Displacement under no force, at load factor 1: two components a contact, or none at all. Default: none.
+    #[serde(default)]
     pub free: Vec<f64>,
+    /// Default: one increment from 0 to 1.
+    #[serde(default = "at_once")]
     pub history: History,
+    #[serde(default)]
     pub settings: Settings,
+}
+
+/// One increment from 0 to 1.
+pub(crate) fn at_once() -> History {
+    History {
+        path: vec![0.0, 1.0],
+        increment: 1.0,
+    }
 }
 
 impl Problem {

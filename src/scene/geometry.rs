@@ -179,6 +179,29 @@ pub(crate) fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
     corners.map_or(0.0, |(low, high)| distance(low, high))
 }
 
+/// Whether all nodes of a chain's elements lie on the line from the first to the last, one behind the other; `length` is
+/// the scene's.
+pub(crate) fn straight(nodes: &[Node], elements: &[Vec<usize>], length: f64) -> bool {
+    const OFF: f64 = 1e-9;
+    let all: Vec<[f64; 2]> = elements.iter().flatten().map(|&n| nodes[n].at).collect();
+    let (Some(&start), Some(&end)) = (all.first(), all.last()) else {
+        return false;
+    };
+    let whole = distance(start, end);
+    let along = [(end[0] - start[0]) / whole, (end[1] - start[1]) / whole];
+    let off = |at: &[f64; 2]| {
+        let to = [at[0] - start[0], at[1] - start[1]];
+        (to[0] * along[1] - to[1] * along[0]).abs()
+    };
+    let place = |at: &[f64; 2]| (at[0] - start[0]) * along[0] + (at[1] - start[1]) * along[1];
+    let tiny = OFF * length.max(whole);
+    whole > 0.0
+        && all.iter().all(|at| off(at) <= tiny)
+        && all
+            .windows(2)
+            .all(|pair| place(&pair[1]) - place(&pair[0]) >= -tiny)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

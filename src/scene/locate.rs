@@ -24,6 +24,13 @@ pub fn locate(text: &str, path: &Path) -> Range<usize> {
     here..scan.end_of_value.max(here)
 }
 
+/// The name before the first bracket, if the text has one there.
+pub fn head(text: &str) -> Option<&str> {
+    let mut scan = Scan::new(text);
+    scan.skip_attributes();
+    scan.word()
+}
+
 /// Line and column of a byte, both from 1; columns count characters.
 pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let mut byte = byte.min(text.len());

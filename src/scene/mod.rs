@@ -72,7 +72,7 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// Reads a scene from a text, or a friction problem of [`siconos`]; `name` is what messages call it.
+    /// Reads a scene from a text, or what [`condensed`] and [`siconos`] make one of; `name` is what messages call it.
     ///
     /// # Errors
     /// If the scene is unsound.
@@ -83,6 +83,11 @@ impl Scene {
     ) -> Result<Scene, SceneError> {
         if siconos::is_one(text) {
             return Scene::from_siconos(name, text, overrides);
+        }
+        if locate::head(text) == Some(condensed::HEAD) {
+            // Its text is no scene's: no value of it could be found there.
+            let spec = read::problem(name, text)?.spec();
+            return Scene::assemble(name, "", spec, overrides, Vec::new());
         }
         let spec = read::spec(name, text)?;
         Scene::assemble(name, text, spec, overrides, Vec::new())
@@ -100,7 +105,6 @@ impl Scene {
         let file = std::path::Path::new(name).file_name();
         let title = file.map_or_else(|| name.into(), |file| file.to_string_lossy());
         let spec = problem.problem(&error::shortened(&title)).spec();
-        // Its text is no scene's: no value of it could be found there.
         Scene::assemble(name, "", spec, overrides, Vec::new())
     }
 

@@ -1,11 +1,13 @@
 //! From the text of a file to a [`Spec`]: syntax and types, with the place of what is wrong.
 
+use super::condensed::Problem;
 use super::error::{Path, SceneError, Step, did_you_mean, shortened};
 use super::limits;
 use super::locate::{line_and_column, locate};
 use super::spec::Spec;
 use ron::error::SpannedError;
 use ron::extensions::Extensions;
+use serde::de::DeserializeOwned;
 use serde_path_to_error::Segment;
 use std::io::Read;
 
@@ -19,18 +21,27 @@ pub fn options() -> ron::Options {
 
 /// Reads a scene's text.
 pub(crate) fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
+    value(file, text)
+}
+
+/// Reads an interface problem's text.
+pub(crate) fn problem(file: &str, text: &str) -> Result<Problem, SceneError> {
+    value(file, text)
+}
+
+fn value<T: DeserializeOwned>(file: &str, text: &str) -> Result<T, SceneError> {
     let options = options();
     let unread = |error: SpannedError, path: &Path| unreadable(file, text, &error, path);
     let mut reader = ron::Deserializer::from_str_with_options(text, &options)
         .map_err(|e| unread(e, &Path::default()))?;
-    let spec = serde_path_to_error::deserialize::<_, Spec>(&mut reader).map_err(|e| {
+    let value = serde_path_to_error::deserialize::<_, T>(&mut reader).map_err(|e| {
         let path = plain(e.path());
         unread(reader.span_error(e.into_inner()), &path)
     })?;
     reader
         .end()
         .map_err(|e| unread(reader.span_error(e), &Path::default()))?;
-    Ok(spec)
+    Ok(value)
 }
 
 /// ron's error in our form.

@@ -18,9 +18,9 @@
 //! The scene that comes of it has all contacts at gap 0 and free, and takes the unloaded motion q, and so u and r, in one
 //! increment. A trailing rest of the file is not read.
 
-use super::condensed::{Contact, Matrix, Problem};
+use super::condensed::{Contact, Matrix, Problem, at_once};
 use super::limits;
-use super::spec::{Friction, History, InitialState, Mode, Settings};
+use super::spec::{Friction, InitialState, Mode, Settings, Solver};
 
 /// A friction problem in the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,9 +152,10 @@ fn blocks(words: &mut Words<'_>, size: usize) -> Result<Vec<Vec<f64>>, Broken> {
         column_of.push(words.count_up_to(across - 1, "a block column")?);
     }
     for row in 0..down {
-        for block in begins[row]..begins[row + 1] {
-            words.exactly(block, "the number of a block")?;
-            for column in range(&column_ends, column_of[block]) {
+        let here = begins[row]..begins[row + 1];
+        for (number, &block_column) in here.clone().zip(&column_of[here]) {
+            words.exactly(number, "the number of a block")?;
+            for column in range(&column_ends, block_column) {
                 for line in range(&row_ends, row) {
                     w[line][column] = words.number("an entry of W")?;
                 }
@@ -326,11 +327,12 @@ impl Friction2d {
             contacts: self.mu.iter().enumerate().map(contact).collect(),
             matrix: Matrix::Compliance(self.w.clone()),
             free: self.q.clone(),
-            history: History {
-                path: vec![0.0, 1.0],
-                increment: 1.0,
+            history: at_once(),
+            // W is sparse as a rule, and condensing it has nothing to take out.
+            settings: Settings {
+                solver: Solver::Augmented,
+                ..Settings::default()
             },
-            settings: Settings::default(),
         }
     }
 

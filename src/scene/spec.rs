@@ -382,7 +382,7 @@ pub struct SurfaceSpec {
     /// Walk the chain the other way, so that the outward side changes. Default: false.
     #[serde(default)]
     pub reverse: bool,
-    /// Goes on straight past both ends, for ever. For a rigid surface of one element of two nodes. Default: false.
+    /// Goes on straight past both ends, for ever. For a straight, rigid surface. Default: false.
     #[serde(default)]
     pub endless: bool,
 }

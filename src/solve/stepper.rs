@@ -10,7 +10,7 @@
 
 use crate::contact::anchor::{distance, pierced};
 use crate::contact::decision::Ties;
-use crate::contact::projection::{hold, project};
+use crate::contact::projection::{footing, hold, project, tangent};
 use crate::scene::model::{Surface, Watched};
 use crate::scene::spec::{AtCycle, AtLimit, Axis, ResidualMethod, SlipCount, Sticking};
 use crate::scene::{Mode, Model, spec};
@@ -65,6 +65,7 @@ impl Stepper {
             model,
         };
         stepper.find_spots();
+        stepper.place_anchors();
         let start = IncrementStart {
             nodes: stepper.state.nodes.clone(),
             ..(*stepper.state.start).clone()
@@ -421,13 +422,7 @@ impl Stepper {
                 held.or_else(|| project(at, surfaces, &slave.surfaces, positions, node.spot));
             match node.spot {
                 Some(spot) => {
-                    node.normal = crate::contact::projection::footing(
-                        &self.model.surfaces,
-                        spot,
-                        positions,
-                        at,
-                    )
-                    .normal;
+                    node.normal = footing(&self.model.surfaces, spot, positions, at).normal;
                 }
                 None => {
                     node.mode = Mode::Free;
@@ -443,6 +438,24 @@ impl Stepper {
             find_anchor(node, &self.model.surfaces, positions);
         }
         self.linearised = false;
+    }
+
+    /// Anchors the nodes that bring slip into the scene as far back as they have slipped.
+    fn place_anchors(&mut self) {
+        let (surfaces, positions) = (&self.model.surfaces, &self.system.positions);
+        for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
+            let Some(spot) = node
+                .spot
+                .filter(|_| node.mode != Mode::Free && node.slip != 0.0)
+            else {
+                continue;
+            };
+            let footing = footing(surfaces, spot, positions, positions[slave.node]);
+            let t = tangent(footing.normal);
+            let point = [0, 1].map(|k| footing.foot[k] + node.slip * t[k]);
+            node.anchor = project(point, surfaces, &[spot.surface], positions, Some(spot));
+            find_anchor(node, surfaces, positions);
+        }
     }
 
     /// Residual method 2: the total interaction force at a slave node is the nodal force of the current stresses

@@ -18,10 +18,8 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Su
         let here = at!["surfaces", k, "along"];
         let mut elements = elements(&here, names, &surface.along, &mut total)?;
         check_chain(names, &surface.along, &elements, length)?;
-        let straight = elements.len() == 1 && elements[0].len() == 2;
-        if surface.endless && !straight {
-            let message =
-                "only a surface of a single element of two nodes can be endless: a straight one";
+        if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
+            let message = "only a straight surface can be endless";
             return Err(Fault::new(at!["surfaces", k, "endless"], message));
         }
         if surface.reverse {
@@ -262,7 +260,7 @@ fn is_side(spec: &Spec, id: &str) -> bool {
     })
 }
 
-/// Marks the surfaces that no unknown can move.
+/// Marks the surfaces that no unknown can move, and makes each endless one a single element.
 ///
 /// # Errors
 /// If an endless one is not among them.
@@ -276,6 +274,12 @@ pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut [Surface]) -> Result<(), Fa
         if surface.endless && !surface.rigid {
             let message = "a surface that a body can move has ends; endless is for rigid ones";
             return Err(Fault::new(at!["surfaces", k, "endless"], message));
+        }
+        let mut nodes = surface.elements.iter().flatten();
+        if surface.endless
+            && let (Some(&first), Some(&last)) = (nodes.next(), nodes.next_back())
+        {
+            surface.elements = vec![vec![first, last]];
         }
     }
     Ok(())

@@ -107,7 +107,7 @@ fn sized(here: &Path, row: &[f64], size: usize) -> Result<(), Fault> {
         return Err(Fault::new(here.clone(), message));
     }
     for (k, value) in row.iter().enumerate() {
-        if !(value.abs() <= limits::STIFFNESS.1) {
+        if !value.is_finite() || value.abs() > limits::STIFFNESS.1 {
             let message = format!("the entry is {value:?}; it must be a finite number below 1e30");
             return Err(Fault::new(here.then(k), message));
         }

@@ -38,11 +38,11 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         // Bodies that are given by matrices may have a single node, or all of them in one place.
         length = geometry::diagonal(names.nodes.iter());
     }
+    bodies::check_bodies(spec, &names, &bodies, length)?;
     if length == 0.0 {
         let message = "all nodes are in one place; the scene has no size to compare lengths with";
         return Err(Fault::new(at!["nodes"], message));
     }
-    bodies::check_bodies(spec, &names, &bodies, length)?;
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
     interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
