@@ -96,7 +96,10 @@ pub enum JournalError {
     #[error("{file}: the journal has format {found}, and this program knows only format {FORMAT}")]
     Format { file: String, found: u32 },
     #[error("{file}:1: the journal's scene is unsound: {source}")]
-    Scene { file: String, source: SceneError },
+    Scene {
+        file: String,
+        source: Box<SceneError>,
+    },
     #[error("{file}:{line}: replayed, it is not what it was: {message}")]
     Differs {
         file: String,
@@ -346,7 +349,7 @@ impl Record {
         let header = &self.header;
         Scene::from_spec(&header.name, header.scene.clone()).map_err(|source| JournalError::Scene {
             file: self.file.clone(),
-            source,
+            source: Box::new(source),
         })
     }
 
