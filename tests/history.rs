@@ -41,6 +41,7 @@ const SCENE: &str = r#"(title: "t", nodes: [
     friction: (angle: 10.0),
     supports: [(node: "strip.start", fix: [x, y, rotation]), (node: "row.all", fix: [y, rotation]), (node: "row.start", fix: [x])],
     loads: [Force(node: "strip.end", y: -0.5)],
+    settings: (solver: augmented),
     history: (path: [0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0], increment: 0.001))"#;
 const ITERATIONS: usize = 5_000;
 const NODES: usize = 200;
