@@ -1411,7 +1411,8 @@ fn a_placed_block_is_turned_and_shifted_whole() {
 
 #[test]
 fn each_fault_of_a_mesh_has_one_message_with_its_place() {
-    let cases: &[(&[(&str, &str)], &str, &str)] = &[
+    type Case<'a> = (&'a [(&'a str, &'a str)], &'a str, &'a str);
+    let cases: &[Case] = &[
         (
             &[("elements: (4, 2)", "elements: (5, 2)")],
             "nodes[3].joints[0]",
