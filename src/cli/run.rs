@@ -260,6 +260,14 @@ impl<'a> Run<'a> {
 
     /// Tells why the minor iterations cycle, and what gets out.
     fn diagnose(&mut self) {
+        let count = self.scene.model.slaves.len();
+        if count > diagnosis::MOST_NODES {
+            let most = diagnosis::MOST_NODES;
+            tell(&format!(
+                "  not diagnosed: {count} slave nodes, and at most {most} are looked at"
+            ));
+            return;
+        }
         let Some(problem) = self.stepper.frozen() else {
             return;
         };

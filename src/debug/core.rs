@@ -7,8 +7,10 @@ use crate::solve::event::Cycle;
 use crate::solve::frozen::{Frozen, Trials};
 use crate::solve::state::Trail;
 
-/// Most members over which all sets are tried, smallest first; among more, members are dropped one at a time.
+/// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
 const EXHAUSTIVE: usize = 10;
+/// Most members of which a core is looked for.
+const MOST: usize = 40;
 /// Numbers of two iterations that differ by less than this, relatively, are the same.
 const SAME: f64 = 1e-12;
 
@@ -23,39 +25,39 @@ pub struct Core {
     pub cycle: Cycle,
 }
 
-/// Shrinks a problem that cycles from what its nodes bring; none where it does not.
+/// Shrinks a problem that cycles from what its nodes bring; none where it does not, or where too many nodes take part.
 pub fn core(whole: &Frozen) -> Option<Core> {
     let start = cycle(whole)?;
     let members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
-    let of = |places: &[usize]| {
-        let problem = whole.reduced(places)?;
+    if members.len() > MOST {
+        return None;
+    }
+    let problem = whole.reduced(&members)?;
+    let of = |chosen: &[usize]| {
+        let problem = problem.reduced(chosen)?;
         let cycle = cycle(&problem)?;
         Some(Core {
-            places: places.to_vec(),
+            places: chosen.iter().map(|&member| members[member]).collect(),
             problem,
             cycle,
         })
     };
     if members.len() <= EXHAUSTIVE {
-        let sets = 1..1_u32 << members.len();
-        let mut sets: Vec<u32> = sets.collect();
+        let mut sets: Vec<u32> = (1..1_u32 << members.len()).collect();
         sets.sort_by_key(|set| set.count_ones());
         let chosen = |set: u32| -> Vec<usize> {
-            let bits = members.iter().enumerate();
-            bits.filter(|(bit, _)| set >> bit & 1 == 1)
-                .map(|(_, &m)| m)
+            (0..members.len())
+                .filter(|bit| set >> bit & 1 == 1)
                 .collect()
         };
         return sets.into_iter().find_map(|set| of(&chosen(set)));
     }
-    let mut best = of(&members)?;
-    let mut next = 0;
-    while next < best.places.len() {
-        let mut fewer = best.places.clone();
-        fewer.remove(next);
-        match of(&fewer) {
-            Some(smaller) => (best, next) = (smaller, 0),
-            None => next += 1,
+    let mut chosen: Vec<usize> = (0..members.len()).collect();
+    let mut best = of(&chosen)?;
+    for member in 0..members.len() {
+        let fewer: Vec<usize> = chosen.iter().copied().filter(|&m| m != member).collect();
+        if let Some(smaller) = of(&fewer) {
+            (best, chosen) = (smaller, fewer);
         }
     }
     Some(best)

@@ -12,6 +12,8 @@ use crate::solve::event::{Cycle, NodeRecord};
 use crate::solve::frozen::{Assumed, Condition, Frozen, Trials};
 use crate::solve::state::NodeState;
 
+/// Most slave nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size.
+pub const MOST_NODES: usize = 200;
 /// Most iterations of a period that are told one by one.
 const MOST_PHASES: usize = 12;
 
@@ -85,8 +87,12 @@ pub enum Way {
 }
 
 impl Diagnosis {
-    /// Diagnoses a problem whose nodes' states start a cycle; none where they do not.
+    /// Diagnoses a problem whose nodes' states start a cycle; none where they do not, or where it has more than
+    /// [`MOST_NODES`] nodes.
     pub fn of(problem: &Frozen) -> Option<Diagnosis> {
+        if problem.nodes.len() > MOST_NODES {
+            return None;
+        }
         let cycle = cycle(problem)?;
         let phases = phases(problem, cycle.period)?;
         let core = core(problem);

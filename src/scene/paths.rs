@@ -274,7 +274,7 @@ choices! {
     Component { "x" => Component::X, "y" => Component::Y, "rotation" => Component::Rotation }
     Axis { "x" => Axis::X, "y" => Axis::Y }
     ResidualMethod { "accumulate" => ResidualMethod::Accumulate, "stress" => ResidualMethod::Stress }
-    Solver { "augmented" => Solver::Augmented, "condensed" => Solver::Condensed }
+    Solver { "auto" => Solver::Auto, "augmented" => Solver::Augmented, "condensed" => Solver::Condensed }
     Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
     FrictionLimit { "lagged" => FrictionLimit::Lagged, "consistent" => FrictionLimit::Consistent }
     SlipCount { "increment" => SlipCount::Increment, "major" => SlipCount::Major }

@@ -552,7 +552,7 @@ pub struct History {
 pub struct Settings {
     /// How the total force of a slave node is found after a major iteration. Default: stress.
     pub residual: ResidualMethod,
-    /// What the minor iterations solve. Default: condensed.
+    /// What the minor iterations solve. Default: auto.
     pub solver: Solver,
     /// Whether the tangent knows that the contact geometry changes. Default: consistent.
     pub geometry: Geometry,
@@ -609,15 +609,17 @@ pub enum ResidualMethod {
     Stress,
 }
 
-/// What the minor iterations solve; both give the same to round-off.
+/// What the minor iterations solve; all give the same to round-off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Solver {
+    /// Condensed where the bodies have many times more unknowns than the interface, else augmented.
+    #[default]
+    Auto,
     /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
     Augmented,
     /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
     /// costs a dense solve of the size of the interface.
-    #[default]
     Condensed,
 }
 

@@ -27,6 +27,8 @@ const SUSPICIOUS_WHOLE: f64 = 1e12;
 const SUSPICIOUS_INTERFACE: f64 = 1e9;
 /// Round-off of an internal force, in units of the machine precision times |K| |u|.
 const ROUND_OFF: f64 = 8.0;
+/// How many times more unknowns than the interface the bodies must have for condensing to pay (measured: README).
+const MANY_TIMES: usize = 8;
 /// An equation whose coefficients are all smaller than this (the largest is one) is empty.
 const EMPTY: f64 = 1e-12;
 
@@ -155,8 +157,7 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
-        let condensed = state.controls.settings.solver == Solver::Condensed;
-        if condensed && self.condensable {
+        if self.condenses(model, state) && self.condensable {
             self.linearise_in(Layout::Bodies, model, state)
         } else {
             self.linearise_in(Layout::Whole, model, state)
@@ -503,9 +504,18 @@ impl System {
     /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
     /// bodies after [`System::recover`].
     pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
+        if self.condenses(model, state) {
+            self.solve_condensed(model, state)
+        } else {
+            self.solve_augmented(model, state)
+        }
+    }
+
+    fn condenses(&self, model: &Model, state: &State) -> bool {
         match state.controls.settings.solver {
-            Solver::Augmented => self.solve_augmented(model, state),
-            Solver::Condensed => self.solve_condensed(model, state),
+            Solver::Augmented => false,
+            Solver::Condensed => true,
+            Solver::Auto => 2 * model.slaves.len() * MANY_TIMES <= model.dofs.equations,
         }
     }
 
