@@ -62,6 +62,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let crowded = (inner.width as usize) < LABEL + 6 + 3 * CELL || inner.height < 9;
     let mut all = match decision {
         Some(decision) if crowded && !hidden => vec![fired(&decision, theme)],
+        Some(decision) if (inner.height as usize) < GRID => choices(decision.before, theme),
         _ => grid(
             decision.as_ref(),
             hidden,
@@ -236,6 +237,21 @@ fn grid(
         }
     }
     lines
+}
+
+/// The cells that can fire, one a line, where there is no room for the table and the one that did is hidden.
+fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
+    let row = MODES.iter().position(|mode| *mode == before).unwrap_or(0);
+    let cell = |(column, next): (usize, &Mode)| {
+        let [first, second] = TABLE_2[row][column];
+        let comma = if second.is_empty() { "" } else { ", " };
+        let (before, next) = (report::mode(before), report::mode(*next));
+        Line::styled(
+            format!(" {before} → {next}:  {first}{comma}{second}"),
+            theme.text,
+        )
+    };
+    MODES.iter().enumerate().map(cell).collect()
 }
 
 /// The cell that fired, alone, where there is no room for the table.
