@@ -6,8 +6,8 @@
 //! `"Ctrl-c"`); no terminal library is known to this file.
 
 use crate::debug::breakpoints::Condition;
-use crate::debug::watches::{Quantity, Watch};
 use crate::debug::lesson;
+use crate::debug::watches::{Quantity, Watch};
 use crate::scene::{Mode, Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
