@@ -63,7 +63,10 @@ impl Guess {
                 Err("predict first: a, then f free, s sliding, x fixed (p ends predicting)".into())
             }
             Action::Session(Command::Forward { .. } | Command::Back { .. }) => Ok(()),
-            Action::Session(_) => Ok(self.forget_after(cursor)),
+            Action::Session(_) => {
+                self.forget_after(cursor);
+                Ok(())
+            }
             Action::Ui(_) => Ok(()),
         }
     }
