@@ -853,3 +853,21 @@ fn without_a_terminal_it_names_run_and_ends_with_2() {
         assert!(!raw.contains(&b'\x1b'), "the terminal was touched");
     }
 }
+
+#[test]
+fn a_lesson_is_taken_in_the_terminal() {
+    let mut session = Start::debugger(&["lesson", "4"])
+        .size(80, 24)
+        .variable("NO_COLOR", "1")
+        .go();
+    session.see("Lesson  Why free and fixed oscillate  1/12");
+    session.type_and_see(" ", "▶ press s (step)");
+    session.type_and_see("s", "f→?");
+    session.type_and_see("as", "✗ No. Look at the row free");
+    session.type_and_see("ax", "✓ Right: fixed.");
+    session.type_and_see(" ", "4/12  score 0/1");
+    session.type_and_see("q", "");
+    let status = session.end();
+    assert!(status.success(), "{status}");
+    session.see_restored();
+}

@@ -7,6 +7,7 @@ mod check;
 mod debugger;
 mod diff;
 mod interrupt;
+mod lesson;
 mod list;
 mod record;
 mod replay;
@@ -106,6 +107,8 @@ enum Command {
     Story(story::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
+    /// Guided lessons: lists them, begins one, checks one
+    Lesson(lesson::Args),
 }
 
 /// A scene, and what is changed in it.
@@ -150,7 +153,13 @@ pub fn main() -> ExitCode {
     };
     if !matches!(
         cli.command,
-        None | Some(Command::Run(_) | Command::Record(_) | Command::Study(_) | Command::Resume(_))
+        None | Some(
+            Command::Run(_)
+                | Command::Record(_)
+                | Command::Study(_)
+                | Command::Resume(_)
+                | Command::Lesson(_)
+        )
     ) {
         // These have nothing to put away.
         interrupt::end_at_once();
@@ -166,6 +175,7 @@ pub fn main() -> ExitCode {
         Some(Command::Resume(args)) => resume::main(args),
         Some(Command::Story(args)) => story::main(args),
         Some(Command::Study(args)) => study::main(args),
+        Some(Command::Lesson(args)) => lesson::main(args),
     };
     ended
         .unwrap_or_else(|error| {

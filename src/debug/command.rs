@@ -6,6 +6,7 @@
 //! `"Ctrl-c"`); no terminal library is known to this file.
 
 use crate::debug::breakpoints::Condition;
+use crate::debug::lesson;
 use crate::debug::watches::{Quantity, Watch};
 use crate::scene::{Mode, Model, Scene};
 use serde::{Deserialize, Serialize};
@@ -115,6 +116,14 @@ pub enum Ui {
     Filter(Option<Filter>),
     /// Which monitor the curve shows: this one, or the next.
     Monitor(Option<usize>),
+    /// Begin a lesson, by file or built-in name.
+    Lesson(String),
+    /// On with the lesson.
+    On,
+    /// An answer to the lesson's question, or a prediction.
+    Answer(String),
+    /// Free mode: whose decisions hide until predicted; none switches it on or off.
+    Predict(Option<Whose>),
     /// Ask for what an action still needs.
     Ask(Question),
     CommandLine,
@@ -188,6 +197,30 @@ impl Filter {
     }
 }
 
+/// Whose decisions hide, in free mode, until they are predicted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whose {
+    /// Any one node's, the selected one's say, for all.
+    Selected,
+    /// Those of every node whose mode changes.
+    Changed,
+    /// Nobody's.
+    Off,
+}
+
+impl Whose {
+    pub const ALL: [Whose; 3] = [Whose::Selected, Whose::Changed, Whose::Off];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Whose::Selected => "selected",
+            Whose::Changed => "changed",
+            Whose::Off => "off",
+        }
+    }
+}
+
 /// What an action can ask for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Question {
@@ -201,6 +234,10 @@ pub enum Question {
     Scene,
     /// Where to break.
     Break,
+    /// Which lesson to begin.
+    Lesson,
+    /// The answer to the lesson's question, or the next mode of the selected node.
+    Answer,
 }
 
 /// What an action needs to know to understand its arguments.
@@ -224,17 +261,19 @@ pub enum Group {
     Branches,
     Breakpoints,
     Look,
+    Learn,
     Program,
 }
 
 impl Group {
     /// All, in the order of the help page.
-    pub const ALL: [Group; 6] = [
+    pub const ALL: [Group; 7] = [
         Group::Go,
         Group::Change,
         Group::Branches,
         Group::Breakpoints,
         Group::Look,
+        Group::Learn,
         Group::Program,
     ];
 
@@ -246,6 +285,7 @@ impl Group {
             Group::Branches => "Branches: what if",
             Group::Breakpoints => "Breakpoints and watches",
             Group::Look => "Look around",
+            Group::Learn => "Learn",
             Group::Program => "The program",
         }
     }
@@ -300,6 +340,9 @@ enum Verb {
     Sort,
     Filter,
     Monitor,
+    Lesson,
+    Answer,
+    Predict,
     Do(Ui),
 }
 
@@ -384,6 +427,11 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "enlarge", "", &["+", "="], "", "The shape larger", Verb::Do(Ui::Enlarge)),
     entry(Group::Look, "shrink", "", &["-"], "", "The shape smaller", Verb::Do(Ui::Shrink)),
     entry(Group::Look, "fit", "", &["0"], "", "The whole shape", Verb::Do(Ui::Fit)),
+
+    entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "A guided lesson: a file, or a built-in one", Verb::Lesson),
+    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson", Verb::Do(Ui::On)),
+    entry(Group::Learn, "answer", "[WORD]", &["a"], "answer", "Answer the lesson's question, or predict the selected node's next mode", Verb::Answer),
+    entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Decisions hide until predicted: any one (selected), every changed one, or off", Verb::Predict),
 
     entry(Group::Program, "command", "", &[":"], "command", "Any action by its name; Tab completes, Up and Down recall", Verb::Do(Ui::CommandLine)),
     entry(Group::Program, "snapshot", "[FILE]", &["w"], "", "Write a snapshot of the shown state", Verb::Snapshot { overwrite: false }),
@@ -539,6 +587,14 @@ impl Entry {
                 let filter = one_of(&words, Filter::ALL, Filter::word)?;
                 return Ok(Action::Ui(Ui::Filter(filter)));
             }
+            Verb::Lesson if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Lesson))),
+            Verb::Lesson => return Ok(Action::Ui(Ui::Lesson(rest.into()))),
+            Verb::Answer if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Answer))),
+            Verb::Answer => return Ok(Action::Ui(Ui::Answer(rest.into()))),
+            Verb::Predict => {
+                let whose = one_of(&words, Whose::ALL, Whose::word)?;
+                return Ok(Action::Ui(Ui::Predict(whose)));
+            }
             Verb::Monitor if rest.is_empty() => return Ok(Action::Ui(Ui::Monitor(None))),
             Verb::Monitor => return Ok(Action::Ui(Ui::Monitor(Some(monitor(rest, context)?)))),
             Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),
@@ -561,7 +617,7 @@ impl Entry {
     /// File and scene names may hold blanks; elsewhere a word too many is a mistake.
     fn most_words(&self) -> usize {
         match self.verb {
-            Verb::Snapshot { .. } | Verb::Open | Verb::Monitor => usize::MAX,
+            Verb::Snapshot { .. } | Verb::Open | Verb::Monitor | Verb::Lesson => usize::MAX,
             Verb::Branch(None) | Verb::Rename | Verb::Compare => usize::MAX,
             Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,
             _ => self.arguments.split_whitespace().count(),
@@ -793,7 +849,7 @@ fn slaves<'a>(context: &Context<'a>) -> Result<&'a Model, String> {
 }
 
 /// The slave node of exactly this name. No guesses here: what follows changes the solve.
-fn exact(word: &str, context: &Context) -> Result<usize, String> {
+pub fn exact(word: &str, context: &Context) -> Result<usize, String> {
     let model = slaves(context)?;
     let alias = context.scene.and_then(|scene| scene.node(word).ok());
     let node = model
@@ -898,6 +954,11 @@ impl Entry {
                 .map(|value| value.to_string())
                 .collect(),
             (Verb::Open, 0) => context.scenes.to_vec(),
+            (Verb::Lesson, 0) => {
+                let names = lesson::list().iter().map(|lesson| lesson.name.into());
+                names.collect()
+            }
+            (Verb::Predict, 0) => Whose::ALL.map(|whose| whose.word().into()).into(),
             (Verb::Sort, 0) => Sort::ALL.map(|sort| sort.word().into()).into(),
             (Verb::Filter, 0) => Filter::ALL.map(|filter| filter.word().into()).into(),
             (Verb::Monitor, 0) => {

@@ -6,6 +6,7 @@
 //! - [`journal`]: the record of a session, written as it happens, and replayed; [`story`]: it as text to read.
 //! - [`breakpoints`], [`watches`]: where a run stops, and what is looked at.
 //! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
+//! - [`lesson`]: guided lessons, and free mode.
 //! - [`report`]: what happened, in words.
 
 pub mod branches;
@@ -19,6 +20,7 @@ pub mod differences;
 pub mod files;
 pub mod influence;
 pub mod journal;
+pub mod lesson;
 pub mod report;
 pub mod session;
 pub mod snapshot;

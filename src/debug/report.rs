@@ -1,6 +1,6 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
-use crate::contact::decision::Rule;
+use crate::contact::decision::{Decision, Rule};
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
 use crate::solve::rounds::{Round, Stop};
@@ -23,6 +23,24 @@ pub fn mode(mode: Mode) -> &'static str {
     }
 }
 
+/// Modes in the order of Table 2's rows and columns.
+pub const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
+
+/// Table 2: what sends a node from the mode of the row to that of the column, in two lines.
+pub const TABLE_2: [[[&str; 2]; 3]; 3] = [
+    [
+        ["F_n > 0", "|F_t| < |T_max|"],
+        ["F_n > 0", "|F_t| > |T_max|"],
+        ["F_n ≤ 0", ""],
+    ],
+    [
+        ["F_n > 0", "T_max·slip < 0"],
+        ["F_n > 0", "T_max·slip > 0"],
+        ["F_n ≤ 0", ""],
+    ],
+    [["g < 0, rough", ""], ["g < 0, smooth", ""], ["g > 0", ""]],
+];
+
 /// A rule's name: the row of Table 2, and what it does.
 pub fn rule(rule: Rule) -> &'static str {
     match rule {
@@ -38,6 +56,38 @@ pub fn rule(rule: Rule) -> &'static str {
         Rule::OffSurface => "off-surface",
         Rule::Held => "held",
     }
+}
+
+/// Why Table 2 decided as it did; `friction` says whether there is any.
+pub fn reason(decision: &Decision, friction: bool) -> String {
+    let text = match decision.rule {
+        Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
+        Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
+        Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
+        Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
+        Rule::SlidingStays if !friction => {
+            "Stays sliding: there is no friction that could hold it."
+        }
+        Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
+        Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
+        Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
+        Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
+        Rule::FreeStays => "Stays free: the gap is open.",
+        Rule::OffSurface => {
+            "Free: the projection lies past an end of every surface, so there is nothing to touch."
+        }
+        Rule::Held if decision.wanted == decision.next => {
+            return format!(
+                "You hold it {}; Table 2 wants the same.",
+                mode(decision.next)
+            );
+        }
+        Rule::Held => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!("You hold it {next}; Table 2 (◁) wanted {wanted}. M releases it.");
+        }
+    };
+    text.into()
 }
 
 /// Where a minor iteration was.

@@ -32,7 +32,7 @@ pub use model::Model;
 pub use spec::{Friction, Mode, Settings, Spec};
 
 pub(crate) use compile::increments;
-use error::Fault;
+pub(crate) use error::Fault;
 use nodes::Names;
 use paths::Override;
 
@@ -116,6 +116,31 @@ impl Scene {
         Scene::assemble(name, "", spec, &[], Vec::new())
     }
 
+    /// Checks a scene that stands inside another file, at a path of its text; `name` is what messages call the file.
+    ///
+    /// # Errors
+    /// If the scene is unsound, with the place in that file.
+    pub(crate) fn within(
+        name: &str,
+        text: &str,
+        path: &error::Path,
+        spec: Spec,
+    ) -> Result<Scene, SceneError> {
+        let at = |fault: Fault| {
+            let whole = error::Path(path.0.iter().chain(&fault.path.0).cloned().collect());
+            placed(name, text, &[], Fault::new(whole, fault.message))
+        };
+        let (model, names) = compile::compile(&spec).map_err(at)?;
+        Ok(Scene {
+            name: name.to_owned(),
+            text: String::new(),
+            spec,
+            model,
+            names,
+            overrides: Vec::new(),
+        })
+    }
+
     /// This scene with one scalar set, as `--set` or the debugger's `:set` does it.
     ///
     /// # Errors
@@ -180,7 +205,7 @@ impl Scene {
 }
 
 /// Finds out where a fault comes from: a setting from outside, or a line of the file.
-fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> SceneError {
+pub(crate) fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> SceneError {
     let Fault { path, message } = fault;
     // What was set last is the likelier culprit; a fault of a whole is due to a part of it that was set.
     let blamed = |o: &&Override| path == o.at || (!path.0.is_empty() && path.contains(&o.at));

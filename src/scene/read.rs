@@ -21,17 +21,22 @@ pub fn options() -> ron::Options {
 
 /// Reads a scene's text.
 pub(crate) fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
-    value(file, text)
+    value(file, text, "scene")
 }
 
 /// Reads an interface problem's text.
 pub(crate) fn problem(file: &str, text: &str) -> Result<Problem, SceneError> {
-    value(file, text)
+    value(file, text, "scene")
 }
 
-fn value<T: DeserializeOwned>(file: &str, text: &str) -> Result<T, SceneError> {
+/// Reads the text of a file that holds one value; messages call it a `what`.
+pub(crate) fn value<T: DeserializeOwned>(
+    file: &str,
+    text: &str,
+    what: &str,
+) -> Result<T, SceneError> {
     let options = options();
-    let unread = |error: SpannedError, path: &Path| unreadable(file, text, &error, path);
+    let unread = |error: SpannedError, path: &Path| unreadable(file, text, what, &error, path);
     let mut reader = ron::Deserializer::from_str_with_options(text, &options)
         .map_err(|e| unread(e, &Path::default()))?;
     let value = serde_path_to_error::deserialize::<_, T>(&mut reader).map_err(|e| {
@@ -45,7 +50,7 @@ fn value<T: DeserializeOwned>(file: &str, text: &str) -> Result<T, SceneError> {
 }
 
 /// ron's error in our form.
-fn unreadable(file: &str, text: &str, error: &SpannedError, path: &Path) -> SceneError {
+fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError, path: &Path) -> SceneError {
     let value = locate(text, path);
     let of_value = line_and_column(text, value.start);
     // Where a whole value is wrong, its start is the place. Else it is ron's cursor, of which the start of the span is
@@ -58,8 +63,11 @@ fn unreadable(file: &str, text: &str, error: &SpannedError, path: &Path) -> Scen
                 format!("{shown} will not do; it must be {wanted}"),
             )
         }
-        (_, code @ ron::Error::MissingStructField { .. }) => (of_value, message(code)),
-        (_, code) => ((error.span.start.line, error.span.start.col), message(code)),
+        (_, code @ ron::Error::MissingStructField { .. }) => (of_value, message(code, what)),
+        (_, code) => (
+            (error.span.start.line, error.span.start.col),
+            message(code, what),
+        ),
     };
     SceneError {
         file: file.to_owned(),
@@ -137,7 +145,7 @@ fn plain(path: &serde_path_to_error::Path) -> Path {
 }
 
 /// ron's message, in words for an author who is no programmer where that helps.
-fn message(error: &ron::Error) -> String {
+fn message(error: &ron::Error, what: &str) -> String {
     use ron::Error as E;
     match error {
         E::NoSuchStructField {
@@ -159,8 +167,10 @@ fn message(error: &ron::Error) -> String {
         }
         E::DuplicateStructField { field, .. } => format!("the field {field:?} stands here twice"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
-            "a scene is a list of fields in round brackets, (title: \"...\", nodes: [...], ...)"
-                .to_owned()
+            let second = if what == "scene" { "nodes" } else { "steps" };
+            format!(
+                "a {what} is a list of fields in round brackets, (title: \"...\", {second}: [...], ...)"
+            )
         }
         E::SuggestRawIdentifier(found) | E::InvalidIdentifier(found)
             if found.starts_with(|c: char| c.is_ascii_digit()) =>
@@ -169,10 +179,10 @@ fn message(error: &ron::Error) -> String {
                 "{found:?} stands where a field's name should; decimals have a point, not a comma"
             )
         }
-        E::ExceededRecursionLimit => "brackets are nested far too deep for a scene".to_owned(),
+        E::ExceededRecursionLimit => format!("brackets are nested far too deep for a {what}"),
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
         E::TrailingCharacters => {
-            "something follows the end of the scene, its closing bracket".to_owned()
+            format!("something follows the end of the {what}, its closing bracket")
         }
         other => {
             let text = other.to_string();

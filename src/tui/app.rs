@@ -1,7 +1,11 @@
 //! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
 //! app and yields at most one [`Effect`], which the event loop carries out.
 
-use crate::debug::command::{self, Action, Command, Context, Filter, Question, Sort, Step, Ui};
+use crate::debug::command::{
+    self, Action, Command, Context, Filter, Question, Sort, Step, Ui, Whose,
+};
+use crate::debug::lesson::tutor::Kind;
+use crate::debug::lesson::{Guess, Tutor};
 use crate::scene::Mode;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
@@ -21,6 +25,8 @@ pub enum Effect {
     Interrupt,
     /// Load a scene, by file or built-in name.
     Open(String),
+    /// Begin a lesson, by file or built-in name.
+    Lesson(String),
     Suspend,
     Redraw,
     Quit,
@@ -42,6 +48,8 @@ pub enum Overlay {
     Line(CommandLine),
     /// A letter for the mode of the selected node.
     Mode,
+    /// A letter or digit that answers a question.
+    Answer,
 }
 
 /// How the message line speaks.
@@ -123,6 +131,10 @@ pub struct App {
     pub chart: Pane,
     /// Scenes to choose from.
     pub offers: Vec<Offer>,
+    /// The lesson that is being taken.
+    pub lesson: Option<Tutor>,
+    /// Free mode, outside lessons.
+    pub guess: Option<Guess>,
     /// Turns of the spinner.
     pub tick: usize,
     /// The last motion, for Enter.
@@ -158,6 +170,8 @@ impl App {
             monitor: 0,
             chart: Pane::Residual,
             offers,
+            lesson: None,
+            guess: None,
             tick: 0,
             last: None,
             history: Vec::new(),
@@ -187,6 +201,8 @@ impl App {
         self.camera = Camera::ALL;
         self.last = None;
         self.count = None;
+        self.lesson = None;
+        self.guess = None;
     }
 
     /// Offers the scenes.
@@ -195,7 +211,7 @@ impl App {
     }
 
     /// The user's part in the arrangement of the screen.
-    pub fn choice(&self, slaves: usize, outcome: u16, message: u16) -> Choice {
+    pub fn choice(&self, slaves: usize, outcome: u16, message: u16, lesson: u16) -> Choice {
         Choice {
             focus: self.focus,
             page: self.page,
@@ -204,6 +220,7 @@ impl App {
             slaves,
             outcome,
             message,
+            lesson,
         }
     }
 
@@ -219,6 +236,7 @@ impl App {
             (Overlay::Chooser { .. }, _) => self.chooser_key(&name, view),
             (Overlay::Line(_), _) => self.line_key(key, &name, view),
             (Overlay::Mode, _) => self.mode_key(&name, view),
+            (Overlay::Answer, _) => self.answer_key(&name, view),
         }
     }
 
@@ -288,14 +306,59 @@ impl App {
         count: Option<u32>,
         view: Option<&View>,
     ) -> Option<Effect> {
+        let action = action.and_then(|action| Ok((self.permits(&action, view)?, action)));
         match action {
-            Ok(Action::Session(command)) => self.submit(command, view),
-            Ok(Action::Ui(ui)) => self.ui(ui, count, view),
+            Ok((_, Action::Session(command))) => self.submit(command, view),
+            Ok((wanted, Action::Ui(ui))) => {
+                let effect = self.ui(ui, count, view);
+                if let (true, Some(tutor), Some(view)) = (wanted, &mut self.lesson, view) {
+                    tutor.settled(view.cursor, view.frame());
+                }
+                effect
+            }
             Err(message) => {
                 self.complain(message);
                 None
             }
         }
+    }
+
+    /// Whether the lesson, or free mode, lets an action be done; true where the lesson wants it.
+    fn permits(&mut self, action: &Action, view: Option<&View>) -> Result<bool, String> {
+        let Some(view) = view else { return Ok(false) };
+        match (&mut self.lesson, &mut self.guess) {
+            (Some(tutor), None) => tutor.permits(action, view.cursor, view.frame()),
+            (_, Some(guess)) => {
+                guess.permits(action, view.cursor, view.frame())?;
+                Ok(false)
+            }
+            (None, None) => Ok(false),
+        }
+    }
+
+    /// Free mode, of the lesson or outside.
+    pub fn guessing(&self) -> Option<&Guess> {
+        let lesson = self.lesson.as_ref().and_then(Tutor::guess);
+        lesson.or(self.guess.as_ref())
+    }
+
+    /// Whether any decision of the shown frame must not be seen yet.
+    pub fn hides_any(&self, view: &View) -> bool {
+        let frame = view.frame();
+        view.event().is_some()
+            && (self.lesson.as_ref().is_some_and(Tutor::hides)
+                || self
+                    .guessing()
+                    .is_some_and(|guess| guess.is_open(view.cursor, frame)))
+    }
+
+    /// Whether the decision on this slave node must not be seen yet.
+    pub fn hides(&self, view: &View, slave: usize) -> bool {
+        view.record(slave).is_some()
+            && (self.lesson.as_ref().is_some_and(Tutor::hides)
+                || self
+                    .guessing()
+                    .is_some_and(|guess| guess.hides(view.cursor, view.frame(), slave)))
     }
 
     fn submit(&mut self, command: Command, view: Option<&View>) -> Option<Effect> {
@@ -319,8 +382,9 @@ impl App {
             Ui::Redraw => return Some(Effect::Redraw),
             Ui::Interrupt => return self.interrupt(view),
             Ui::Open(scene) => return Some(Effect::Open(scene)),
+            Ui::Repeat if self.lesson.as_ref().is_some_and(Tutor::is_read) => self.go_on(view),
             Ui::Repeat => match self.last.clone() {
-                Some(command) => return self.submit(command, view),
+                Some(command) => return self.attempt(Ok(Action::Session(command)), None, view),
                 None => self.complain("there is no motion to repeat yet; s is one minor iteration"),
             },
             Ui::Move(step) => self.step(step, count.unwrap_or(1) as isize, view),
@@ -336,6 +400,10 @@ impl App {
             Ui::SortBackward => self.backward = !self.backward,
             Ui::Filter(filter) => self.filter = filter.unwrap_or(next(&Filter::ALL, self.filter)),
             Ui::Monitor(monitor) => self.watch(monitor, view),
+            Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
+            Ui::On => self.go_on(view),
+            Ui::Answer(word) => self.answer(&word, view),
+            Ui::Predict(whose) => self.predict(whose, view),
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
             Ui::Help => self.overlay = Overlay::Help { top: 0 },
@@ -345,6 +413,70 @@ impl App {
             }
         }
         None
+    }
+
+    /// On with the lesson.
+    fn go_on(&mut self, view: Option<&View>) {
+        let (Some(tutor), Some(view)) = (&mut self.lesson, view) else {
+            return self.complain("no lesson is being taken; L begins one");
+        };
+        match tutor.on(view.cursor, view.frame()) {
+            Ok(()) => self.say(""),
+            Err(message) => self.complain(message),
+        }
+    }
+
+    /// Answers the lesson's question, or predicts.
+    fn answer(&mut self, word: &str, view: Option<&View>) {
+        let Some(view) = view else {
+            return self.complain("open a scene first");
+        };
+        let (cursor, frame, selected) = (view.cursor, view.frame(), self.selected);
+        let told = match (&mut self.lesson, &mut self.guess) {
+            (_, Some(guess)) => guess
+                .predict(view.model, cursor, frame, selected, word)
+                .map(|(_, text)| text),
+            (Some(tutor), None) => tutor
+                .answer(word, selected, cursor, frame)
+                .map(|()| String::new()),
+            (None, None) => {
+                Err("nothing is asked; p hides decisions until you predict them".into())
+            }
+        };
+        match told {
+            Ok(text) => self.say(text),
+            Err(message) => self.complain(message),
+        }
+    }
+
+    /// Switches free mode.
+    fn predict(&mut self, whose: Option<Whose>, view: Option<&View>) {
+        let Some(view) = view else {
+            return self.complain("open a scene first");
+        };
+        if self
+            .lesson
+            .as_ref()
+            .is_some_and(|tutor| tutor.step().is_some())
+        {
+            return self.complain("the lesson asks by itself");
+        }
+        let toggled = match self.guess {
+            Some(_) => Whose::Off,
+            None => Whose::Selected,
+        };
+        match (whose.unwrap_or(toggled), &self.guess) {
+            (Whose::Off, Some(guess)) => {
+                let told = format!("predicted: {} right, {} wrong", guess.right, guess.wrong);
+                self.guess = None;
+                self.say(told);
+            }
+            (Whose::Off, None) => self.complain("decisions are not hidden"),
+            (whose, _) => {
+                self.guess = Some(Guess::new(whose, view.cursor));
+                self.say("decisions hide until you predict them: step, then a and f, s or x");
+            }
+        }
     }
 
     fn turn(&mut self, places: usize) {
@@ -413,7 +545,34 @@ impl App {
             Question::Break => {
                 self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "break "))
             }
+            Question::Lesson => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson "))
+            }
+            Question::Answer => self.ask_answer(view),
         }
+    }
+
+    /// Opens what an answer is typed into.
+    fn ask_answer(&mut self, view: Option<&View>) {
+        let asked = self.lesson.as_ref().and_then(Tutor::question);
+        let open = view.is_some_and(|view| self.guessing().is_some() && self.hides_any(view));
+        match asked.map(|question| question.kind) {
+            Some(Kind::Number) => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Answer, ""))
+            }
+            Some(Kind::Mode | Kind::Choice) => self.overlay = Overlay::Answer,
+            None if open => self.overlay = Overlay::Answer,
+            // What there is to say about it, the answering says.
+            None => self.answer("free", view),
+        }
+    }
+
+    fn answer_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        self.close(view);
+        if name != "Esc" {
+            self.answer(name, view);
+        }
+        None
     }
 
     fn mode_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
@@ -424,14 +583,12 @@ impl App {
         match wanted {
             Some(mode) => {
                 let hold = name.chars().all(char::is_uppercase);
-                self.submit(
-                    Command::Force {
-                        slave: self.selected,
-                        mode,
-                        hold,
-                    },
-                    view,
-                )
+                let force = Command::Force {
+                    slave: self.selected,
+                    mode,
+                    hold,
+                };
+                self.attempt(Ok(Action::Session(force)), None, view)
             }
             None if name == "Esc" => None,
             None => {
@@ -468,6 +625,7 @@ impl App {
             "q" | "Esc" if view.is_none() => return Some(Effect::Quit),
             "q" | "Esc" => self.overlay = Overlay::None,
             ":" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open ")),
+            "L" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson ")),
             _ => *at = scrolled(*at, name, self.offers.len().saturating_sub(1)),
         }
         None
@@ -504,6 +662,7 @@ impl App {
             Purpose::Command => text,
             Purpose::Increment => format!("increment {text}"),
             Purpose::Node => format!("node {text}"),
+            Purpose::Answer => format!("answer {text}"),
         };
         self.history.retain(|old| *old != line);
         self.history.push(line.clone());
@@ -520,11 +679,28 @@ impl App {
                 "mode of {}:  f free   s sliding   x fixed   (a capital holds it until M releases)",
                 view.slave(self.selected)
             )),
+            Overlay::Answer => Some(self.asked(view)),
             Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
                 "new increment (now {}): ",
                 number::plain(view.frame().state.controls.increment)
             )),
             _ => None,
+        }
+    }
+}
+
+impl App {
+    /// What the prompt of an answer says.
+    fn asked(&self, view: &View) -> String {
+        match self.lesson.as_ref().and_then(Tutor::question) {
+            Some(question) if question.kind == Kind::Choice => {
+                format!("your answer:  1 to {}", question.options.len())
+            }
+            Some(_) => "your answer:  f free   s sliding   x fixed".into(),
+            None => format!(
+                "next mode of {}:  f free   s sliding   x fixed",
+                view.slave(self.selected)
+            ),
         }
     }
 }

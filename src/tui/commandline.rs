@@ -16,6 +16,8 @@ pub enum Purpose {
     Increment,
     /// The name of a node, or a part of it.
     Node,
+    /// A number that answers a lesson's question.
+    Answer,
 }
 
 /// A line being typed.
@@ -88,7 +90,7 @@ impl CommandLine {
     fn candidates(&self, context: &Context) -> Vec<String> {
         match self.purpose {
             Purpose::Command => command::complete(self.text(), context),
-            Purpose::Increment => Vec::new(),
+            Purpose::Increment | Purpose::Answer => Vec::new(),
             Purpose::Node => command::complete(&format!("node {}", self.text()), context)
                 .iter()
                 .filter_map(|line| line.strip_prefix("node ").map(String::from))
@@ -154,6 +156,7 @@ impl CommandLine {
             (Purpose::Increment, _) => {
                 "Enter: this increment starts again with it   Esc: leave it".into()
             }
+            (Purpose::Answer, _) => "a number; Enter answers   Esc: look again first".into(),
             (Purpose::Node, _) => "a name or a part of it; Enter goes to the next such node".into(),
             (Purpose::Command, Some(Ok(entry))) => {
                 format!("{} {}   {}", entry.name, entry.arguments, entry.help)

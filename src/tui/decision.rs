@@ -1,6 +1,7 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
 
 use crate::contact::decision::{Decision, Rule, Test, Tested};
+use crate::debug::report::{self, MODES, TABLE_2};
 use crate::scene::Mode;
 use crate::scene::spec::Ties;
 use crate::solve::{Forced, NodeRecord};
@@ -14,24 +15,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
-
-/// Modes in the order of Table 2's rows and columns.
-const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
-
-/// Table 2: what sends a node from the mode of the row to that of the column, in two lines.
-const TABLE_2: [[[&str; 2]; 3]; 3] = [
-    [
-        ["F_n > 0", "|F_t| < |T_max|"],
-        ["F_n > 0", "|F_t| > |T_max|"],
-        ["F_n ≤ 0", ""],
-    ],
-    [
-        ["F_n > 0", "T_max·slip < 0"],
-        ["F_n > 0", "T_max·slip > 0"],
-        ["F_n ≤ 0", ""],
-    ],
-    [["g < 0, rough", ""], ["g < 0, smooth", ""], ["g > 0", ""]],
-];
 
 /// Width of the rows' headings.
 const LABEL: usize = 9;
@@ -53,13 +36,18 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let inner = draw::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
     let record = view.record(slave);
     let decision = record.map(|record| record.decision);
-    let tests = record.map_or(Vec::new(), |record| {
+    let hidden = app.hides(view, slave);
+    let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
         tests(&record.decision, inner.width as usize, theme)
     });
-    let words = words(record, slave, view);
+    let words = match (hidden, &app.lesson) {
+        (false, _) => words(record, slave, view),
+        (true, Some(_)) => "The numbers are in the table above. What does Table 2 say?".into(),
+        (true, None) => "What does Table 2 say? Predict it: a, then f, s or x.".into(),
+    };
 
     // What must be there comes first; air is added where there is room.
-    let style = if decision.is_some_and(|d| d.changes()) {
+    let style = if !hidden && decision.is_some_and(|d| d.changes()) {
         theme.strong
     } else {
         theme.text
@@ -73,8 +61,15 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let air = |enough: bool| enough.then(Line::default);
     let crowded = (inner.width as usize) < LABEL + 6 + 3 * CELL || inner.height < 9;
     let mut all = match decision {
-        Some(decision) if crowded => vec![fired(&decision, theme)],
-        _ => grid(decision.as_ref(), inner.width as usize, spare >= 4, theme),
+        Some(decision) if crowded && !hidden => vec![fired(&decision, theme)],
+        Some(decision) if (inner.height as usize) < GRID => choices(decision.before, theme),
+        _ => grid(
+            decision.as_ref(),
+            hidden,
+            inner.width as usize,
+            spare >= 4,
+            theme,
+        ),
     };
     all.extend(air(spare >= 1));
     all.extend(tests);
@@ -176,9 +171,10 @@ fn measured(record: &NodeRecord, view: &View, theme: &Theme) -> Vec<Line<'static
         .collect()
 }
 
-/// Table 2 as lines, with the row of the mode before and the cell that fired lit.
+/// Table 2 as lines, with the row of the mode before and, unless it is hidden, the cell that fired lit.
 fn grid(
     decision: Option<&Decision>,
+    hidden: bool,
     width: usize,
     ruled: bool,
     theme: &Theme,
@@ -219,7 +215,10 @@ fn grid(
             };
             let mut spans = vec![Span::styled(format!("{label:<LABEL$}"), style)];
             for (column, next) in MODES.iter().enumerate() {
-                let (mark, style) = cell_look(decision, *mode, *next, theme);
+                let (mark, style) = match cell_look(decision, *mode, *next, theme) {
+                    _ if hidden && here => (" ", theme.text),
+                    look => look,
+                };
                 let mark = if part == 0 { mark } else { " " };
                 let text = TABLE_2[row][column][part];
                 // The last column takes what the division left over.
@@ -238,6 +237,21 @@ fn grid(
         }
     }
     lines
+}
+
+/// The cells that can fire, one a line, where there is no room for the table and the one that did is hidden.
+fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
+    let row = MODES.iter().position(|mode| *mode == before).unwrap_or(0);
+    let cell = |(column, next): (usize, &Mode)| {
+        let [first, second] = TABLE_2[row][column];
+        let comma = if second.is_empty() { "" } else { ", " };
+        let (before, next) = (report::mode(before), report::mode(*next));
+        Line::styled(
+            format!(" {before} → {next}:  {first}{comma}{second}"),
+            theme.text,
+        )
+    };
+    MODES.iter().enumerate().map(cell).collect()
 }
 
 /// The cell that fired, alone, where there is no room for the table.
@@ -355,7 +369,7 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
         );
     };
     let decision = &record.decision;
-    let mut text = reason(decision, record.t_max != 0.0);
+    let mut text = report::reason(decision, record.t_max != 0.0);
     let frictionless = decision.rule == Rule::SlidingStays && record.t_max == 0.0;
     if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {
         text += match view.frame().state.controls.settings.ties {
@@ -385,36 +399,4 @@ fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
         _ => {}
     }
     text
-}
-
-/// Why Table 2 decided as it did; `friction` says whether there is any.
-fn reason(decision: &Decision, friction: bool) -> String {
-    let text = match decision.rule {
-        Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
-        Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
-        Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
-        Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
-        Rule::SlidingStays if !friction => {
-            "Stays sliding: there is no friction that could hold it."
-        }
-        Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
-        Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
-        Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
-        Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
-        Rule::FreeStays => "Stays free: the gap is open.",
-        Rule::OffSurface => {
-            "Free: the projection lies past an end of every surface, so there is nothing to touch."
-        }
-        Rule::Held if decision.wanted == decision.next => {
-            return format!(
-                "You hold it {}; Table 2 wants the same.",
-                theme::word(decision.next)
-            );
-        }
-        Rule::Held => {
-            let (next, wanted) = (theme::word(decision.next), theme::word(decision.wanted));
-            return format!("You hold it {next}; Table 2 (◁) wanted {wanted}. M releases it.");
-        }
-    };
-    text.into()
 }

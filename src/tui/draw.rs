@@ -5,7 +5,7 @@ use crate::tui::app::{App, Overlay};
 use crate::tui::layout::{self, Pane};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
-use crate::tui::{chooser, curve, decision, footer, help, nodes, residual, shape, status};
+use crate::tui::{chooser, curve, decision, footer, help, lesson, nodes, residual, shape, status};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -17,7 +17,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     let slaves = view.map_or(0, |view| view.model.slaves.len());
     let outcome = view.map_or(1, |view| status::outcome_lines(app, view, area.width));
     let message = footer::message_lines(app, view, area.width);
-    let places = layout::places(area, &app.choice(slaves, outcome, message));
+    let rows = view.map_or(0, |_| lesson::rows(app, area.width));
+    let places = layout::places(area, &app.choice(slaves, outcome, message, rows));
     status::draw(buffer, places.status, app, view);
     let body = places
         .panes
@@ -45,6 +46,7 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
         Pane::Residual => residual::draw(buffer, area, app, view),
         Pane::Shape => shape::draw(buffer, area, app, view),
         Pane::Curve => curve::draw(buffer, area, app, view),
+        Pane::Lesson => lesson::draw(buffer, area, app),
     }
 }
 

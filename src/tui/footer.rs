@@ -1,6 +1,6 @@
 //! The last two rows: what was said last, or what is being asked; and the keys that matter now, from the table.
 
-use crate::debug::command::{ACTIONS, Entry};
+use crate::debug::command::{ACTIONS, Entry, Group};
 use crate::tui::app::{App, Overlay, Tone, context};
 use crate::tui::draw;
 use crate::tui::layout::{Pane, Places};
@@ -34,6 +34,7 @@ fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
         let prompt = match line.purpose {
             Purpose::Command => ":".into(),
             Purpose::Node => "/".into(),
+            Purpose::Answer => "your answer: ".into(),
             Purpose::Increment => app.question(view).unwrap_or_else(|| "increment: ".into()),
         };
         return vec![line.line(&prompt, width, theme)];
@@ -43,6 +44,9 @@ fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     }
     if let Some(count) = app.count {
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
+    }
+    if let (true, "", Some(tutor)) = (app.zoomed, app.message.text.as_str(), &app.lesson) {
+        return vec![Line::styled(format!(" ▶ {}", tutor.todo()), theme.key)];
     }
     let style = match app.message.tone {
         Tone::Plain => theme.text,
@@ -66,6 +70,7 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
                     ("↑↓", "choose"),
                     ("Enter", "open"),
                     (":", "a file: open PATH"),
+                    ("L", "lessons"),
                     ("q", leave),
                 ],
                 app,
@@ -75,6 +80,7 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
             &[("f s x", "once"), ("F S X", "hold"), ("Esc", "leave it")],
             app,
         ),
+        Overlay::Answer => listed(&[("Esc", "look again first")], app),
         Overlay::Line(line) => {
             let scenes: Vec<String> = app.offers.iter().map(|offer| offer.name.clone()).collect();
             line.hint(&context(view, app.selected, &scenes), &app.theme)
@@ -96,13 +102,14 @@ fn hint(key: &str, label: &str, app: &App) -> [Span<'static>; 2] {
 
 /// As many of the table's labelled actions as fit, in its order; those that must be there are counted first.
 fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
+    let teaches = app.lesson.is_some() || app.guess.is_some();
     let labelled: Vec<(&Entry, String)> = ACTIONS
         .iter()
-        .filter(|entry| !entry.label.is_empty())
+        .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
         .map(|entry| (entry, label(entry, app, places)))
         .collect();
     let width = |entry: &Entry, label: &str| entry.keys[0].width() + label.width() + 3;
-    let needed = |entry: &Entry| ALWAYS.contains(&entry.name);
+    let needed = |entry: &Entry| ALWAYS.contains(&entry.name) || entry.group == Group::Learn;
     let mut left = labelled
         .iter()
         .filter(|(entry, _)| needed(entry))

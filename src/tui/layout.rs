@@ -15,10 +15,12 @@ pub enum Pane {
     Residual,
     Shape,
     Curve,
+    /// Never has the focus, and is only there while a lesson is taken.
+    Lesson,
 }
 
 impl Pane {
-    /// All, in the order of Tab.
+    /// All that Tab goes through, in its order.
     pub const ALL: [Pane; 5] = [
         Pane::Nodes,
         Pane::Decision,
@@ -50,6 +52,8 @@ pub struct Choice {
     pub outcome: u16,
     /// Lines that the message takes, at least one.
     pub message: u16,
+    /// Rows that a lesson wants at the screen's width; 0 without a lesson.
+    pub lesson: u16,
 }
 
 /// Where everything stands.
@@ -68,6 +72,10 @@ const TABLE_FRAME: u16 = 3;
 /// Fewest rows in which the decision shows everything, border included, and its numbers on lines of their own.
 const DECISION: u16 = 12;
 const TALL_DECISION: u16 = 17;
+/// Width of a lesson that has a column of its own.
+const LESSON: u16 = 62;
+/// Fewest rows of a page between the table and a lesson.
+const PAGE: u16 = 5;
 
 /// Arranges the screen.
 pub fn places(area: Rect, choice: &Choice) -> Places {
@@ -93,11 +101,16 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
     let [status, body, message, footer] = Layout::vertical(rows).areas(area);
     let panes = match () {
         _ if choice.zoomed => vec![(choice.focus, body)],
+        _ if choice.lesson > 0 => with_lesson(body, choice),
         _ if area.width >= 160 && body.height >= 40 => large(body, choice),
         _ if area.width >= 110 && body.height >= 30 => medium(body, choice),
         _ => small(body, choice),
     };
-    let paged = panes.len() < Pane::ALL.len() - 1 && !choice.zoomed;
+    let listed = panes
+        .iter()
+        .filter(|(pane, _)| *pane != Pane::Lesson)
+        .count();
+    let paged = listed < Pane::ALL.len() - 1 && !choice.zoomed;
     Places {
         status,
         panes,
@@ -123,6 +136,51 @@ fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let [upper, lower] =
         Layout::vertical([Constraint::Length(rows[0]), Constraint::Min(rows[1])]).areas(body);
     vec![(Pane::Nodes, upper), (choice.page, lower)]
+}
+
+/// The screen with a lesson: on a large one it has a column of its own, on a medium one the place of the chart, on a small
+/// one as many rows as it needs at the bottom, and on a tiny one the place of the table.
+fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    if body.width >= 110 + LESSON && body.height >= 30 {
+        let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
+        let [left, right] = Layout::horizontal(columns).areas(body);
+        let mut panes = medium(left, choice);
+        panes.push((Pane::Lesson, right));
+        return panes;
+    }
+    if body.width >= 110 && body.height >= 30 {
+        let mut panes = medium(body, choice);
+        let chart = panes.remove(2);
+        panes.push((Pane::Lesson, chart.1));
+        // A chart that is wanted takes the place of the shape.
+        if choice.focus == choice.chart {
+            panes[2].0 = choice.chart;
+        }
+        return panes;
+    }
+    let least = table(choice, TABLE_FRAME + 1);
+    if body.height < least + PAGE {
+        let pane = match choice.focus {
+            Pane::Nodes => Pane::Lesson,
+            other => other,
+        };
+        return vec![(pane, body)];
+    }
+    let lesson = choice.lesson.min(body.height - least);
+    let rows = [Constraint::Min(0), Constraint::Length(lesson)];
+    let [upper, lower] = Layout::vertical(rows).areas(body);
+    let nodes = table(choice, upper.height);
+    let mut panes = match upper.height.saturating_sub(nodes) {
+        PAGE.. => {
+            let rows = [Constraint::Length(nodes), Constraint::Min(0)];
+            let [nodes, page] = Layout::vertical(rows).areas(upper);
+            vec![(Pane::Nodes, nodes), (choice.page, page)]
+        }
+        _ if choice.focus == Pane::Nodes => vec![(Pane::Nodes, upper)],
+        _ => vec![(choice.focus, upper)],
+    };
+    panes.push((Pane::Lesson, lower));
+    panes
 }
 
 fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
@@ -181,6 +239,7 @@ mod tests {
             slaves,
             outcome: 1,
             message: 1,
+            lesson: 0,
         };
         places(Rect::new(0, 0, width, height), &choice)
     }

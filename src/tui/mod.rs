@@ -17,6 +17,7 @@ pub mod footer;
 pub mod help;
 pub mod keys;
 pub mod layout;
+pub mod lesson;
 pub mod nodes;
 pub mod number;
 pub mod residual;
@@ -29,5 +30,5 @@ pub mod view;
 
 pub use app::{App, Effect};
 pub use draw::picture;
-pub use run::{Debugger, Error, resume, run, screen};
+pub use run::{Debugger, Error, resume, run, run_lesson, screen};
 pub use view::View;

@@ -148,11 +148,13 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
 pub fn order(app: &App, view: &View) -> Vec<usize> {
     let count = view.model.slaves.len();
     let selected = app.selected.min(count.saturating_sub(1));
+    let next = |slave: usize| match app.hides(view, slave) {
+        true => view.mode_before(slave),
+        false => view.mode(slave),
+    };
     let wanted = |slave: usize| match app.filter {
         Filter::All => true,
-        Filter::Active => {
-            view.mode(slave) != Mode::Free || view.mode_before(slave) != view.mode(slave)
-        }
+        Filter::Active => next(slave) != Mode::Free || view.mode_before(slave) != next(slave),
         Filter::Surface => surface(slave, view) == surface(selected, view),
     };
     let mut order: Vec<usize> = (0..count)
@@ -250,7 +252,8 @@ fn row<'a>(
 ) -> Line<'a> {
     let theme = &app.theme;
     let record = view.record(slave);
-    let changed = view.mode_before(slave) != view.mode(slave);
+    let hidden = app.hides(view, slave);
+    let changed = !hidden && view.mode_before(slave) != view.mode(slave);
     let name_style = match (selected, changed) {
         (true, _) => theme.selected,
         (_, true) => theme.strong,
@@ -258,7 +261,10 @@ fn row<'a>(
     };
     let mut spans = vec![
         Span::styled(if selected { "▸" } else { " " }, theme.focus),
-        Span::styled(change_mark(changed, view.t_max_moves(slave)), theme.strong),
+        Span::styled(
+            change_mark(changed, !hidden && view.t_max_moves(slave)),
+            theme.strong,
+        ),
         Span::styled(forced_mark(view.forced(slave)), theme.warning),
         Span::styled(fitted(view.slave(slave), columns.name), name_style),
         Span::raw(" "),
@@ -308,7 +314,13 @@ fn modes(
     };
     let (before, next) = (view.mode_before(slave), view.mode(slave));
     let arrow = if columns.words { " → " } else { "→" };
-    let (first, second) = (spell(before), spell(next));
+    let hidden = app.hides(view, slave);
+    let (first, second) = (spell(before), if hidden { "?" } else { spell(next) });
+    let next_style = if hidden {
+        app.theme.strong
+    } else {
+        style(next)
+    };
     let used = first.len() + arrow.chars().count() + second.len();
     let arrow_style = if changed {
         app.theme.strong
@@ -318,7 +330,7 @@ fn modes(
     vec![
         Span::styled(first, style(before)),
         Span::styled(arrow, arrow_style),
-        Span::styled(second, style(next)),
+        Span::styled(second, next_style),
         Span::raw(" ".repeat(columns.modes().saturating_sub(used))),
     ]
 }

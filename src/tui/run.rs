@@ -2,6 +2,7 @@
 
 use crate::debug::command::{Command, Unit};
 use crate::debug::journal::{JournalError, Keep};
+use crate::debug::lesson::{Lesson, Tutor};
 use crate::debug::report;
 use crate::debug::session::{Reply, Session};
 use crate::scene::{Scene, builtin};
@@ -14,6 +15,7 @@ use crate::tui::view::View;
 use crossterm::event::{self, Event, KeyEvent};
 use std::collections::VecDeque;
 use std::io::{self, IsTerminal};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Why the debugger could not start, or had to end.
@@ -72,6 +74,23 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
     if let Some(told) = told {
         debugger.app.say(told);
     }
+    run_on(debugger)
+}
+
+/// Runs a lesson in the debugger. What happens in it is not recorded: it can be taken again.
+///
+/// # Errors
+/// If there is no terminal, or it fails.
+pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
+    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
+        return Err(Error::NoTerminal);
+    }
+    let mut debugger = Debugger::new(Theme::from_environment(), offers(), None);
+    debugger.teach(lesson);
+    run_on(debugger)
+}
+
+fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
     let mut terminal = Terminal::enter()?;
     let ended = events(&mut debugger, &mut terminal, &signals);
@@ -230,6 +249,10 @@ impl Debugger {
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
             Effect::Open(scene) => self.open(&scene),
+            Effect::Lesson(name) => match Lesson::open(&name) {
+                Ok(lesson) => self.teach(lesson),
+                Err(error) => self.app.complain(error.to_string()),
+            },
         }
         None
     }
@@ -291,6 +314,9 @@ impl Debugger {
             Ok(reply) => self.tell(reply),
             Err(message) => {
                 self.queue.clear();
+                if let Some(tutor) = &mut self.app.lesson {
+                    tutor.failed();
+                }
                 self.app.complain(message);
             }
         }
@@ -305,7 +331,10 @@ impl Debugger {
                 (false, None) => None,
             }
         });
-        let known = known.is_some_and(|known| known == text);
+        // Neither must this line tell what is still to be predicted.
+        let view = self.session.as_ref().map(View::of);
+        let hidden = view.is_some_and(|view| !view.running && self.app.hides_any(&view));
+        let known = hidden || known.is_some_and(|known| known == text);
         let said = if known { String::new() } else { text };
         let idle = self
             .session
@@ -317,11 +346,18 @@ impl Debugger {
         } else {
             "   "
         };
+        if let (Some(tutor), Some(session)) = (&mut self.app.lesson, idle) {
+            tutor.settled(session.cursor(), session.frame());
+        }
         self.app.say(format!("{said}{between}{aside}"));
     }
 
     fn interrupt(&mut self) {
         self.queue.clear();
+        if let Some(tutor) = &mut self.app.lesson {
+            // What the lesson wanted is not done.
+            tutor.failed();
+        }
         if let Some(session) = &self.session {
             session.interrupt();
             self.app.say("stopping after this minor iteration");
@@ -341,6 +377,17 @@ impl Debugger {
             }
             Err(message) => self.app.complain(message),
         }
+    }
+
+    /// Begins a lesson at the start of its scene.
+    pub fn teach(&mut self, lesson: Lesson) {
+        let session = Session::new(lesson.scene.clone());
+        let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
+        self.session = Some(session);
+        self.queue.clear();
+        self.app.opened();
+        self.app.lesson = Some(tutor);
+        self.app.say("");
     }
 
     /// Gathers what the solver did and gives it the next command. Returns whether there is something new to draw.

@@ -415,7 +415,11 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         let Some((x, y)) = canvas.cell(window.dot(view.place(node))) else {
             continue;
         };
-        let mode = view.mode(slave);
+        // What is hidden until it is predicted must not be read off here.
+        let mode = match app.hides(view, slave) {
+            true => view.mode_before(slave),
+            false => view.mode(slave),
+        };
         let style = theme.mode(mode).add_modifier(Modifier::BOLD);
         if let Some(cell) = buffer.cell_mut((x, y)) {
             cell.set_symbol(theme::letter(mode)).set_style(style);

@@ -120,6 +120,9 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             theme.strong,
         ),
         (None, None) => ("▸ at the start; nothing is solved yet".into(), theme.text),
+        (None, Some(_)) if app.hides_any(view) => {
+            ("? solved; what follows is yours to say".into(), theme.text)
+        }
         (None, Some(event)) => sentence(event, view.model, app),
     };
     // Further lines stand under the words, not under the glyph.

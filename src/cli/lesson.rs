@@ -1,0 +1,73 @@
+//! `stickslip lesson [NAME|FILE]`: lists the guided lessons, begins one, or checks one without a terminal.
+
+use super::{Error, Exit, say};
+use crate::debug::lesson::play::play;
+use crate::debug::lesson::{self, Lesson};
+use crate::tui;
+use std::fmt::Write;
+use std::io::IsTerminal;
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A lesson file, or a built-in lesson by its name or number; without one, they are listed
+    lesson: Option<String>,
+    /// Plays the lesson through with the right keys and answers, and lists these
+    #[arg(long, requires = "lesson")]
+    check: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let Some(name) = &args.lesson else {
+        say(&list())?;
+        return Ok(Exit::Good);
+    };
+    let lesson = Lesson::open(name)?;
+    if args.check {
+        say(&check(lesson)?)?;
+        return Ok(Exit::Good);
+    }
+    if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
+        return Err(Error::Usage(format!(
+            "a lesson needs a terminal, and standard input or output is none; `stickslip lesson --check {name}` plays it without one"
+        )));
+    }
+    tui::run_lesson(lesson).map_err(|error| Error::Usage(error.to_string()))?;
+    Ok(Exit::Good)
+}
+
+fn list() -> String {
+    let lessons: Vec<_> = lesson::list()
+        .iter()
+        .filter_map(|lesson| Lesson::from_text(lesson.name, lesson.text).ok())
+        .collect();
+    let width = |lesson: &Lesson| lesson.name.len();
+    let width = lessons.iter().map(width).max().unwrap_or(0);
+    let line = |lesson: &Lesson| {
+        let Lesson {
+            name, title, about, ..
+        } = lesson;
+        format!("{name:<width$}  {title}: {about}\n")
+    };
+    lessons.iter().map(line).collect()
+}
+
+fn check(lesson: Lesson) -> Result<String, Error> {
+    let lesson = Arc::new(lesson);
+    let answers = play(&lesson)?;
+    let (steps, questions) = (lesson.steps.len(), answers.len());
+    let mut text = format!(
+        "{}: sound; {steps} steps, {questions} questions\n",
+        lesson.name
+    );
+    for answered in &answers {
+        let step = answered.step + 1;
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "  step {step}: {}\n    → {}",
+            answered.question, answered.answer
+        );
+    }
+    Ok(text)
+}

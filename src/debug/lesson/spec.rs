@@ -1,0 +1,110 @@
+//! A lesson as its author writes it.
+//!
+//! ```ron
+//! (
+//!     title: "Why free and fixed take turns",
+//!     about: "One line for the list.",
+//!     scene: Name("osc-inclined-cantilever"),          // or scene: Scene(( … a whole scene … ))
+//!     set: [("friction.angle", "20")],                 // as --set does; may be left out
+//!     steps: [
+//!         Text("Words. {F_n beam.end} is replaced by the number that the solver found."),
+//!         Press(text: "Solve once.", press: "s"),
+//!         Ask(text: "Which mode comes next?", answer: Mode(node: "beam.end"), hint: "…", then: "…"),
+//!         Predict(text: "Now you alone.", right: 3),
+//!     ],
+//! )
+//! ```
+//!
+//! Right answers do not stand here: they are what the solver then does. So are numbers in texts, see
+//! [`super::quantity`].
+
+use crate::scene::spec::{Mode, Spec};
+use serde::Deserialize;
+
+/// A lesson file.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LessonSpec {
+    pub title: String,
+    /// What it teaches, in a line.
+    #[serde(default)]
+    pub about: String,
+    pub scene: SceneSpec,
+    /// What is changed in the scene: path and value.
+    #[serde(default)]
+    pub set: Vec<(String, String)>,
+    pub steps: Vec<StepSpec>,
+}
+
+/// Where a lesson's scene comes from.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub enum SceneSpec {
+    /// A built-in scene, or a file (as seen from the lesson's).
+    Name(String),
+    /// A scene of the lesson's own.
+    Scene(Box<Spec>),
+}
+
+/// A step of a lesson.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum StepSpec {
+    /// Something to read.
+    Text(String),
+    /// Something to do.
+    Press {
+        text: String,
+        /// A key, with a count before it or not (`s`, `3s`), or a typed line (`force beam.end sliding`).
+        press: String,
+    },
+    /// A question.
+    Ask {
+        text: String,
+        answer: AnswerSpec,
+        /// Minor iterations that the question looks ahead: 0 asks about the one that is shown.
+        #[serde(default)]
+        ahead: u32,
+        /// Help after a wrong answer, on top of what the decision's numbers say.
+        #[serde(default)]
+        hint: String,
+        /// What is said once the answer is known. Its numbers are those of the iteration asked about.
+        #[serde(default)]
+        then: String,
+    },
+    /// Free mode, until so many predictions were right.
+    Predict { text: String, right: u32 },
+}
+
+/// What is asked for; the right answer is what the solver finds.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum AnswerSpec {
+    /// The mode that a slave node takes next.
+    Mode { node: String },
+    /// The cell of Table 2, in the row of the node's mode, that fires.
+    Rule { node: String },
+    /// A number: one of [`super::quantity`]. The tolerance is relative; 0 wants it exact.
+    Number { of: String, tolerance: f64 },
+    /// One of several sentences, each with what makes it true; one of them must be.
+    Choice(Vec<(String, When)>),
+}
+
+/// What makes a choice right.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum When {
+    /// The increment, run on from here, ends in a cycle.
+    Cycles,
+    /// The increment, run on from here, is accepted.
+    Accepted,
+    /// The census finds so many consistent states.
+    Answers(usize),
+    /// The node takes this mode next.
+    Becomes {
+        node: String,
+        mode: Mode,
+    },
+    /// What no solver can tell.
+    Right,
+    Wrong,
+}
