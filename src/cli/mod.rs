@@ -9,6 +9,7 @@ mod diff;
 mod interrupt;
 mod list;
 mod record;
+mod remedies;
 mod replay;
 mod resume;
 mod run;
@@ -104,6 +105,8 @@ enum Command {
     Resume(resume::Args),
     /// Tells a session's journal as text
     Story(story::Args),
+    /// Tries what gets a scene past its first failure, and compares
+    Remedies(remedies::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
 }
@@ -165,6 +168,7 @@ pub fn main() -> ExitCode {
         Some(Command::Diff(args)) => diff::main(args),
         Some(Command::Resume(args)) => resume::main(args),
         Some(Command::Story(args)) => story::main(args),
+        Some(Command::Remedies(args)) => remedies::main(args),
         Some(Command::Study(args)) => study::main(args),
     };
     ended

@@ -5,7 +5,10 @@ use crate::tui::app::{App, Overlay};
 use crate::tui::layout::{self, Pane};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
-use crate::tui::{chooser, curve, decision, footer, help, nodes, residual, shape, status};
+use crate::tui::{
+    branches, chooser, curve, decision, diagnosis, footer, help, nodes, remedies, residual, shape,
+    status, timeline,
+};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -45,6 +48,10 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
         Pane::Residual => residual::draw(buffer, area, app, view),
         Pane::Shape => shape::draw(buffer, area, app, view),
         Pane::Curve => curve::draw(buffer, area, app, view),
+        Pane::Timeline => timeline::draw(buffer, area, app, view),
+        Pane::Diagnosis => diagnosis::draw(buffer, area, app, view),
+        Pane::Branches => branches::draw(buffer, area, app, view),
+        Pane::Remedies => remedies::draw(buffer, area, app, view),
     }
 }
 

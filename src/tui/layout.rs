@@ -1,8 +1,8 @@
 //! Where everything stands on the screen.
 //!
 //! Three arrangements. Small (80x24): the table, and under it one more pane, which Tab changes. Medium (120x40):
-//! the table across, the decision over the residual (or the curve, whichever Tab came to last) on the left, the shape
-//! on the right. Large (200x60): two columns. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
+//! the table across, the decision over one more pane (whichever Tab or its key came to last) on the left, the shape
+//! on the right. Large (200x60): two columns over the timeline. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
 //! one pane at a time.
 
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -15,17 +15,30 @@ pub enum Pane {
     Residual,
     Shape,
     Curve,
+    Timeline,
+    Diagnosis,
+    Branches,
+    Remedies,
 }
 
 impl Pane {
     /// All, in the order of Tab.
-    pub const ALL: [Pane; 5] = [
+    pub const ALL: [Pane; 9] = [
         Pane::Nodes,
         Pane::Decision,
         Pane::Residual,
         Pane::Shape,
         Pane::Curve,
+        Pane::Timeline,
+        Pane::Diagnosis,
+        Pane::Branches,
+        Pane::Remedies,
     ];
+
+    /// Whether it takes turns with others where there is room for one of them.
+    pub fn takes_turns(self) -> bool {
+        !matches!(self, Pane::Nodes | Pane::Decision | Pane::Shape)
+    }
 
     /// The pane so many places further on.
     pub fn turn(self, places: usize) -> Pane {
@@ -40,7 +53,7 @@ pub struct Choice {
     pub focus: Pane,
     /// The pane under the table on a small screen.
     pub page: Pane,
-    /// The residual or the curve, where there is room for one.
+    /// Which of the panes that take turns is shown, where there is room for one.
     pub chart: Pane,
     /// Whether the pane with the focus has the screen for itself.
     pub zoomed: bool,
@@ -68,6 +81,9 @@ const TABLE_FRAME: u16 = 3;
 /// Fewest rows in which the decision shows everything, border included, and its numbers on lines of their own.
 const DECISION: u16 = 12;
 const TALL_DECISION: u16 = 17;
+/// Rows of the timeline that are no nodes, border included, and most nodes that it shows on a large screen.
+const TIMELINE_FRAME: u16 = 7;
+const LONGEST_TIMELINE: usize = 6;
 
 /// Arranges the screen.
 pub fn places(area: Rect, choice: &Choice) -> Places {
@@ -97,7 +113,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         _ if area.width >= 110 && body.height >= 30 => medium(body, choice),
         _ => small(body, choice),
     };
-    let paged = panes.len() < Pane::ALL.len() - 1 && !choice.zoomed;
+    let paged = panes.len() < 4 && !choice.zoomed;
     Places {
         status,
         panes,
@@ -145,12 +161,15 @@ fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 }
 
 fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    let timeline = (choice.slaves.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME;
+    let rows = [Constraint::Min(0), Constraint::Length(timeline)];
+    let [body, timeline] = Layout::vertical(rows).areas(body);
     let columns = [
         Constraint::Length((body.width * 11 / 20).clamp(104, 130)),
         Constraint::Min(0),
     ];
     let [left, right] = Layout::horizontal(columns).areas(body);
-    let most = left.height - TALL_DECISION - 10;
+    let most = left.height - TALL_DECISION - 7;
     let rows = [
         Constraint::Length(table(choice, most)),
         Constraint::Length(TALL_DECISION),
@@ -159,12 +178,17 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let [nodes, decision, residual] = Layout::vertical(rows).areas(left);
     let rows = [Constraint::Fill(3), Constraint::Fill(2)];
     let [shape, curve] = Layout::vertical(rows).areas(right);
+    let third = match choice.chart {
+        Pane::Curve | Pane::Timeline => Pane::Residual,
+        chart => chart,
+    };
     vec![
         (Pane::Nodes, nodes),
         (Pane::Decision, decision),
-        (Pane::Residual, residual),
+        (third, residual),
         (Pane::Shape, shape),
         (Pane::Curve, curve),
+        (Pane::Timeline, timeline),
     ]
 }
 
@@ -190,7 +214,7 @@ mod tests {
         for (width, height) in [(120, 40), (200, 60), (110, 36), (160, 46)] {
             for slaves in [0, 1, 9, 1000] {
                 let places = at(width, height, slaves);
-                assert_eq!(places.panes.len(), if width < 160 { 4 } else { 5 });
+                assert_eq!(places.panes.len(), if width < 160 { 4 } else { 6 });
                 assert!(!places.paged);
                 assert!(
                     places
