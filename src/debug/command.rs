@@ -1092,7 +1092,7 @@ mod tests {
         );
         assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
         assert_eq!(read("re"), Err(
-            "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, redraw".into()
+            "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, redraw".into()
         ));
     }
 

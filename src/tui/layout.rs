@@ -84,6 +84,8 @@ const TALL_DECISION: u16 = 17;
 /// Rows of the timeline that are no nodes, border included, and most nodes that it shows on a large screen.
 const TIMELINE_FRAME: u16 = 7;
 const LONGEST_TIMELINE: usize = 6;
+/// Rows of a large screen's body from which on the timeline has a place of its own.
+const ROOM_FOR_TIMELINE: u16 = 50;
 
 /// Arranges the screen.
 pub fn places(area: Rect, choice: &Choice) -> Places {
@@ -161,7 +163,10 @@ fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 }
 
 fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
-    let timeline = (choice.slaves.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME;
+    let timeline = match body.height {
+        0..ROOM_FOR_TIMELINE => 0,
+        _ => (choice.slaves.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME,
+    };
     let rows = [Constraint::Min(0), Constraint::Length(timeline)];
     let [body, timeline] = Layout::vertical(rows).areas(body);
     let columns = [
@@ -179,17 +184,21 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let rows = [Constraint::Fill(3), Constraint::Fill(2)];
     let [shape, curve] = Layout::vertical(rows).areas(right);
     let third = match choice.chart {
-        Pane::Curve | Pane::Timeline => Pane::Residual,
+        Pane::Curve => Pane::Residual,
+        Pane::Timeline if timeline.height > 0 => Pane::Residual,
         chart => chart,
     };
-    vec![
+    let mut panes = vec![
         (Pane::Nodes, nodes),
         (Pane::Decision, decision),
         (third, residual),
         (Pane::Shape, shape),
         (Pane::Curve, curve),
-        (Pane::Timeline, timeline),
-    ]
+    ];
+    if timeline.height > 0 {
+        panes.push((Pane::Timeline, timeline));
+    }
+    panes
 }
 
 #[cfg(test)]
@@ -214,7 +223,12 @@ mod tests {
         for (width, height) in [(120, 40), (200, 60), (110, 36), (160, 46)] {
             for slaves in [0, 1, 9, 1000] {
                 let places = at(width, height, slaves);
-                assert_eq!(places.panes.len(), if width < 160 { 4 } else { 6 });
+                let panes = match (width, height) {
+                    (0..160, _) => 4,
+                    (_, 0..55) => 5,
+                    _ => 6,
+                };
+                assert_eq!(places.panes.len(), panes);
                 assert!(!places.paged);
                 assert!(
                     places
