@@ -5,8 +5,10 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use stickslip::debug::branches::Verdict;
 use stickslip::debug::command::{Command, Unit};
+use stickslip::debug::journal::{Journal, Record};
 use stickslip::debug::remedies::End;
 use stickslip::debug::session::Session;
+use stickslip::debug::story::story;
 use stickslip::scene::{Mode, Scene};
 use stickslip::solve::{Intervention, Outcome, Status};
 use stickslip::tui::theme::Theme;
@@ -342,6 +344,43 @@ fn a_branch_that_was_left_at_its_tip_keeps_it_when_memory_is_short() {
         .unwrap();
     assert!(session.frame().is_whole());
     assert_eq!(session.cursor(), 2);
+}
+
+#[test]
+fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a.journal");
+    let mut session = session("osc-two6");
+    session.keep(Journal::create(&path, session.scene()).unwrap());
+    solve(&mut session, RUN);
+    solve(&mut session, Command::Remedies);
+    session.wait_for_looks();
+    for trial in session.looks().tried().unwrap().trials.clone() {
+        solve(&mut session, Command::Goto { step: 6 });
+        let (label, steps) = (trial.label, trial.steps);
+        solve(&mut session, Command::Follow { label, steps });
+    }
+    solve(&mut session, Command::Goto { step: 6 });
+    solve(&mut session, Command::Census);
+    session.wait_for_looks();
+    let finding = session.looks().finding(session.place()).flatten().unwrap();
+    let starts = finding.starts(0).unwrap();
+    solve(&mut session, Command::Assume(starts));
+    solve(&mut session, RUN);
+    let record = Record::read(&path).unwrap();
+    let again = record.replay().unwrap();
+    assert_eq!(again.place(), session.place());
+    assert_eq!(again.frame().state, session.frame().state);
+    assert_eq!(again.branches().len(), 13);
+    for branch in 0..13 {
+        let tip = |session: &Session| session.tree().tip(branch).unwrap().0.state.clone();
+        assert_eq!(tip(&again), tip(&session), "b{}", branch + 1);
+    }
+    let told = story(&record).unwrap();
+    assert!(
+        told.contains("Took a remedy") && told.contains("Started from a consistent state"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -173,6 +173,8 @@ pub struct Debugger {
     endless: bool,
     /// Frames of the session when the screen was last drawn.
     frames: usize,
+    /// Whether remedies were being tried then.
+    trying: bool,
     /// Whether scenes that are opened here get a journal.
     keeps: bool,
 }
@@ -194,6 +196,7 @@ impl Debugger {
             queue: VecDeque::new(),
             endless: false,
             frames: 0,
+            trying: false,
             keeps: false,
         }
     }
@@ -360,9 +363,9 @@ impl Debugger {
             return false;
         };
         let was_busy = session.is_running();
-        let was_trying = session.looks().is_trying();
         let mut seen = session.gather_looks();
-        if was_trying && !session.looks().is_trying() {
+        let trying = session.looks().is_trying();
+        if std::mem::replace(&mut self.trying, trying) && !trying {
             self.app.say("");
         }
         let reply = session.poll();
