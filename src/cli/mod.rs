@@ -10,6 +10,7 @@ mod interrupt;
 mod lesson;
 mod list;
 mod record;
+mod remedies;
 mod replay;
 mod resume;
 mod run;
@@ -105,6 +106,8 @@ enum Command {
     Resume(resume::Args),
     /// Tells a session's journal as text
     Story(story::Args),
+    /// Tries what gets a scene past its first failure, and compares
+    Remedies(remedies::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
     /// Guided lessons: lists them, begins one, checks one
@@ -174,6 +177,7 @@ pub fn main() -> ExitCode {
         Some(Command::Diff(args)) => diff::main(args),
         Some(Command::Resume(args)) => resume::main(args),
         Some(Command::Story(args)) => story::main(args),
+        Some(Command::Remedies(args)) => remedies::main(args),
         Some(Command::Study(args)) => study::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
     };

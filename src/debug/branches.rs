@@ -116,6 +116,18 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
             let slave = report::slave(model, *slave);
             format!("{slave} {held}{}", report::mode(*mode))
         }
+        Intervention::Assume(starts) => {
+            const SHOWN: usize = 3;
+            let some = starts.iter().take(SHOWN).map(|start| {
+                format!(
+                    "{} {}",
+                    report::slave(model, start.slave),
+                    report::mode(start.mode)
+                )
+            });
+            let more = if starts.len() > SHOWN { ", …" } else { "" };
+            some.collect::<Vec<_>>().join(", ") + more
+        }
         Intervention::Release { slave } => format!("{} released", report::slave(model, *slave)),
         Intervention::Increment(size) => format!("increment {size}"),
         Intervention::Friction(friction) => format!("friction {}", friction.angle),

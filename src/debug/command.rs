@@ -9,6 +9,7 @@ use crate::debug::breakpoints::Condition;
 use crate::debug::lesson;
 use crate::debug::watches::{Quantity, Watch};
 use crate::scene::{Mode, Model, Scene};
+use crate::solve::{Intervention, Start};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -31,6 +32,17 @@ pub enum Command {
     Increment(f64),
     /// Change a scalar that may change during a run: `friction.angle`, `friction.cohesion`, `settings.*`.
     Set { path: String, value: String },
+    /// Start several slave nodes at once from a state that is known.
+    Assume(Vec<Start>),
+    /// Take these steps in a new branch of this name: minor iterations (none) and interventions.
+    Follow {
+        label: String,
+        steps: Vec<Option<Intervention>>,
+    },
+    /// Find out why the minor iterations cycle from the shown state, or which states are consistent.
+    Census,
+    /// Try every remedy from the shown state.
+    Remedies,
     /// Go to a point of the current branch's line, by its place; the start is 0.
     Goto { step: usize },
     /// Go to the tip of another branch.
@@ -104,6 +116,12 @@ pub enum Ui {
     Zoom,
     /// Zoom the decision.
     Explain,
+    /// Show a page, or zoom it and back.
+    Page(Page),
+    /// Start from this consistent state of the census (from 0).
+    StartFrom(usize),
+    /// Take this remedy of the list (from 0).
+    Apply(usize),
     /// The shape larger, smaller, and all of it.
     Enlarge,
     Shrink,
@@ -148,6 +166,15 @@ pub enum Step {
     PageDown,
     First,
     Last,
+}
+
+/// A pane that has a key of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Page {
+    Timeline,
+    Diagnosis,
+    Branches,
+    Remedies,
 }
 
 /// How the table sorts the slave nodes.
@@ -330,6 +357,9 @@ enum Verb {
     },
     Watch,
     Unwatch,
+    /// Take a consistent state, or a remedy, by its number from 1.
+    StartFrom,
+    Apply,
     /// A command without arguments.
     Plain(Command),
     Snapshot {
@@ -379,7 +409,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Go, "reverse-finish", "[COUNT]", &["F"], "", "Back by an increment", Verb::Back(Unit::Increment)),
     entry(Group::Go, "reverse-continue", "", &["C"], "", "Back to the last breakpoint that held, the last failure, or the start", Verb::Back(Unit::Run)),
     entry(Group::Go, "goto", "STEP", &[], "", "To a step of this branch by its number; 0 is the start", Verb::Goto),
-    entry(Group::Go, "repeat", "", &["Enter"], "", "The last motion again (digits before a motion are its count)", Verb::Do(Ui::Repeat)),
+    entry(Group::Go, "repeat", "", &["Enter"], "", "The last motion again (digits before a motion are its count); in a list, take the selected entry", Verb::Do(Ui::Repeat)),
     entry(Group::Go, "interrupt", "", &["Ctrl-c"], "", "Stop a run after the present minor iteration", Verb::Do(Ui::Interrupt)),
 
     entry(Group::Change, "force", "[NODE] MODE", &["m"], "mode", "Force a mode for one minor iteration (then f, s, x; capital: hold)", Verb::Force { hold: false }),
@@ -390,11 +420,14 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Change, "cohesion", "FORCE", &[], "", "Change the cohesion of every slave node", Verb::SetPath("friction.cohesion")),
     entry(Group::Change, "minors", "LIMIT", &[], "", "Change the limit of minor iterations", Verb::SetPath("settings.minors")),
     entry(Group::Change, "majors", "LIMIT", &[], "", "Change the limit of major iterations", Verb::SetPath("settings.majors")),
+    entry(Group::Change, "start-from", "NUMBER", &[], "", "Start from a consistent state of the census: its modes and T_max", Verb::StartFrom),
+    entry(Group::Change, "apply", "NUMBER", &[], "", "Take a remedy of the list, in a new branch", Verb::Apply),
     entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*", Verb::Set),
 
     entry(Group::Branches, "branch", "NAME", &[], "", "To the tip of another branch: b2, its name, or the beginning of it", Verb::Branch(None)),
     entry(Group::Branches, "branch-next", "", &["]"], "", "To the tip of the next branch", Verb::Branch(Some(To::Next))),
     entry(Group::Branches, "branch-previous", "", &["["], "", "To the tip of the branch before", Verb::Branch(Some(To::Previous))),
+    entry(Group::Branches, "tree", "", &["v"], "", "The branches as a tree, beside each other; Enter goes to the selected one", Verb::Do(Ui::Page(Page::Branches))),
     entry(Group::Branches, "branches", "", &[], "", "All branches, and how each ended", Verb::Plain(Command::Branches)),
     entry(Group::Branches, "rename", "NAME", &[], "", "Call this branch so", Verb::Rename),
     entry(Group::Branches, "compare", "[BRANCH]", &[], "", "This branch beside another, or beside the one that it left", Verb::Compare),
@@ -416,11 +449,15 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "first", "", &["Home", "g"], "", "First node", Verb::Do(Ui::Move(Step::First))),
     entry(Group::Look, "last", "", &["End", "G"], "", "Last node", Verb::Do(Ui::Move(Step::Last))),
     entry(Group::Look, "node", "NAME", &["/"], "", "Select a slave node by its name or a part of it", Verb::Node),
-    entry(Group::Look, "sort", "[ORDER]", &["t"], "", "Sort the nodes: as in the scene, by margin (closest to switching first), by gap", Verb::Sort),
-    entry(Group::Look, "sort-backward", "", &["T"], "", "Sort the other way round, and back", Verb::Do(Ui::SortBackward)),
-    entry(Group::Look, "filter", "[WHICH]", &["v"], "", "Show all nodes, active ones (touching or changing), those on the selected one's surface", Verb::Filter),
+    entry(Group::Look, "sort", "[ORDER]", &[">"], "", "Sort the nodes: as in the scene, by margin (closest to switching first), by gap", Verb::Sort),
+    entry(Group::Look, "sort-backward", "", &["<"], "", "Sort the other way round, and back", Verb::Do(Ui::SortBackward)),
+    entry(Group::Look, "filter", "[WHICH]", &["A"], "", "Show all nodes, active ones (touching or changing), those on the selected one's surface", Verb::Filter),
     entry(Group::Look, "monitor", "[NAME]", &["y"], "", "The load over the next monitor, or the one of that name", Verb::Monitor),
-    entry(Group::Look, "explain", "", &["e"], "explain", "The decision on the selected node in full", Verb::Do(Ui::Explain)),
+    entry(Group::Look, "explain", "", &["e"], "explain", "The decision on the selected node in full, and who pushed it", Verb::Do(Ui::Explain)),
+    entry(Group::Look, "diagnosis", "", &["d"], "diagnosis", "Why the minor iterations cycle, and which states are consistent; Enter starts from the selected one", Verb::Do(Ui::Page(Page::Diagnosis))),
+    entry(Group::Look, "remedies", "", &["r"], "remedies", "Try every remedy from here; Enter takes the selected one", Verb::Do(Ui::Page(Page::Remedies))),
+    entry(Group::Look, "timeline", "", &["t"], "timeline", "All modes by iteration; Left and Right go through them with the whole screen", Verb::Do(Ui::Page(Page::Timeline))),
+    entry(Group::Look, "census", "", &[], "", "Try every assignment of modes on the problem that is solved next (at most 8 nodes)", Verb::Plain(Command::Census)),
     entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
     entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
     entry(Group::Look, "zoom", "", &["z"], "zoom", "This pane alone, and back", Verb::Do(Ui::Zoom)),
@@ -597,6 +634,8 @@ impl Entry {
             }
             Verb::Monitor if rest.is_empty() => return Ok(Action::Ui(Ui::Monitor(None))),
             Verb::Monitor => return Ok(Action::Ui(Ui::Monitor(Some(monitor(rest, context)?)))),
+            Verb::StartFrom => return Ok(Action::Ui(Ui::StartFrom(self.number(&words)?))),
+            Verb::Apply => return Ok(Action::Ui(Ui::Apply(self.number(&words)?))),
             Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),
         };
         Ok(Action::Session(command))
@@ -631,6 +670,20 @@ impl Entry {
         match word.parse() {
             Ok(count) if count > 0 => Ok(count),
             _ => Err(format!("'{word}' is no count; {}", self.usage())),
+        }
+    }
+
+    /// A number of a list, from 0.
+    fn number(&self, words: &[&str]) -> Result<usize, String> {
+        let [word] = words[..] else {
+            return Err(self.usage());
+        };
+        match word.parse::<usize>() {
+            Ok(number) if number > 0 => Ok(number - 1),
+            _ => Err(format!(
+                "'{word}' is no number of the list; {}",
+                self.usage()
+            )),
         }
     }
 
@@ -1100,7 +1153,7 @@ mod tests {
         );
         assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
         assert_eq!(read("re"), Err(
-            "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, redraw".into()
+            "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, redraw".into()
         ));
     }
 

@@ -370,7 +370,7 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
     format!("{doing} made {whom} {did}: {what} = {value:.4e}")
 }
 
-fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let mut lines = vec![match census.answers.len() {
         0 => format!("census: none of {} assignments is consistent", census.tried),
         1 => format!("census: of {} assignments one is consistent", census.tried),

@@ -5,6 +5,7 @@
 //!   [`compare`]: how branches ended, and two side by side.
 //! - [`journal`]: the record of a session, written as it happens, and replayed; [`story`]: it as text to read.
 //! - [`breakpoints`], [`watches`]: where a run stops, and what is looked at.
+//! - [`looks`]: what is found out beside the run: who pushed whom, censuses, and [`remedies`] tried.
 //! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
 //! - [`lesson`]: guided lessons, and free mode.
 //! - [`report`]: what happened, in words.
@@ -21,6 +22,8 @@ pub mod files;
 pub mod influence;
 pub mod journal;
 pub mod lesson;
+pub mod looks;
+pub mod remedies;
 pub mod report;
 pub mod session;
 pub mod snapshot;

@@ -199,6 +199,13 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         } => {
             format!("{} is held {} until released", slave(model, *s), mode(*m))
         }
+        Intervention::Assume(starts) => {
+            let told: Vec<String> = starts
+                .iter()
+                .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
+                .collect();
+            format!("the next minor iteration starts with {}", told.join(", "))
+        }
         Intervention::Release { slave: s } => format!("{} obeys Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {
             format!("the increment starts again with size {increment}")

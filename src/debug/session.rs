@@ -15,6 +15,7 @@ use crate::debug::breakpoints::{self, Breakpoint, Condition};
 use crate::debug::command::{Command, To, Unit};
 use crate::debug::compare::{self, Comparison};
 use crate::debug::journal::{self, Entry, Journal, JournalError};
+use crate::debug::looks::{Looks, Way};
 use crate::debug::report;
 use crate::debug::snapshot::{Applied, Snapshot};
 use crate::debug::strip::{Kind, Strip};
@@ -64,6 +65,7 @@ pub struct Session {
     /// Number that the last breakpoint was given.
     numbered: u32,
     watches: Vec<Watch>,
+    looks: Looks,
     journal: Kept,
     /// The command that the worker is at.
     pending: Option<Command>,
@@ -108,11 +110,12 @@ impl Session {
             scene,
             tree: Tree::new(model.clone(), start, bytes),
             cursor: 0,
-            worker: Worker::new(model),
+            worker: Worker::new(model.clone()),
             task: None,
             breakpoints: Vec::new(),
             numbered: 0,
             watches: Vec::new(),
+            looks: Looks::new(model),
             journal: Kept::Nowhere,
             pending: None,
             solved: 0,
@@ -271,6 +274,10 @@ impl Session {
                 let intervention = self.setting(&path, &value)?;
                 self.intervene(intervention, Some((&path, &value)))
             }
+            Command::Assume(starts) => self.intervene(Intervention::Assume(starts), None),
+            Command::Follow { label, steps } => self.follow(label, steps),
+            Command::Census => Ok(self.census()),
+            Command::Remedies => Ok(self.remedies()),
             Command::Branch(to) => self.branch(&to),
             Command::Rename(label) => self.rename(label),
             Command::Branches => Ok(Reply(branches::listed(&self.tree))),
@@ -310,7 +317,10 @@ impl Session {
     fn take(&mut self, message: Message) -> Option<Reply> {
         let reply = self.gather(message)?;
         Some(match self.pending.take() {
-            Some(command) => self.note(command, reply),
+            Some(command) => {
+                let command = self.as_far_as_done(command);
+                self.note(command, reply)
+            }
             None => reply,
         })
     }
@@ -322,6 +332,12 @@ impl Session {
                 self.accepted += u64::from(strip.kind.is_accepted());
                 self.tree.push(*frame, *strip);
                 self.cursor = self.frames().len() - 1;
+                None
+            }
+            Message::Changed(state, intervention) => {
+                let last = self.frames().len() - 1;
+                self.tree.intervene(last, *state, intervention);
+                self.cursor = last + 1;
                 None
             }
             Message::Again(state, event) => {
@@ -358,6 +374,18 @@ impl Session {
         Reply(told + &self.told())
     }
 
+    /// A command with the steps only that it took: one that was interrupted is replayed as far as it went.
+    fn as_far_as_done(&self, command: Command) -> Command {
+        match command {
+            Command::Follow { label, mut steps } => {
+                let own = self.tree.branches()[self.tree.current()].from;
+                steps.truncate(self.frames().len() - own);
+                Command::Follow { label, steps }
+            }
+            command => command,
+        }
+    }
+
     /// Notes in the journal that a motion begins to solve; what is to be said where that fails.
     fn begin(&mut self, command: &Command) -> String {
         if !matches!(self.task, Some(Task::Run)) {
@@ -371,6 +399,8 @@ impl Session {
         let looks = matches!(
             command,
             Command::Branches
+                | Command::Census
+                | Command::Remedies
                 | Command::Compare(_)
                 | Command::Breakpoints
                 | Command::Snapshot { .. }
@@ -615,6 +645,107 @@ impl Session {
             self.tree.rename(label, false);
         }
         Ok(Reply(told))
+    }
+
+    /// Takes given steps from the cursor, in a branch of their own.
+    fn follow(&mut self, label: String, steps: Vec<Option<Intervention>>) -> Result<Reply, String> {
+        let (state, before) = (
+            self.frame().state.clone(),
+            self.strips()[self.cursor].clone(),
+        );
+        self.tree.fork(self.cursor);
+        self.tree.rename(label, false);
+        self.task = Some(Task::Run);
+        self.worker.start(Job::Follow {
+            state: Box::new(state),
+            before: Box::new(before),
+            steps,
+        });
+        let name = branches::name(&self.tree, self.tree.current());
+        Ok(Reply(format!("running in the new branch {name}")))
+    }
+
+    /// What is found out beside the run.
+    pub fn looks(&self) -> &Looks {
+        &self.looks
+    }
+
+    /// Gathers what was found out; whether there was anything new. Never blocks.
+    pub fn gather_looks(&mut self) -> bool {
+        self.looks.gather()
+    }
+
+    /// Blocks until all that was asked is found out.
+    pub fn wait_for_looks(&mut self) {
+        self.looks.wait();
+    }
+
+    /// The place of the cursor, by which [`Looks`] keeps what it found.
+    pub fn place(&self) -> (usize, usize) {
+        (self.tree.current(), self.cursor)
+    }
+
+    /// Asks, where it is not known yet, what pushed a slave node in the shown minor iteration, and for the diagnosis
+    /// where that closed a cycle. Answers come with [`Session::gather_looks`].
+    pub fn look(&mut self, slave: usize) {
+        if self.is_running() || slave >= self.model().slaves.len() {
+            return;
+        }
+        let place = self.place();
+        if self.strips()[self.cursor].kind == Kind::Cycle {
+            self.census();
+        }
+        let Some(before) = self.minor_before() else {
+            return;
+        };
+        let (tree, cursor) = (&self.tree, self.cursor);
+        self.looks.ask_pushes(place, slave, || {
+            let from = tree.whole_before(before - 1);
+            let frames = &tree.frames()[from..cursor];
+            let steps = frames[1..].iter().map(|frame| frame.intervention.clone());
+            Way {
+                state: Box::new(frames[0].state.clone()),
+                steps: steps.collect(),
+                before: before - from - 1,
+            }
+        });
+    }
+
+    /// The minor iteration before the shown one in the same frozen problem, as a step of the line.
+    pub fn minor_before(&self) -> Option<usize> {
+        let strips = self.strips();
+        let shown = &strips[self.cursor];
+        let before = (1..self.cursor)
+            .rev()
+            .find(|&at| strips[at].kind.is_solved())?;
+        let of = |strip: &Strip| {
+            let at = strip.position;
+            (at.increment, at.attempt, at.major)
+        };
+        let same = of(&strips[before]) == of(shown)
+            && matches!(
+                strips[before].kind,
+                Kind::Minor | Kind::Cycle | Kind::Failed
+            );
+        (shown.kind.is_solved() && same).then_some(before)
+    }
+
+    /// Finds out why the minor iterations cycle from the shown state, or which states are consistent.
+    fn census(&mut self) -> Reply {
+        let place = self.place();
+        let state = &self.tree.frames()[self.cursor].state;
+        self.looks.ask_finding(place, state);
+        Reply("the diagnosis (d) tells what is found".into())
+    }
+
+    fn remedies(&mut self) -> Reply {
+        if self.looks.is_trying() {
+            return Reply("remedies are being tried; Ctrl-C stops that".into());
+        }
+        let place = self.place();
+        let state = &self.tree.frames()[self.cursor].state;
+        self.looks.ask_remedies(place, state);
+        Reply("trying every remedy from here; Ctrl-C stops".into())
     }
 
     fn branch(&mut self, to: &To) -> Result<Reply, String> {

@@ -73,6 +73,16 @@ fn done(model: &Model, entry: &Entry) -> String {
             };
             format!("Forced {} to {} {how}.", slave(s), report::mode(*mode))
         }
+        Command::Assume(starts) => {
+            let told: Vec<String> = starts
+                .iter()
+                .map(|start| format!("{} {}", slave(&start.slave), report::mode(start.mode)))
+                .collect();
+            format!("Started from a consistent state: {}.", told.join(", "))
+        }
+        Command::Follow { label, steps } => {
+            format!("Took a remedy, {} steps: {label}.", steps.len())
+        }
         Command::Release { slave: s } => format!("Gave {} back to Table 2.", slave(s)),
         Command::Increment(size) => format!("Started the increment again with size {size}."),
         Command::Set { path, value } => format!("Set {path} to {value}."),
@@ -90,6 +100,8 @@ fn done(model: &Model, entry: &Entry) -> String {
         Command::Branches
         | Command::Compare(_)
         | Command::Breakpoints
+        | Command::Census
+        | Command::Remedies
         | Command::Snapshot { .. } => "Looked around.".into(),
     }
 }

@@ -63,6 +63,7 @@ pub struct Branch {
 }
 
 /// The history.
+#[derive(Debug)]
 pub struct Tree {
     model: Arc<Model>,
     line: Points,
@@ -168,22 +169,7 @@ impl Tree {
     pub fn intervene(&mut self, at: usize, state: State, intervention: Intervention) -> bool {
         let forks = at + 1 < self.line.len();
         if forks {
-            let away = self.line.split_off(at + 1);
-            // The nearest branch of the line that owns the next place is the parent.
-            let chain = self.chain(self.current);
-            self.put_away(&chain, at + 1, away);
-            let parent = chain
-                .into_iter()
-                .rev()
-                .find(|&b| self.branches[b].from <= at);
-            self.branches.push(Branch {
-                label: String::new(),
-                named: false,
-                parent,
-                from: at + 1,
-                away: Points::default(),
-            });
-            self.current = self.branches.len() - 1;
+            self.fork(at);
         }
         let strip = Strip::intervention(&self.model, &state, &self.line.strips[at]);
         let frame = Frame {
@@ -194,6 +180,27 @@ impl Tree {
         };
         self.push(frame, strip);
         forks
+    }
+
+    /// Starts a new branch after a place of the line, whose frame is whole, and makes it the current one. It has no
+    /// points of its own yet.
+    pub fn fork(&mut self, at: usize) {
+        let away = self.line.split_off(at + 1);
+        // The nearest branch of the line that owns the next place is the parent.
+        let chain = self.chain(self.current);
+        self.put_away(&chain, at + 1, away);
+        let parent = chain
+            .into_iter()
+            .rev()
+            .find(|&b| self.branches[b].from <= at);
+        self.branches.push(Branch {
+            label: String::new(),
+            named: false,
+            parent,
+            from: at + 1,
+            away: Points::default(),
+        });
+        self.current = self.branches.len() - 1;
     }
 
     /// Branches from the first to this one, each the parent of the next.
@@ -318,11 +325,19 @@ impl Tree {
     /// Whole frames that may be thinned, in the order in which they are: class, nearness, and where they are.
     fn candidates(&self, looked_at: [usize; 2]) -> Vec<(u8, usize, Option<usize>, usize)> {
         let mut found = Vec::new();
+        // A branch that another one left at its tip ends on the line.
+        let ending: Vec<usize> = self
+            .chain(self.current)
+            .into_iter()
+            .filter(|&b| self.branches[b].away.len() == 0)
+            .map(|b| self.on_line_until(b).saturating_sub(1))
+            .collect();
         let mut gather = |points: &Points, branch: Option<usize>| {
             // The last one is a tip; the root is the first of the line.
             let last = points.len().saturating_sub(1);
             for (at, (frame, strip)) in points.frames.iter().zip(&points.strips).enumerate() {
-                let kept = at == last || (branch.is_none() && (at == 0 || looked_at.contains(&at)));
+                let on_line = || at == 0 || looked_at.contains(&at) || ending.contains(&at);
+                let kept = at == last || (branch.is_none() && on_line());
                 if kept || !frame.is_whole() {
                     continue;
                 }
@@ -362,7 +377,7 @@ fn empty(frame: &mut Frame, hollow: &State) {
 }
 
 /// What whole frames take in memory. Parts that several frames share are counted once, for as long as one has them.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Ledger {
     bytes: usize,
     /// Frames that have a shared part, by its address.

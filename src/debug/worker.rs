@@ -23,6 +23,13 @@ pub enum Job {
         count: u32,
         breakpoints: Vec<Breakpoint>,
     },
+    /// Steps that are given, from a state: each a minor iteration, or an intervention. `before` is the strip of the frame
+    /// that it starts from.
+    Follow {
+        state: Box<State>,
+        before: Box<Strip>,
+        steps: Vec<Option<Intervention>>,
+    },
     /// The same steps as once before, from a state: each a minor iteration, or an intervention.
     Again {
         state: Box<State>,
@@ -35,6 +42,8 @@ pub enum Job {
 pub enum Message {
     /// A new minor iteration.
     Made(Box<Frame>, Box<Strip>),
+    /// A new intervention.
+    Changed(Box<State>, Intervention),
     /// A step done again.
     Again(Box<State>, Option<Arc<Event>>),
     /// The job is over; the breakpoints at which it stopped.
@@ -77,6 +86,14 @@ impl Worker {
                             &news,
                             &flag,
                         )
+                    }
+                    Job::Follow {
+                        state,
+                        before,
+                        steps,
+                    } => {
+                        stepper.restore(&state);
+                        follow(&mut stepper, *before, steps, &news, &flag)
                     }
                     Job::Again {
                         state,
@@ -149,36 +166,80 @@ fn run(
             interrupted = true;
             break;
         }
-        let began = Instant::now();
-        let Some(event) = stepper.step() else { break };
-        let event = Arc::new(event.clone());
-        let seconds = began.elapsed().as_secs_f32();
-        let strip = Strip::of(
-            stepper.model(),
-            stepper.state(),
-            Some(&event),
-            Some(&before),
-            seconds,
-        );
+        let Some((frame, strip)) = step(stepper, &before) else {
+            break;
+        };
         left -= u32::from(ends(unit, strip.kind));
         if strip.kind.is_failure() {
             left = 0;
         }
         hits = breakpoints::hits(breakpoints, &before, &strip);
         before = strip.clone();
-        let frame = Frame {
-            state: stepper.state().clone(),
-            event: Some(event),
-            intervention: None,
-            monitors: strip.kind.is_accepted().then(|| {
-                let mut values = Vec::new();
-                stepper.monitors(&mut values);
-                Arc::new(values)
-            }),
-        };
         news.send(Message::Made(Box::new(frame), Box::new(strip)))
             .ok()?;
     }
+    news.send(Message::Done { interrupted, hits }).ok()
+}
+
+/// One minor iteration as a frame and its strip; none where the history is done.
+fn step(stepper: &mut Stepper, before: &Strip) -> Option<(Frame, Strip)> {
+    let began = Instant::now();
+    let event = Arc::new(stepper.step()?.clone());
+    let seconds = began.elapsed().as_secs_f32();
+    let strip = Strip::of(
+        stepper.model(),
+        stepper.state(),
+        Some(&event),
+        Some(before),
+        seconds,
+    );
+    let frame = Frame {
+        state: stepper.state().clone(),
+        event: Some(event),
+        intervention: None,
+        monitors: strip.kind.is_accepted().then(|| {
+            let mut values = Vec::new();
+            stepper.monitors(&mut values);
+            Arc::new(values)
+        }),
+    };
+    Some((frame, strip))
+}
+
+/// Takes given steps, as far as they can be taken; none if nobody listens any more.
+fn follow(
+    stepper: &mut Stepper,
+    mut before: Strip,
+    steps: Vec<Option<Intervention>>,
+    news: &Sender<Message>,
+    stop: &AtomicBool,
+) -> Option<()> {
+    let mut interrupted = false;
+    for given in steps {
+        if stop.load(Ordering::Relaxed) {
+            interrupted = true;
+            break;
+        }
+        match given {
+            Some(intervention) => {
+                if stepper.intervene(&intervention).is_err() {
+                    break;
+                }
+                let state = Box::new(stepper.state().clone());
+                before = Strip::intervention(stepper.model(), &state, &before);
+                news.send(Message::Changed(state, intervention)).ok()?;
+            }
+            None => {
+                let Some((frame, strip)) = step(stepper, &before) else {
+                    break;
+                };
+                before = strip.clone();
+                news.send(Message::Made(Box::new(frame), Box::new(strip)))
+                    .ok()?;
+            }
+        }
+    }
+    let hits = Vec::new();
     news.send(Message::Done { interrupted, hits }).ok()
 }
 

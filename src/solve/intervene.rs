@@ -17,6 +17,8 @@ pub enum Intervention {
         mode: Mode,
         hold: bool,
     },
+    /// Start several slave nodes at once from a state that is known: each in a mode, for the next minor iteration.
+    Assume(Vec<Start>),
     /// Give a slave node back to Table 2.
     Release { slave: usize },
     /// Change the increment size and start the present increment again.
@@ -25,6 +27,15 @@ pub enum Intervention {
     Friction(Friction),
     /// Replace the settings.
     Settings(Settings),
+}
+
+/// Where a slave node is to start from in the next minor iteration, as [`crate::debug::diagnosis::started`] has it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    pub slave: usize,
+    pub mode: Mode,
+    /// T_max, signed (force).
+    pub t_max: f64,
 }
 
 impl State {
@@ -39,6 +50,7 @@ impl State {
         }
         match intervention {
             Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,
+            Intervention::Assume(starts) => self.assume(starts)?,
             Intervention::Release { slave } => self.node_mut(*slave)?.forced = Forced::No,
             Intervention::Increment(increment) => self.retry(model, *increment)?,
             Intervention::Friction(friction) => self.rub(friction)?,
@@ -94,6 +106,22 @@ impl State {
         } else {
             Forced::Once(mode)
         };
+        Ok(())
+    }
+
+    fn assume(&mut self, starts: &[Start]) -> Result<(), String> {
+        let mut assumed = self.clone();
+        for start in starts {
+            assumed.force(start.slave, start.mode, false)?;
+            let node = assumed.node_mut(start.slave)?;
+            node.ratio = 0.0;
+            node.t_max = start.t_max;
+            node.sign = match start.t_max {
+                0.0 => 0.0,
+                t_max => t_max.signum(),
+            };
+        }
+        *self = assumed;
         Ok(())
     }
 

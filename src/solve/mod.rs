@@ -21,6 +21,6 @@ pub mod stepper;
 pub mod system;
 
 pub use event::{Event, Failure, Forced, NodeRecord, Norms, Outcome, Position};
-pub use intervene::Intervention;
+pub use intervene::{Intervention, Start};
 pub use state::{State, Status};
 pub use stepper::Stepper;

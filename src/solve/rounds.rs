@@ -25,6 +25,8 @@ struct Entry {
     spot: Option<Spot>,
     f_n: f64,
     f_t: f64,
+    /// Its position.
+    at: [f64; 2],
 }
 
 /// A cycle of major iterations.
@@ -45,9 +47,17 @@ pub struct Stop {
     pub element: Option<(usize, usize)>,
 }
 
+/// Sizes of forces and lengths.
+#[derive(Debug, Clone, Copy)]
+pub struct Scales {
+    pub force: f64,
+    pub length: f64,
+}
+
 impl Entry {
-    fn of(node: &NodeState) -> Self {
+    fn of(node: &NodeState, at: [f64; 2]) -> Self {
         Entry {
+            at,
             mode: node.mode,
             spot: node.spot,
             f_n: node.f_n,
@@ -62,16 +72,17 @@ impl Entry {
         }
     }
 
-    /// Whether both stop at the same and their numbers differ by less than `limit`, forces in units of `force`.
-    fn within(&self, other: &Entry, force: f64, limit: f64) -> bool {
+    /// Whether both stop at the same and their numbers differ by less than `limit`, in units of the scales.
+    fn within(&self, other: &Entry, scales: Scales, limit: f64) -> bool {
         let along = match (self.spot, other.spot) {
             (Some(a), Some(b)) => (a.xi - b.xi).abs(),
             _ => 0.0,
         };
         self.stop() == other.stop()
             && along <= limit
-            && (self.f_n - other.f_n).abs() <= limit * force
-            && (self.f_t - other.f_t).abs() <= limit * force
+            && (self.f_n - other.f_n).abs() <= limit * scales.force
+            && (self.f_t - other.f_t).abs() <= limit * scales.force
+            && (0..2).all(|k| (self.at[k] - other.at[k]).abs() <= limit * scales.length)
     }
 }
 
@@ -86,21 +97,23 @@ impl Rounds {
         self.entries.is_empty()
     }
 
-    /// Remembers what goes into the next major iteration.
-    pub fn push(&mut self, nodes: &[NodeState]) {
-        self.entries.extend(nodes.iter().map(Entry::of));
+    /// Remembers what goes into the next major iteration, with the positions of the slave nodes.
+    pub fn push(&mut self, nodes: &[NodeState], positions: impl Iterator<Item = [f64; 2]>) {
+        let nodes = nodes.iter().zip(positions);
+        self.entries
+            .extend(nodes.map(|(node, at)| Entry::of(node, at)));
     }
 
     /// The cycle that is closed where the last of the remembered iterations, the major iteration `major`, starts from
     /// the same as an earlier one, having been elsewhere in between.
-    pub fn cycle(&self, slaves: usize, major: u32, force: f64) -> Option<Round> {
+    pub fn cycle(&self, slaves: usize, major: u32, scales: Scales) -> Option<Round> {
         let width = slaves.max(1);
         let count = self.entries.len() / width;
         let of = |k: usize| &self.entries[k * width..(k + 1) * width];
         let here = count.checked_sub(1)?;
         let all_within = |then: usize, limit: f64| {
             let mut pairs = of(then).iter().zip(of(here));
-            pairs.all(|(a, b)| a.within(b, force, limit))
+            pairs.all(|(a, b)| a.within(b, scales, limit))
         };
         let found = (0..here).rfind(|&then| all_within(then, SAME))?;
         let mut between = found + 1..here;
@@ -110,7 +123,7 @@ impl Rounds {
         let round = found..here;
         let stops = |s: usize| round.clone().map(move |k| of(k)[s]);
         let takes_part =
-            |s: &usize| stops(*s).any(|entry| !entry.within(&of(here)[*s], force, DIFFERENT));
+            |s: &usize| stops(*s).any(|entry| !entry.within(&of(here)[*s], scales, DIFFERENT));
         let period = round.len() as u32;
         Some(Round {
             start: major - period,
@@ -128,6 +141,12 @@ mod tests {
     use super::*;
     use crate::solve::state::NodeState;
 
+    const HERE: [[f64; 2]; 1] = [[0.0; 2]];
+    const ONE: Scales = Scales {
+        force: 1.0,
+        length: 1.0,
+    };
+
     fn nodes(xi: f64, element: usize) -> Vec<NodeState> {
         let spot = Spot {
             surface: 0,
@@ -143,8 +162,8 @@ mod tests {
     fn passing_to_and_fro_between_two_elements_is_a_cycle_of_majors() {
         let mut rounds = Rounds::default();
         for k in 0..5 {
-            rounds.push(&nodes(0.3, k % 2));
-            let cycle = rounds.cycle(1, k as u32 + 1, 1.0);
+            rounds.push(&nodes(0.3, k % 2), HERE.into_iter());
+            let cycle = rounds.cycle(1, k as u32 + 1, ONE);
             assert_eq!(cycle.is_some(), k >= 2, "{k}");
             if let Some(cycle) = cycle {
                 assert_eq!((cycle.start, cycle.period), (k as u32 - 1, 2));
@@ -157,11 +176,9 @@ mod tests {
     fn converging_to_and_fro_is_no_cycle() {
         let mut rounds = Rounds::default();
         for k in 0..60 {
-            rounds.push(&nodes(
-                0.5_f64.powi(k) * if k % 2 == 0 { 1.0 } else { -1.0 },
-                0,
-            ));
-            assert_eq!(rounds.cycle(1, k as u32 + 1, 1.0), None, "{k}");
+            let xi = 0.5_f64.powi(k) * if k % 2 == 0 { 1.0 } else { -1.0 };
+            rounds.push(&nodes(xi, 0), HERE.into_iter());
+            assert_eq!(rounds.cycle(1, k as u32 + 1, ONE), None, "{k}");
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::solve::event::{Cycle, Event, Failure, NodeRecord, Norms, Outcome, Pos
 use crate::solve::frozen::Frozen;
 use crate::solve::intervene::Intervention;
 use crate::solve::minor::{carried, judge};
-use crate::solve::rounds::Round;
+use crate::solve::rounds::{Round, Scales};
 use crate::solve::singular;
 use crate::solve::state::{IncrementStart, NodeState, State, Status};
 use crate::solve::system::{Solved, System};
@@ -345,11 +345,16 @@ impl Stepper {
 
     /// Whether the next major iteration starts from where an earlier one of this increment did.
     fn find_round(&mut self) -> Option<Round> {
-        let force = self.force_scale();
+        let scales = Scales {
+            force: self.force_scale(),
+            length: self.model.length,
+        };
         let (major, slaves) = (self.state.next.major, self.state.nodes.len());
+        let positions = &self.system.positions;
+        let places = self.model.slaves.iter().map(|slave| positions[slave.node]);
         let rounds = Arc::make_mut(&mut self.state.rounds);
-        rounds.push(&self.state.nodes);
-        rounds.cycle(slaves, major, force)
+        rounds.push(&self.state.nodes, places);
+        rounds.cycle(slaves, major, scales)
     }
 
     fn update(&mut self) {

@@ -9,9 +9,9 @@ use crate::contact::table1::{Equation, Motion};
 use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
-use crate::scene::Mode;
 use crate::scene::model::{Body, BodyKind, Form, Model};
 use crate::scene::spec::{Component, Geometry, Solver, Sticking};
+use crate::scene::{Mode, Settings};
 use crate::solve::bodies::{Bodies, condensable};
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
@@ -157,7 +157,7 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
-        if self.condenses(model, state) && self.condensable {
+        if condenses(model, &state.controls.settings) && self.condensable {
             self.linearise_in(Layout::Bodies, model, state)
         } else {
             self.linearise_in(Layout::Whole, model, state)
@@ -504,18 +504,10 @@ impl System {
     /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
     /// bodies after [`System::recover`].
     pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
-        if self.condenses(model, state) {
+        if condenses(model, &state.controls.settings) {
             self.solve_condensed(model, state)
         } else {
             self.solve_augmented(model, state)
-        }
-    }
-
-    fn condenses(&self, model: &Model, state: &State) -> bool {
-        match state.controls.settings.solver {
-            Solver::Augmented => false,
-            Solver::Condensed => true,
-            Solver::Auto => 2 * model.slaves.len() * MANY_TIMES <= model.dofs.equations,
         }
     }
 
@@ -847,6 +839,15 @@ fn pairing(model: &Model, node: &NodeState) -> Option<(usize, usize)> {
     node.spot
         .filter(|s| !model.surfaces[s.surface].rigid)
         .map(|s| (s.surface, s.element))
+}
+
+/// Whether the minor iterations of a scene are solved on the condensed interface with these settings.
+pub fn condenses(model: &Model, settings: &Settings) -> bool {
+    match settings.solver {
+        Solver::Augmented => false,
+        Solver::Condensed => true,
+        Solver::Auto => 2 * model.slaves.len() * MANY_TIMES <= model.dofs.equations,
+    }
 }
 
 /// What the equation of each degree of freedom balances.

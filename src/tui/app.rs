@@ -1,12 +1,14 @@
 //! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
 //! app and yields at most one [`Effect`], which the event loop carries out.
 
+use crate::debug::branches::summaries;
 use crate::debug::command::{
-    self, Action, Command, Context, Filter, Question, Sort, Step, Ui, Whose,
+    self, Action, Command, Context, Filter, Page, Question, Sort, Step, To, Ui, Whose,
 };
 use crate::debug::lesson::tutor::Kind;
 use crate::debug::lesson::{Guess, Tutor};
 use crate::scene::Mode;
+use crate::tui::branches;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
@@ -127,7 +129,12 @@ pub struct App {
     pub filter: Filter,
     /// Monitor of the load-displacement curve.
     pub monitor: usize,
-    /// Which of the residual and the curve is shown where there is room for one.
+    /// Selected consistent state, branch (by its row in the tree) and remedy; first line of the diagnosis.
+    pub answer: usize,
+    pub branch: usize,
+    pub remedy: usize,
+    pub scroll: usize,
+    /// Which of the panes that take turns is shown where there is room for one.
     pub chart: Pane,
     /// Scenes to choose from.
     pub offers: Vec<Offer>,
@@ -168,6 +175,10 @@ impl App {
             backward: false,
             filter: Filter::All,
             monitor: 0,
+            answer: 0,
+            branch: 0,
+            remedy: 0,
+            scroll: 0,
             chart: Pane::Residual,
             offers,
             lesson: None,
@@ -198,6 +209,7 @@ impl App {
         self.overlay = Overlay::None;
         self.selected = 0;
         self.monitor = 0;
+        (self.answer, self.branch, self.remedy, self.scroll) = (0, 0, 0, 0);
         self.camera = Camera::ALL;
         self.last = None;
         self.count = None;
@@ -254,7 +266,8 @@ impl App {
     /// Ctrl-C: closes what is open and stops a run; never the program.
     fn interrupt(&mut self, view: Option<&View>) -> Option<Effect> {
         self.close(view);
-        if view.is_some_and(|view| view.running) {
+        let trying = |view: &View| view.looks.is_some_and(|looks| looks.is_trying());
+        if view.is_some_and(|view| view.running || trying(view)) {
             return Some(Effect::Interrupt);
         }
         self.say("nothing is running; q quits");
@@ -383,16 +396,24 @@ impl App {
             Ui::Interrupt => return self.interrupt(view),
             Ui::Open(scene) => return Some(Effect::Open(scene)),
             Ui::Repeat if self.lesson.as_ref().is_some_and(Tutor::is_read) => self.go_on(view),
+            Ui::Repeat if self.focus == Pane::Branches => return self.go_to_branch(view),
+            Ui::Repeat if self.focus == Pane::Remedies => return self.apply(self.remedy, view),
+            Ui::Repeat if self.focus == Pane::Diagnosis => {
+                return self.start_from(self.answer, view);
+            }
             Ui::Repeat => match self.last.clone() {
                 Some(command) => return self.attempt(Ok(Action::Session(command)), None, view),
                 None => self.complain("there is no motion to repeat yet; s is one minor iteration"),
             },
-            Ui::Move(step) => self.step(step, count.unwrap_or(1) as isize, view),
+            Ui::Move(step) => return self.step(step, count.unwrap_or(1) as isize, view),
             Ui::Select(slave) => self.selected = slave,
             Ui::NextPane => self.turn(1),
             Ui::PreviousPane => self.turn(Pane::ALL.len() - 1),
             Ui::Zoom => self.zoomed = !self.zoomed,
-            Ui::Explain => self.explain(),
+            Ui::Explain => self.show(Pane::Decision),
+            Ui::Page(page) => return self.page(page, view),
+            Ui::StartFrom(number) => return self.start_from(number, view),
+            Ui::Apply(number) => return self.apply(number, view),
             Ui::Enlarge => self.camera = self.camera.zoomed(1.25),
             Ui::Shrink => self.camera = self.camera.zoomed(0.8),
             Ui::Fit => self.camera = Camera::ALL,
@@ -480,12 +501,17 @@ impl App {
     }
 
     fn turn(&mut self, places: usize) {
-        self.focus = self.focus.turn(places);
-        if self.focus != Pane::Nodes {
-            self.page = self.focus;
+        self.look_at(self.focus.turn(places));
+    }
+
+    /// Gives a pane the focus, and a place on the screen.
+    fn look_at(&mut self, pane: Pane) {
+        self.focus = pane;
+        if pane != Pane::Nodes {
+            self.page = pane;
         }
-        if matches!(self.focus, Pane::Residual | Pane::Curve) {
-            self.chart = self.focus;
+        if pane.takes_turns() {
+            self.chart = pane;
         }
     }
 
@@ -500,13 +526,122 @@ impl App {
         }
     }
 
-    fn explain(&mut self) {
-        self.zoomed = !(self.zoomed && self.focus == Pane::Decision);
-        self.focus = Pane::Decision;
-        self.page = Pane::Decision;
+    /// Gives a pane the whole screen, or takes it back.
+    fn show(&mut self, pane: Pane) {
+        self.zoomed = !(self.zoomed && self.focus == pane);
+        self.look_at(pane);
     }
 
-    fn step(&mut self, step: Step, count: isize, view: Option<&View>) {
+    /// Shows a page of its own key; one that has nothing to show yet asks for it.
+    fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
+        self.show(match page {
+            Page::Timeline => Pane::Timeline,
+            Page::Diagnosis => Pane::Diagnosis,
+            Page::Branches => Pane::Branches,
+            Page::Remedies => Pane::Remedies,
+        });
+        let view = view?;
+        match page {
+            Page::Diagnosis if view.finding().is_none() => {
+                (self.answer, self.scroll) = (0, 0);
+                self.submit(Command::Census, Some(view))
+            }
+            Page::Branches => {
+                let all = summaries(view.tree?);
+                let order = branches::order(&all);
+                let current = order.iter().position(|&(branch, _)| all[branch].is_current);
+                self.branch = current.unwrap_or(0);
+                None
+            }
+            Page::Remedies => {
+                let looks = view.looks?;
+                let here = (view.tree?.current(), view.cursor);
+                let known = looks.tried().is_some_and(|tried| tried.place == here);
+                if known || looks.is_trying() || !self.zoomed {
+                    return None;
+                }
+                self.remedy = 0;
+                self.submit(Command::Remedies, Some(view))
+            }
+            _ => None,
+        }
+    }
+
+    /// Goes to the tip of the selected branch.
+    fn go_to_branch(&mut self, view: Option<&View>) -> Option<Effect> {
+        let all = summaries(view?.tree?);
+        let (branch, _) = *branches::order(&all).get(self.branch)?;
+        let to = To::Named(format!("b{}", branch + 1));
+        self.submit(Command::Branch(to), view)
+    }
+
+    /// Starts from a consistent state of the census.
+    fn start_from(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
+        let found = view?.finding().flatten();
+        match found.and_then(|found| found.starts(number)) {
+            Some(starts) => return self.submit(Command::Assume(starts), view),
+            None if found.is_none() => {
+                self.complain(
+                    "which states are consistent is not known here yet; :census finds out",
+                );
+            }
+            None => self.complain(format!("there is no consistent state {}", number + 1)),
+        }
+        None
+    }
+
+    /// Takes a remedy of the list, where it was tried.
+    fn apply(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
+        let (looks, here) = (view?.looks?, (view?.tree?.current(), view?.cursor));
+        let Some(tried) = looks.tried().filter(|tried| !tried.trials.is_empty()) else {
+            self.complain("no remedy is tried yet; r tries them all");
+            return None;
+        };
+        let Some(trial) = tried.trials.get(number) else {
+            self.complain(format!("there is no remedy {}", number + 1));
+            return None;
+        };
+        if looks.is_trying() || tried.place != here {
+            let (branch, step) = tried.place;
+            self.complain(match looks.is_trying() {
+                true => "remedies are still being tried; Ctrl-C stops that".into(),
+                false => format!(
+                    "these were tried from step {step} of b{}; go there, or r twice tries them from here",
+                    branch + 1
+                ),
+            });
+            return None;
+        }
+        self.zoomed = false;
+        let (label, steps) = (trial.label.clone(), trial.steps.clone());
+        self.submit(Command::Follow { label, steps }, view)
+    }
+
+    fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {
+        if self.focus == Pane::Timeline
+            && let Some(to) = view.and_then(|view| along(step, count, view))
+        {
+            return self.submit(Command::Goto { step: to }, view);
+        }
+        let tried = view.and_then(|view| view.looks?.tried());
+        let answers = view.and_then(|view| Some(view.finding()??.census.as_ref()?.answers.len()));
+        let list = match self.focus {
+            Pane::Branches => {
+                let count = view.and_then(|view| Some(view.tree?.branches().len()));
+                Some((&mut self.branch, count))
+            }
+            Pane::Remedies => Some((&mut self.remedy, tried.map(|tried| tried.trials.len()))),
+            Pane::Diagnosis if matches!(step, Step::PageUp | Step::PageDown) => {
+                Some((&mut self.scroll, Some(usize::MAX)))
+            }
+            Pane::Diagnosis => Some((&mut self.answer, answers)),
+            _ => None,
+        };
+        if let Some((at, length)) = list {
+            let last = length.unwrap_or(0).saturating_sub(1);
+            *at = moved(*at, step, count, last);
+            return None;
+        }
         let order = view.map_or(Vec::new(), |view| nodes::order(self, view));
         let last = order.len().saturating_sub(1);
         let here = order.iter().position(|slave| *slave == self.selected);
@@ -530,6 +665,7 @@ impl App {
             (_, Step::Last) => self.selected = row(last),
             (_, Step::Left | Step::Right) => {}
         }
+        None
     }
 
     fn ask(&mut self, question: Question, view: Option<&View>) {
@@ -717,6 +853,35 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         selected,
         scenes,
     }
+}
+
+/// Where a step in a list of so many entries leads.
+fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
+    let by = match step {
+        Step::Up => -count,
+        Step::Down => count,
+        Step::PageUp => -PAGE,
+        Step::PageDown => PAGE,
+        Step::First => return 0,
+        Step::Last => return last,
+        Step::Left | Step::Right => 0,
+    };
+    at.saturating_add_signed(by).min(last)
+}
+
+/// Where a step along the timeline leads; none where it is no such step.
+fn along(step: Step, count: isize, view: &View) -> Option<usize> {
+    let last = view.frames.len().saturating_sub(1);
+    let by = match step {
+        Step::Left => -count,
+        Step::Right => count,
+        Step::PageUp => -PAGE,
+        Step::PageDown => PAGE,
+        Step::First => return Some(0),
+        Step::Last => return Some(last),
+        Step::Up | Step::Down => return None,
+    };
+    Some(view.cursor.saturating_add_signed(by).min(last))
 }
 
 /// What comes after one of several, round and round.

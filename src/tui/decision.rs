@@ -1,6 +1,7 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
 
 use crate::contact::decision::{Decision, Rule, Test, Tested};
+use crate::debug::looks::Push;
 use crate::debug::report::{self, MODES, TABLE_2};
 use crate::scene::Mode;
 use crate::scene::spec::Ties;
@@ -75,13 +76,106 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     all.extend(tests);
     all.extend(air(spare >= 5 || (2..4).contains(&spare)));
     all.extend(words);
+    let pushes = if hidden {
+        Vec::new()
+    } else {
+        pushes(slave, record, view, theme)
+    };
+    let room = (inner.height as usize).saturating_sub(all.len());
+    let zoomed = room > MEASURED + pushes.len();
+    if !zoomed && room > 1 && pushes.len() > 1 {
+        all.push(Line::default());
+        let least = usize::from(room < 4);
+        all.extend(pushes.iter().skip(least).cloned());
+    }
     if let Some(record) = record
-        && (inner.height as usize) > all.len() + MEASURED
+        && zoomed
     {
         all.push(Line::default());
         all.extend(measured(record, view, theme));
+        all.push(Line::default());
+        all.extend(pushes);
     }
     draw::lines(buffer, inner, &all);
+}
+
+/// Who pushed the node since the minor iteration before: a heading, and the changes that did most to what was tested.
+fn pushes(
+    slave: usize,
+    record: Option<&NodeRecord>,
+    view: &View,
+    theme: &Theme,
+) -> Vec<Line<'static>> {
+    const MOST: usize = 6;
+    let heading = |text: &str| Line::styled(format!(" {text}"), theme.heading);
+    let Some(record) = record else {
+        return Vec::new();
+    };
+    let Some(found) = view.pushes(slave) else {
+        return Vec::new();
+    };
+    let Some(found) = found else {
+        return vec![heading("Who pushed it cannot be told here")];
+    };
+    let tested = tested(&record.decision);
+    let of = |push: &Push| match tested {
+        Tested::Gap => push.influence.gap,
+        Tested::NormalForce => push.influence.f_n,
+        Tested::ShearForce => push.influence.f_t,
+        Tested::Slip => push.influence.slip,
+    };
+    let symbol = match tested {
+        Tested::Gap => "Δg",
+        Tested::NormalForce => "ΔF_n",
+        Tested::ShearForce => "ΔF_t",
+        Tested::Slip => "Δslip",
+    };
+    let mut found: Vec<&Push> = found.iter().filter(|push| of(push) != 0.0).collect();
+    found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
+    let together: f64 = found.iter().map(|push| of(push)).sum();
+    let mut lines = vec![heading("Who pushed it since the minor iteration before")];
+    for push in found.iter().take(MOST) {
+        let text = format!(" {}: {symbol} = {}", deed(push, view), signed(of(push)));
+        lines.push(Line::styled(text, theme.text));
+    }
+    if found.len() > MOST {
+        let text = format!(
+            " all {} together: {symbol} = {}",
+            found.len(),
+            signed(together)
+        );
+        lines.push(Line::styled(text, theme.faint));
+    }
+    lines
+}
+
+/// A number with its sign, four digits.
+fn signed(value: f64) -> String {
+    match value {
+        value if value < 0.0 => number::short(value),
+        value => format!("+{}", number::short(value)),
+    }
+}
+
+/// What a node did, in words.
+fn deed(push: &Push, view: &View) -> String {
+    let name = view.slave(push.slave);
+    match push.modes {
+        [a, b] if a == b => format!("the new T_max of {name}"),
+        [_, Mode::Free] => format!("opening {name}"),
+        [Mode::Free, _] => format!("closing {name}"),
+        [_, Mode::Sliding] => format!("letting {name} slide"),
+        [_, Mode::Fixed] => format!("sticking {name}"),
+    }
+}
+
+/// The number that decided: what fired, or else what was tested first.
+fn tested(decision: &Decision) -> Tested {
+    let tests = || decision.tests.iter().flatten();
+    let fired = tests().find(|test| test.margin < 0.0);
+    fired
+        .or(tests().next())
+        .map_or(Tested::Gap, |test| test.tested)
 }
 
 /// Lines that [`measured`] takes.

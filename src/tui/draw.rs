@@ -5,7 +5,10 @@ use crate::tui::app::{App, Overlay};
 use crate::tui::layout::{self, Pane};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
-use crate::tui::{chooser, curve, decision, footer, help, lesson, nodes, residual, shape, status};
+use crate::tui::{
+    branches, chooser, curve, decision, diagnosis, footer, help, lesson, nodes, remedies, residual,
+    shape, status, timeline,
+};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -40,6 +43,19 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
 }
 
 fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    // These tell what comes next.
+    let tells = [
+        Pane::Timeline,
+        Pane::Diagnosis,
+        Pane::Branches,
+        Pane::Remedies,
+    ];
+    if tells.contains(&pane) && app.hides_any(view) {
+        let inner = frame(buffer, area, "Hidden", app.focus == pane, &app.theme);
+        let text = " until you have said what follows";
+        Line::styled(text, app.theme.faint).render(inner, buffer);
+        return;
+    }
     match pane {
         Pane::Nodes => nodes::draw(buffer, area, app, view),
         Pane::Decision => decision::draw(buffer, area, app, view),
@@ -47,6 +63,10 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
         Pane::Shape => shape::draw(buffer, area, app, view),
         Pane::Curve => curve::draw(buffer, area, app, view),
         Pane::Lesson => lesson::draw(buffer, area, app),
+        Pane::Timeline => timeline::draw(buffer, area, app, view),
+        Pane::Diagnosis => diagnosis::draw(buffer, area, app, view),
+        Pane::Branches => branches::draw(buffer, area, app, view),
+        Pane::Remedies => remedies::draw(buffer, area, app, view),
     }
 }
 

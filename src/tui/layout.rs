@@ -1,8 +1,8 @@
 //! Where everything stands on the screen.
 //!
 //! Three arrangements. Small (80x24): the table, and under it one more pane, which Tab changes. Medium (120x40):
-//! the table across, the decision over the residual (or the curve, whichever Tab came to last) on the left, the shape
-//! on the right. Large (200x60): two columns. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
+//! the table across, the decision over one more pane (whichever Tab or its key came to last) on the left, the shape
+//! on the right. Large (200x60): two columns over the timeline. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
 //! one pane at a time.
 
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -15,19 +15,32 @@ pub enum Pane {
     Residual,
     Shape,
     Curve,
+    Timeline,
+    Diagnosis,
+    Branches,
+    Remedies,
     /// Never has the focus, and is only there while a lesson is taken.
     Lesson,
 }
 
 impl Pane {
     /// All that Tab goes through, in its order.
-    pub const ALL: [Pane; 5] = [
+    pub const ALL: [Pane; 9] = [
         Pane::Nodes,
         Pane::Decision,
         Pane::Residual,
         Pane::Shape,
         Pane::Curve,
+        Pane::Timeline,
+        Pane::Diagnosis,
+        Pane::Branches,
+        Pane::Remedies,
     ];
+
+    /// Whether it takes turns with others where there is room for one of them.
+    pub fn takes_turns(self) -> bool {
+        !matches!(self, Pane::Nodes | Pane::Decision | Pane::Shape)
+    }
 
     /// The pane so many places further on.
     pub fn turn(self, places: usize) -> Pane {
@@ -42,7 +55,7 @@ pub struct Choice {
     pub focus: Pane,
     /// The pane under the table on a small screen.
     pub page: Pane,
-    /// The residual or the curve, where there is room for one.
+    /// Which of the panes that take turns is shown, where there is room for one.
     pub chart: Pane,
     /// Whether the pane with the focus has the screen for itself.
     pub zoomed: bool,
@@ -76,6 +89,11 @@ const TALL_DECISION: u16 = 17;
 const LESSON: u16 = 62;
 /// Fewest rows of a page between the table and a lesson.
 const PAGE: u16 = 5;
+/// Rows of the timeline that are no nodes, border included, and most nodes that it shows on a large screen.
+const TIMELINE_FRAME: u16 = 7;
+const LONGEST_TIMELINE: usize = 6;
+/// Rows of a large screen's body from which on the timeline has a place of its own.
+const ROOM_FOR_TIMELINE: u16 = 50;
 
 /// Arranges the screen.
 pub fn places(area: Rect, choice: &Choice) -> Places {
@@ -110,7 +128,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         .iter()
         .filter(|(pane, _)| *pane != Pane::Lesson)
         .count();
-    let paged = listed < Pane::ALL.len() - 1 && !choice.zoomed;
+    let paged = listed < 4 && !choice.zoomed;
     Places {
         status,
         panes,
@@ -203,12 +221,18 @@ fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 }
 
 fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    let timeline = match body.height {
+        0..ROOM_FOR_TIMELINE => 0,
+        _ => (choice.slaves.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME,
+    };
+    let rows = [Constraint::Min(0), Constraint::Length(timeline)];
+    let [body, timeline] = Layout::vertical(rows).areas(body);
     let columns = [
         Constraint::Length((body.width * 11 / 20).clamp(104, 130)),
         Constraint::Min(0),
     ];
     let [left, right] = Layout::horizontal(columns).areas(body);
-    let most = left.height - TALL_DECISION - 10;
+    let most = left.height - TALL_DECISION - 7;
     let rows = [
         Constraint::Length(table(choice, most)),
         Constraint::Length(TALL_DECISION),
@@ -217,13 +241,22 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let [nodes, decision, residual] = Layout::vertical(rows).areas(left);
     let rows = [Constraint::Fill(3), Constraint::Fill(2)];
     let [shape, curve] = Layout::vertical(rows).areas(right);
-    vec![
+    let third = match choice.chart {
+        Pane::Curve => Pane::Residual,
+        Pane::Timeline if timeline.height > 0 => Pane::Residual,
+        chart => chart,
+    };
+    let mut panes = vec![
         (Pane::Nodes, nodes),
         (Pane::Decision, decision),
-        (Pane::Residual, residual),
+        (third, residual),
         (Pane::Shape, shape),
         (Pane::Curve, curve),
-    ]
+    ];
+    if timeline.height > 0 {
+        panes.push((Pane::Timeline, timeline));
+    }
+    panes
 }
 
 #[cfg(test)]
@@ -249,7 +282,12 @@ mod tests {
         for (width, height) in [(120, 40), (200, 60), (110, 36), (160, 46)] {
             for slaves in [0, 1, 9, 1000] {
                 let places = at(width, height, slaves);
-                assert_eq!(places.panes.len(), if width < 160 { 4 } else { 5 });
+                let panes = match (width, height) {
+                    (0..160, _) => 4,
+                    (_, 0..55) => 5,
+                    _ => 6,
+                };
+                assert_eq!(places.panes.len(), panes);
                 assert!(!places.paged);
                 assert!(
                     places

@@ -7,11 +7,13 @@
 //! and [`terminal`] touch the world: the real terminal, signals, and the session.
 
 pub mod app;
+pub mod branches;
 pub mod canvas;
 pub mod chooser;
 pub mod commandline;
 pub mod curve;
 pub mod decision;
+pub mod diagnosis;
 pub mod draw;
 pub mod footer;
 pub mod help;
@@ -20,12 +22,14 @@ pub mod layout;
 pub mod lesson;
 pub mod nodes;
 pub mod number;
+pub mod remedies;
 pub mod residual;
 pub mod run;
 pub mod shape;
 pub mod status;
 pub mod terminal;
 pub mod theme;
+pub mod timeline;
 pub mod view;
 
 pub use app::{App, Effect};

@@ -192,6 +192,8 @@ pub struct Debugger {
     endless: bool,
     /// Frames of the session when the screen was last drawn.
     frames: usize,
+    /// Whether remedies were being tried then.
+    trying: bool,
     /// Whether scenes that are opened here get a journal.
     keeps: bool,
 }
@@ -213,6 +215,7 @@ impl Debugger {
             queue: VecDeque::new(),
             endless: false,
             frames: 0,
+            trying: false,
             keeps: false,
         }
     }
@@ -276,11 +279,21 @@ impl Debugger {
 
     /// Waits until the solver has nothing left to do.
     pub fn settle(&mut self) {
-        while self.is_busy() || !self.queue.is_empty() {
-            if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
-                self.tell(reply);
+        loop {
+            while self.is_busy() || !self.queue.is_empty() {
+                if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
+                    self.tell(reply);
+                }
+                self.advance();
             }
             self.advance();
+            if self.is_busy() || !self.queue.is_empty() {
+                continue;
+            }
+            match &mut self.session {
+                Some(session) if session.looks().is_busy() => session.wait_for_looks(),
+                _ => return,
+            }
         }
     }
 
@@ -360,6 +373,7 @@ impl Debugger {
         }
         if let Some(session) = &self.session {
             session.interrupt();
+            session.looks().interrupt();
             self.app.say("stopping after this minor iteration");
         }
     }
@@ -396,6 +410,11 @@ impl Debugger {
             return false;
         };
         let was_busy = session.is_running();
+        let mut seen = session.gather_looks();
+        let trying = session.looks().is_trying();
+        if std::mem::replace(&mut self.trying, trying) && !trying {
+            self.app.say("");
+        }
         let reply = session.poll();
         let said = reply.is_some();
         if let Some(reply) = reply {
@@ -416,11 +435,25 @@ impl Debugger {
                 "the solver broke down, please report this: {message}"
             ));
         }
+        if !busy && self.queue.is_empty() {
+            seen |= self.look();
+        }
         if !busy && let Some(command) = self.queue.pop_front() {
             self.start(command);
             return true;
         }
-        said || grown || failed || was_busy != busy
+        seen || said || grown || failed || was_busy != busy
+    }
+
+    /// Asks for what the panes would tell of the shown iteration and the selected node. Returns whether anything new is
+    /// asked.
+    fn look(&mut self) -> bool {
+        let Some(session) = &mut self.session else {
+            return false;
+        };
+        let before = session.looks().is_busy();
+        session.look(self.app.selected);
+        session.looks().is_busy() != before
     }
 
     /// Waits a moment for a quick step, so that keys typed fast are not told to wait. A run to the end is none.

@@ -1,6 +1,9 @@
 //! What the panes show: a borrowed, read-only look at a session.
 
+use crate::debug::looks::{Finding, Looks, Push};
 use crate::debug::session::{Frame, Session};
+use crate::debug::strip::Strip;
+use crate::debug::tree::Tree;
 use crate::scene::{Mode, Model, Scene};
 use crate::solve::{Event, Forced, Intervention, NodeRecord, Norms, Outcome, Position};
 
@@ -14,6 +17,11 @@ pub struct View<'a> {
     pub model: &'a Model,
     /// The history, oldest first; never empty.
     pub frames: &'a [Frame],
+    /// The compact records of the same points; none in tests by hand.
+    pub strips: &'a [Strip],
+    /// The whole history, and what was found out beside it; tests by hand have neither.
+    pub tree: Option<&'a Tree>,
+    pub looks: Option<&'a Looks>,
     /// Which of them is shown.
     pub cursor: usize,
     /// Whether the solver is at work.
@@ -30,6 +38,9 @@ impl<'a> View<'a> {
             scene: Some(session.scene()),
             model: session.model(),
             frames: session.frames(),
+            strips: session.strips(),
+            tree: Some(session.tree()),
+            looks: Some(session.looks()),
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.residual_history(),
@@ -38,6 +49,17 @@ impl<'a> View<'a> {
             view.residuals.clear();
         }
         view
+    }
+
+    /// What is found out about the problem that is solved next from here; an inner none while that is at work.
+    pub fn finding(&self) -> Option<Option<&'a Finding>> {
+        self.looks?.finding((self.tree?.current(), self.cursor))
+    }
+
+    /// What pushed a slave node in the shown minor iteration; an inner none where that cannot be told.
+    pub fn pushes(&self, slave: usize) -> Option<Option<&'a [Push]>> {
+        self.looks?
+            .pushes((self.tree?.current(), self.cursor), slave)
     }
 
     /// The frame that is shown.

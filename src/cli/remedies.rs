@@ -1,0 +1,71 @@
+//! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints what each
+//! costs and leaves.
+
+use super::{Error, Exit, SceneArgs, say, tell};
+use crate::debug::remedies::{self, COLUMNS, End};
+use crate::debug::report;
+use crate::solve::{Outcome, Stepper};
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let scene = args.scene.open()?;
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let failed = loop {
+        match stepper.step() {
+            None => break None,
+            Some(event) if matches!(event.outcome, Outcome::Failed(_)) => {
+                break Some(event.clone());
+            }
+            Some(_) => {}
+        }
+    };
+    let Some(failed) = failed else {
+        tell("it converges; there is nothing to remedy");
+        return Ok(Exit::Good);
+    };
+    tell(&report::outcome(stepper.model(), &failed));
+    let state = stepper.state().clone();
+    let mut trials = Vec::new();
+    for remedy in remedies::all(&mut stepper, &state) {
+        trials.extend(remedies::attempt(&mut stepper, &state, &remedy, &|| false));
+    }
+    remedies::sort(&mut trials);
+    let rows = trials.iter().map(|trial| {
+        let mut row = vec![trial.label.clone()];
+        row.extend(remedies::row(trial));
+        row
+    });
+    let mut headings = vec!["remedy".to_owned()];
+    headings.extend(COLUMNS.map(String::from));
+    say(&table(&headings, &rows.collect::<Vec<_>>()))?;
+    let any = trials.iter().any(|trial| trial.end == End::Converged);
+    Ok(if any { Exit::Good } else { Exit::Unconverged })
+}
+
+/// Columns, the first to the left, all others to the right.
+fn table(headings: &[String], rows: &[Vec<String>]) -> String {
+    let width = |k: usize| {
+        let cells = rows.iter().map(|row| row[k].chars().count());
+        cells.chain([headings[k].len()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..headings.len()).map(width).collect();
+    let line = |row: &[String]| {
+        let cells = row.iter().zip(&widths).enumerate();
+        let cells: Vec<String> = cells
+            .map(|(k, (cell, &width))| match k {
+                0 => format!("{cell:<width$}"),
+                _ => format!("{cell:>width$}"),
+            })
+            .collect();
+        cells.join("  ").trim_end().to_owned() + "\n"
+    };
+    let mut text = line(headings);
+    text.extend(rows.iter().map(|row| line(row)));
+    text
+}
