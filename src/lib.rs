@@ -3,7 +3,7 @@
 //! The map of the house, from the ground up; an arrow of use only ever points down this list.
 //!
 //! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
-//! - [`linalg`]: the only file that knows faer. Sparsity patterns, factors, checked solves.
+//! - [`linalg`]: the only place that knows faer, a package of its own. Sparsity patterns, factors, checked solves.
 //! - [`fem`]: the bodies. Shape functions, beams, quadrilaterals, materials, assembly of internal forces and tangent.
 //! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.
 //! - [`solve`]: the stepper: increments, major iterations, minor iterations, one per call.
@@ -15,8 +15,9 @@ pub mod cli;
 pub mod contact;
 pub mod debug;
 pub mod fem;
-pub mod linalg;
 pub mod scene;
 pub mod solve;
 pub mod study;
 pub mod tui;
+
+pub use stickslip_linalg as linalg;

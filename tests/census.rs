@@ -4,7 +4,7 @@ mod common;
 
 use common::{run, scene};
 use std::sync::Arc;
-use stickslip::debug::census::census;
+use stickslip::solve::census::census;
 use stickslip::solve::{Failure, Stepper};
 
 #[test]
@@ -46,7 +46,7 @@ fn where_nothing_touches_the_free_state_is_the_one_answer() {
     let frozen = stepper.frozen().unwrap();
     let count = frozen.nodes.len();
     let found = census(&frozen);
-    if count > stickslip::debug::census::MOST {
+    if count > stickslip::solve::census::MOST {
         assert!(found.unwrap_err().contains("core"));
     } else {
         assert_eq!(

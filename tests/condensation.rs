@@ -78,6 +78,9 @@ fn a_solid_that_nothing_holds_is_named_condensed_too() {
         let loose = ON_SOLID
             .replace("GA", ", GA: 500")
             .replace("fix: [x, y, r", "fix: [x, r");
+        let by_table_2 =
+            |text: &str| text.replace("history:", "settings: (strategy: table2), history:");
+        let loose = by_table_2(&loose);
         let run = solve(&loose, solver);
         let failure = run.failure.as_ref().map(|(_, failure)| failure);
         assert!(
@@ -86,7 +89,7 @@ fn a_solid_that_nothing_holds_is_named_condensed_too() {
         );
         let text = FLOATING.replace("1), (2.25, 1.6)", "2), (2.25, 2.6)");
         let text = text.replace("start: fixed", "start: free");
-        let run = solve(&text, solver);
+        let run = solve(&by_table_2(&text), solver);
         let Some((_, Failure::Singular(Singular::Rigid { motions }))) = &run.failure else {
             panic!("{solver}: {:?}", run.failure)
         };

@@ -32,6 +32,7 @@ fn problem(contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
         history: History {
             path: vec![0.0, 1.0],
             increment: 0.25,
+            least: None,
         },
         settings: Settings::default(),
     }

@@ -221,15 +221,17 @@ fn remedies_are_measured_and_the_chosen_one_is_done_again_in_a_branch_of_its_own
         found.unwrap_or_else(|| panic!("{label}")).end.clone()
     };
     assert_eq!(ends("answer 1: beam.5 sliding"), End::Converged);
-    assert_eq!(ends("enter contact as sliding"), End::Converged);
     for label in [
-        "one change",
+        "enter contact as sliding",
+        "the same, entering",
         "block",
-        "hysteresis",
-        "t_max",
-        "residual",
-        "half",
+        "semismooth Newton",
+        "Lemke",
+        "the ladder",
     ] {
+        assert_eq!(ends(label), End::Converged, "{label}");
+    }
+    for label in ["one change", "hysteresis", "t_max", "residual", "half"] {
         assert!(matches!(ends(label), End::Failed(_)), "{label}");
     }
     let best = &tried.trials[0];
@@ -269,7 +271,7 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
         assert!(finished(&session), "{}", trial.label);
         good += 1;
     }
-    assert_eq!(good, 2);
+    assert_eq!(good, 7);
     let ends: Vec<Verdict> = session.branches().into_iter().map(|b| b.verdict).collect();
     assert_eq!(ends[0], Verdict::Cycle);
     assert!(
@@ -318,7 +320,7 @@ fn branches_are_walked_and_stand_beside_each_other() {
     let mut debugger = debugger("osc-inclined-cantilever", "c r Enter v Up");
     let seen = text(&debugger, 120, 40);
     assert!(
-        seen.contains("b1: start") && seen.contains("└ b2: answer 1"),
+        seen.contains("b1: start") && seen.contains("└ b2: "),
         "{seen}"
     );
     assert!(
@@ -374,8 +376,8 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     let again = record.replay().unwrap();
     assert_eq!(again.place(), session.place());
     assert_eq!(again.frame().state, session.frame().state);
-    assert_eq!(again.branches().len(), 13);
-    for branch in 0..13 {
+    assert_eq!(again.branches().len(), 17);
+    for branch in 0..17 {
         let tip = |session: &Session| session.tree().tip(branch).unwrap().0.state.clone();
         assert_eq!(tip(&again), tip(&session), "b{}", branch + 1);
     }

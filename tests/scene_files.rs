@@ -966,7 +966,7 @@ fn settings_from_outside_reach_the_model_and_are_named_in_messages() {
             "foo",
             "it must be one of lagged, consistent",
         ),
-        ("settings.foo", "1", "settings has settings.residual"),
+        ("settings.foo", "1", "settings has settings.strategy"),
         ("refine", "-1", "it must be a whole number"),
         ("refine", "0", "--set refine=0: refine is 0"),
         (

@@ -8,7 +8,7 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use std::sync::Arc;
-use stickslip::contact::decision::{Decision, Numbers, Rule, Ties, decide};
+use stickslip::contact::decision::{Decision, Entry, Numbers, Rule, Ties, decide};
 use stickslip::debug::command::{Command, Unit};
 use stickslip::debug::session::{Frame, Session};
 use stickslip::scene::model::{Beam, Body, BodyKind, Dofs, Monitor, Node, Slave, Surface, Watched};
@@ -80,6 +80,7 @@ fn model(slaves: usize) -> Model {
         prescribed: vec![],
         path: vec![0.0, 1.0],
         increment: 0.1,
+        least: 0.1,
         settings: Settings::default(),
         monitors: vec![],
         length: 4.0,
@@ -101,7 +102,7 @@ fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -> No
             f_t,
             t_max,
             slip,
-            smooth: false,
+            entry: Entry::Fixed,
         },
         &ties,
     );

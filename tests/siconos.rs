@@ -79,7 +79,8 @@ fn two_contacts_are_solved_by_both_solvers() {
 /// The reference's smallest case with friction: the only answer slides with r_n = 4/5, and Table 2 cycles.
 #[test]
 fn the_single_contact_cycles_and_slides_once_it_is_forced_to() {
-    let scene = Scene::open(&path("dense.dat"), &[]).unwrap();
+    let table_2 = [("settings.strategy".to_owned(), "table2".to_owned())];
+    let scene = Scene::open(&path("dense.dat"), &table_2).unwrap();
     let mut run = run(&scene);
     let Some((_, Failure::Cycle(cycle))) = &run.failure else {
         panic!("{:?}", run.failure)

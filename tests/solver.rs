@@ -7,6 +7,8 @@ use stickslip::scene::{Mode, Scene};
 use stickslip::solve::event::{Motion, Singular};
 use stickslip::solve::{Failure, Forced, Intervention, Outcome, Status};
 
+const TABLE_2: (&str, &str) = ("settings.strategy", "table2");
+
 fn text(body: &str) -> Scene {
     Scene::from_text("test.ron", body, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -19,7 +21,7 @@ fn failure(run: &Run) -> &Failure {
 fn a_pinned_beam_that_starts_free_is_told_to_turn_about_its_pin() {
     let run = run(&scene(
         "01-pinned-beam-rough-floor",
-        &[("slaves[0].start", "free")],
+        &[("slaves[0].start", "free"), TABLE_2],
     ));
     let Failure::Singular(Singular::Rigid { motions }) = failure(&run) else {
         panic!("{:?}", run.failure)
@@ -61,7 +63,7 @@ fn a_body_that_nothing_holds_is_named_with_each_of_its_motions() {
 fn a_failed_increment_leaves_the_state_before_it_to_go_on_from() {
     let mut run = run(&scene(
         "01-pinned-beam-rough-floor",
-        &[("slaves[0].start", "free")],
+        &[("slaves[0].start", "free"), TABLE_2],
     ));
     assert!(matches!(run.stepper.state().status, Status::Failed(_)));
     force(&mut run, 0, Mode::Sliding, false);
@@ -125,7 +127,7 @@ fn ties_keep_the_mode_and_let_the_inclined_cantilever_slide_where_the_printed_ta
 fn limits_stop_an_increment_or_mark_it_as_the_settings_say() {
     let stopped = run(&scene(
         "01-pinned-beam-rough-floor",
-        &[("settings.minors", "5")],
+        &[("settings.minors", "5"), TABLE_2],
     ));
     assert!(
         matches!(failure(&stopped), Failure::MinorLimit { limit: 5, changing } if changing == &[0])
@@ -143,7 +145,11 @@ fn limits_stop_an_increment_or_mark_it_as_the_settings_say() {
     assert!(marked.accepted.iter().filter(unsettled).count() > 40);
     let stopped = run(&scene(
         "02-two-cantilevers-smooth",
-        &[("settings.majors", "3"), ("settings.geometry", "frozen")],
+        &[
+            ("settings.majors", "3"),
+            ("settings.geometry", "frozen"),
+            TABLE_2,
+        ],
     ));
     assert!(matches!(
         failure(&stopped),

@@ -134,6 +134,9 @@ struct Run<'a> {
     majors: u64,
     /// Increments that were accepted in spite of something.
     doubtful: u32,
+    /// How often the strategy changed or the increment was cut.
+    notes: u32,
+    quiet: bool,
     /// Monitors after the last accepted increment.
     monitors: Vec<f64>,
 }
@@ -158,6 +161,8 @@ impl<'a> Run<'a> {
             accepted: 0,
             majors: 0,
             doubtful: 0,
+            notes: 0,
+            quiet,
             monitors: Vec::new(),
         }
     }
@@ -177,7 +182,13 @@ impl<'a> Run<'a> {
             if let Outcome::Failed(failure) = &event.outcome {
                 return Ok(End::Failed(failure.clone()));
             }
-            if matches!(event.outcome, Outcome::Increment { .. }) {
+            if matches!(
+                event.outcome,
+                Outcome::Climbed { .. } | Outcome::Cut { .. } | Outcome::Damped { .. }
+            ) {
+                self.note();
+            }
+            if matches!(self.stepper.event().outcome, Outcome::Increment { .. }) {
                 sent = first_closed(sent, self.accept(outputs)?);
             }
             if sent == Sent::Closed {
@@ -198,6 +209,16 @@ impl<'a> Run<'a> {
         self.majors += u64::from(event.position.major);
         self.minors = 0;
         sent
+    }
+
+    /// Tells how the strategy went on where it could not go on as it was.
+    fn note(&mut self) {
+        self.notes += 1;
+        if self.notes <= MOST_WARNINGS && !self.quiet {
+            self.progress.clear();
+            let told = report::outcome(&self.scene.model, self.stepper.event());
+            tell(&format!("note: {told}"));
+        }
     }
 
     /// Tells what the last increment was accepted in spite of.
@@ -228,6 +249,12 @@ impl<'a> Run<'a> {
                 self.doubtful
             ));
         }
+        if self.notes > MOST_WARNINGS && !args.quiet {
+            tell(&format!(
+                "note: {} times in all the strategy went on like this",
+                self.notes
+            ));
+        }
         if !args.quiet {
             self.tell_summary(args.csv.is_none());
         }
@@ -250,7 +277,7 @@ impl<'a> Run<'a> {
                     failure,
                 );
                 tell(&format!("{name}: {told}"));
-                if matches!(failure, Failure::Cycle(_)) {
+                if matches!(failure, Failure::Cycle(_) | Failure::NoAnswer { .. }) {
                     self.diagnose();
                 }
                 Exit::Unconverged

@@ -23,12 +23,26 @@ pub enum Rule {
     FreeSticks,
     /// g < 0, smooth interface: straight to sliding.
     FreeSlides,
+    /// g < 0, rough interface, by a strategy that lets it slide against its travel.
+    FreeEnters,
     /// g > 0.
     FreeStays,
     /// The node's projection lies past an end of every surface: nothing to touch.
     OffSurface,
     /// The user holds the mode; Table 2 was not obeyed.
     Held,
+    /// One change at a time: another node comes first.
+    Waits,
+    /// Newton: F_n − k g <= 0.
+    NewtonOpens,
+    /// Newton: F_n − k g > 0, and |F_t + k slip| within the limit that this gives.
+    NewtonSticks,
+    /// Newton: F_n − k g > 0, and |F_t + k slip| beyond that limit.
+    NewtonSlides,
+    /// A step of Lemke's pivoting, on the problem relaxed by the covering variable.
+    Pivots,
+    /// The state that was found consistent, by pivoting or by the census.
+    Found,
 }
 
 /// What an inequality of Table 2 compares.
@@ -42,6 +56,12 @@ pub enum Tested {
     Slip,
     /// g against 0 (length).
     Gap,
+    /// F_n − k g against 0, for the interface's spring stiffness k (force).
+    Pressure,
+    /// |F_t + k slip| against tan φ (F_n − k g) + c (force).
+    Drag,
+    /// The covering variable of Lemke's pivoting against 0: how far the problem is still relaxed (relative).
+    Cover,
 }
 
 /// One inequality of Table 2 with its numbers.
@@ -83,8 +103,19 @@ pub struct Numbers {
     pub t_max: f64,
     /// u_tS* − u_tS as counted (length).
     pub slip: f64,
-    /// Neither friction angle nor cohesion.
-    pub smooth: bool,
+    /// How it enters contact.
+    pub entry: Entry,
+}
+
+/// How a free node enters contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entry {
+    /// A rough node, by Table 2.
+    Fixed,
+    /// A smooth one, by Table 2.
+    Smooth,
+    /// A rough one, by a strategy that lets it slide.
+    Sliding,
 }
 
 /// What counts as a tie.
@@ -110,11 +141,13 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
     let (next, rule, tests) = match numbers.mode {
         Mode::Free => {
             let test = ties.test(Tested::Gap, numbers.gap, 0.0, numbers.gap, ties.length);
-            match (ties.switches(&test, false), numbers.smooth) {
-                (true, true) => (Mode::Sliding, Rule::FreeSlides, [Some(test), None]),
-                (true, false) => (Mode::Fixed, Rule::FreeSticks, [Some(test), None]),
-                (false, _) => (Mode::Free, Rule::FreeStays, [Some(test), None]),
-            }
+            let (next, rule) = match (ties.switches(&test, false), numbers.entry) {
+                (false, _) => (Mode::Free, Rule::FreeStays),
+                (true, Entry::Fixed) => (Mode::Fixed, Rule::FreeSticks),
+                (true, Entry::Smooth) => (Mode::Sliding, Rule::FreeSlides),
+                (true, Entry::Sliding) => (Mode::Sliding, Rule::FreeEnters),
+            };
+            (next, rule, [Some(test), None])
         }
         Mode::Fixed if ties.switches(&opens, true) => {
             (Mode::Free, Rule::FixedOpens, [Some(opens), None])
@@ -153,7 +186,14 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
 }
 
 impl Ties {
-    fn test(&self, tested: Tested, value: f64, bound: f64, margin: f64, tolerance: f64) -> Test {
+    pub(super) fn test(
+        &self,
+        tested: Tested,
+        value: f64,
+        bound: f64,
+        margin: f64,
+        tolerance: f64,
+    ) -> Test {
         let tie = if self.keep {
             margin.abs() <= tolerance
         } else {
@@ -217,7 +257,7 @@ mod tests {
             f_t: -0.5,
             t_max: -1.0,
             slip: -0.01,
-            smooth: false,
+            entry: Entry::Fixed,
         }
     }
 
@@ -241,7 +281,7 @@ mod tests {
             (
                 Numbers {
                     gap: -0.1,
-                    smooth: true,
+                    entry: Entry::Smooth,
                     ..f
                 },
                 Sliding,

@@ -4,10 +4,11 @@
 //! - [`turning`]: how the force turns and travels with the surface, for the tangent.
 //! - [`anchor`]: where a stuck node stuck, and how far it has drifted from there.
 //! - [`table1`]: the equations that a node adds in each of the three modes, and T_max (eqn 20).
-//! - [`decision`]: Table 2, the mode that a node takes next, with the reason.
+//! - [`decision`]: Table 2, the mode that a node takes next, with the reason; [`strategy`]: what else may choose it.
 
 pub mod anchor;
 pub mod decision;
 pub mod projection;
+pub mod strategy;
 pub mod table1;
 pub mod turning;

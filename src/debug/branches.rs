@@ -169,7 +169,7 @@ pub fn cost(tree: &Tree, branch: usize, places: std::ops::Range<usize>) -> Cost 
     let mut cost = Cost::default();
     for strip in strips.filter(|strip| strip.kind.is_solved()) {
         cost.minors += 1;
-        cost.majors += u64::from(!matches!(strip.kind, Kind::Minor | Kind::Damped));
+        cost.majors += u64::from(strip.kind.ends_major());
         cost.increments += u64::from(strip.kind.is_accepted());
         cost.seconds += f64::from(strip.seconds);
     }
@@ -184,9 +184,13 @@ pub fn verdict(tree: &Tree, branch: usize) -> Verdict {
     };
     let others = || (0..tree.branches().len()).filter(|&other| other < branch);
     match tip.kind {
-        Kind::Start | Kind::Intervention | Kind::Minor | Kind::Damped | Kind::Major => {
-            Verdict::Running
-        }
+        Kind::Start
+        | Kind::Intervention
+        | Kind::Minor
+        | Kind::Damped
+        | Kind::Climbed
+        | Kind::Cut
+        | Kind::Major => Verdict::Running,
         Kind::Cycle => {
             let own = frame
                 .event

@@ -101,12 +101,12 @@ impl Condition {
                 now.margin(s) < below && !(before.kind.is_solved() && before.margin(s) < below)
             }),
             Condition::Element { node } => any(node, &|s| now.element(s) != before.element(s)),
-            Condition::Cycle => matches!(now.kind, Kind::Cycle | Kind::Damped),
+            Condition::Cycle => matches!(now.kind, Kind::Cycle | Kind::Damped | Kind::Climbed),
             Condition::Residual => now
                 .after
                 .as_ref()
                 .is_some_and(|after| after.relative > now.residual),
-            Condition::Failure => now.kind.is_failure(),
+            Condition::Failure => now.kind.is_failure() || now.kind == Kind::Cut,
             Condition::At(place) => {
                 let place = (place.increment, place.major, place.minor);
                 let at = |strip: &Strip| {

@@ -2,12 +2,12 @@
 //! problem, as data and in words.
 
 use crate::contact::decision::{Rule, Tested};
-use crate::debug::census::{Census, MOST, census};
 use crate::debug::core::{Core, core, cycle};
 use crate::debug::influence::{Influence, influences};
 use crate::debug::report;
 use crate::scene::spec::{FrictionLimit, SlipCount};
 use crate::scene::{Mode, Model};
+use crate::solve::census::{Census, MOST, census};
 use crate::solve::event::{Cycle, NodeRecord};
 use crate::solve::frozen::{Assumed, Condition, Frozen, Trials};
 use crate::solve::state::NodeState;
@@ -152,8 +152,8 @@ fn push(
     let tested = fired(records[node].decision.rule)?;
     let of = |i: &Influence| match tested {
         Tested::Gap => i.gap,
-        Tested::NormalForce => i.f_n,
-        Tested::ShearForce => i.f_t,
+        Tested::NormalForce | Tested::Pressure | Tested::Cover => i.f_n,
+        Tested::ShearForce | Tested::Drag => i.f_t,
         Tested::Slip => i.slip,
     };
     let all = influences(problem, before, now, node)?;
@@ -174,7 +174,9 @@ fn fired(rule: Rule) -> Option<Tested> {
         Rule::FixedOpens | Rule::SlidingOpens => Some(Tested::NormalForce),
         Rule::FixedSlides => Some(Tested::ShearForce),
         Rule::SlidingSticks => Some(Tested::Slip),
-        Rule::FreeSticks | Rule::FreeSlides => Some(Tested::Gap),
+        Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(Tested::Gap),
+        Rule::NewtonOpens => Some(Tested::NormalForce),
+        Rule::NewtonSticks | Rule::NewtonSlides => Some(Tested::ShearForce),
         _ => None,
     }
 }
@@ -345,8 +347,8 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
     let from = &push.influence;
     let (what, value) = match push.tested {
         Tested::Gap => ("Δg", from.gap),
-        Tested::NormalForce => ("ΔF_n", from.f_n),
-        Tested::ShearForce => ("ΔF_t", from.f_t),
+        Tested::NormalForce | Tested::Pressure | Tested::Cover => ("ΔF_n", from.f_n),
+        Tested::ShearForce | Tested::Drag => ("ΔF_t", from.f_t),
         Tested::Slip => ("Δslip", from.slip),
     };
     let whom = if from.from == push.node {

@@ -8,12 +8,12 @@
 //!
 //! Pushes and findings are kept by place (branch and step on its line), which never changes its meaning.
 
-use crate::debug::census::{Census, MOST, census};
 use crate::debug::diagnosis::{self, Diagnosis, started};
 use crate::debug::influence::{Influence, influences};
 use crate::debug::remedies::{self, Trial};
 use crate::debug::report;
 use crate::scene::{Mode, Model};
+use crate::solve::census::{Census, MOST, census};
 use crate::solve::frozen::Frozen;
 use crate::solve::state::NodeState;
 use crate::solve::{Intervention, Start, State, Status, Stepper};

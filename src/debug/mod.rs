@@ -12,7 +12,6 @@
 
 pub mod branches;
 pub mod breakpoints;
-pub mod census;
 pub mod command;
 pub mod compare;
 pub mod core;

@@ -1,15 +1,14 @@
 //! Remedies for an increment that does not converge: each is tried from the same state, and measured.
 //!
-//! A remedy is what is done before the first minor iteration (a consistent state of the census, a setting, a smaller
-//! increment), and perhaps a rule that corrects Table 2 after each. The rules are of the kinds that linear
-//! complementarity knows: one change at a time, the node of least index first (finite in theory for the problems of
-//! smooth contact, slow), and all changes at once until they stop getting fewer, then one at a time (block pivoting
-//! with a least-index fallback). A trial ends where the load that failed is accepted, where it fails, or after
-//! [`BUDGET`] minor iterations. What it did is kept as steps, so that the chosen one can be done again in a branch.
+//! A remedy is what is done before the first minor iteration (a consistent state of the census, a strategy or another
+//! setting, a smaller increment), and perhaps hysteresis, which corrects the verdict after each. A trial ends where the
+//! load that failed is accepted, where it fails, or after [`BUDGET`] minor iterations. What it did is kept as steps, so
+//! that the chosen one can be done again in a branch.
 
 use crate::debug::looks;
 use crate::debug::report;
-use crate::scene::spec::{AtCycle, FrictionLimit, ResidualMethod, Sticking};
+use crate::debug::strip::Kind;
+use crate::scene::spec::{AtCycle, FrictionLimit, ResidualMethod, Sticking, Strategy};
 use crate::scene::{Mode, Settings};
 use crate::solve::system::condenses;
 use crate::solve::{
@@ -20,8 +19,6 @@ use std::time::Instant;
 
 /// Most minor iterations of a trial.
 pub const BUDGET: u32 = 400;
-/// Rounds that all changes at once may go on without getting fewer.
-const PATIENCE: u32 = 10;
 /// A node keeps its mode while the inequality is violated by less than this, relatively.
 pub const HYSTERESIS: f64 = 1e-3;
 /// Violations below this, relatively, are round-off.
@@ -33,21 +30,8 @@ pub struct Remedy {
     /// In a few words; the name of its branch.
     pub label: String,
     first: Vec<Intervention>,
-    rule: Rule,
-}
-
-/// What corrects Table 2 after a minor iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Rule {
-    None,
-    /// A rough node that touches is sent to sliding, not to fixed.
-    EnterSliding,
-    /// Of all nodes that would change, only the first does.
-    LeastIndex,
-    /// All change, until their number has not fallen for [`PATIENCE`] rounds; then only the first, until it has.
-    Block,
-    /// A node that misses its condition by less than [`HYSTERESIS`] is held.
-    Hysteresis,
+    /// Whether a node that misses its condition by less than [`HYSTERESIS`] is held.
+    hysteresis: bool,
 }
 
 /// How a trial ended.
@@ -94,29 +78,41 @@ pub struct Trial {
     pub steps: Vec<Option<Intervention>>,
 }
 
+impl Remedy {
+    fn new(label: &str, first: Vec<Intervention>) -> Self {
+        Remedy {
+            label: label.to_owned(),
+            first,
+            hysteresis: false,
+        }
+    }
+}
+
 /// All that there is to try from a state.
 pub fn all(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
     if state.status == Status::Finished {
         return Vec::new();
     }
-    let remedy = |label: String, first: Vec<Intervention>, rule| Remedy { label, first, rule };
     let mut all = answers(stepper, state);
-    for (label, rule) in [
-        ("enter contact as sliding", Rule::EnterSliding),
-        ("one change at a time, least index", Rule::LeastIndex),
-        ("block changes, least-index fallback", Rule::Block),
-        ("hysteresis of 1e-3", Rule::Hysteresis),
-    ] {
-        all.push(remedy(label.into(), Vec::new(), rule));
-    }
     let mut set = |label: &str, change: &dyn Fn(&mut Settings)| {
         let mut settings = state.controls.settings;
         change(&mut settings);
         if settings != state.controls.settings {
             let first = vec![Intervention::Settings(settings)];
-            all.push(remedy(label.into(), first, Rule::None));
+            all.push(Remedy::new(label, first));
         }
     };
+    for (label, strategy) in [
+        ("enter contact as sliding", Strategy::Sliding),
+        ("one change at a time, least index", Strategy::Least),
+        ("the same, entering as sliding", Strategy::SlidingLeast),
+        ("block changes, least-index fallback", Strategy::Block),
+        ("semismooth Newton", Strategy::Newton),
+        ("Lemke's pivoting", Strategy::Lemke),
+        ("the ladder of strategies", Strategy::Ladder),
+    ] {
+        set(label, &|s| s.strategy = strategy);
+    }
     set("t_max consistent", &|s| s.t_max = FrictionLimit::Consistent);
     let (residual, label) = match state.controls.settings.residual {
         ResidualMethod::Stress => (ResidualMethod::Accumulate, "residual accumulate"),
@@ -134,8 +130,12 @@ pub fn all(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
         ("a tenth of the increment", 10.0),
     ] {
         let first = vec![Intervention::Increment(state.controls.increment / part)];
-        all.push(remedy(label.into(), first, Rule::None));
+        all.push(Remedy::new(label, first));
     }
+    all.push(Remedy {
+        hysteresis: true,
+        ..Remedy::new("hysteresis of 1e-3", Vec::new())
+    });
     all
 }
 
@@ -152,11 +152,8 @@ fn answers(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
         };
         let some: Vec<String> = starts.iter().take(SHOWN).map(name).collect();
         let more = if starts.len() > SHOWN { ", …" } else { "" };
-        Some(Remedy {
-            label: format!("answer {}: {}{more}", number + 1, some.join(", ")),
-            first: vec![Intervention::Assume(starts)],
-            rule: Rule::None,
-        })
+        let label = format!("answer {}: {}{more}", number + 1, some.join(", "));
+        Some(Remedy::new(&label, vec![Intervention::Assume(starts)]))
     };
     (0..count).filter_map(answer).collect()
 }
@@ -180,11 +177,6 @@ pub fn attempt(
         left: None,
         steps: Vec::new(),
     };
-    let mut corrector = Corrector {
-        rule: remedy.rule,
-        fewest: usize::MAX,
-        rounds: 0,
-    };
     let change = |stepper: &mut Stepper, trial: &mut Trial, what: Intervention| {
         // What cannot be done is not a part of the trial: a node past its surface cannot touch.
         if stepper.intervene(&what).is_ok() {
@@ -207,7 +199,7 @@ pub fn attempt(
         trial.minors += 1;
         trial.steps.push(None);
         let uncondensed = !condenses(stepper.model(), &stepper.state().controls.settings);
-        let ends = !matches!(event.outcome, Outcome::Minor | Outcome::Damped { .. });
+        let ends = Kind::of(&event.outcome).ends_major();
         trial.majors += u32::from(ends);
         trial.factorizations += u32::from(ends || uncondensed);
         match &event.outcome {
@@ -220,8 +212,8 @@ pub fn attempt(
                 trial.left = Some(left(stepper, &event, after));
                 break;
             }
-            Outcome::Minor => {
-                for what in corrector.corrections(stepper, &event) {
+            Outcome::Minor if remedy.hysteresis => {
+                for what in hysteresis(stepper, &event) {
                     change(stepper, &mut trial, what);
                 }
             }
@@ -241,71 +233,41 @@ fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
     state.status == Status::Finished || state.start.leg > leg || close
 }
 
-struct Corrector {
-    rule: Rule,
-    /// Fewest nodes that changed so far, and rounds since then.
-    fewest: usize,
-    rounds: u32,
-}
-
-impl Corrector {
-    /// What to change after a minor iteration that did not settle.
-    fn corrections(&mut self, stepper: &Stepper, event: &Event) -> Vec<Intervention> {
-        let changing: Vec<usize> = (0..event.nodes.len())
-            .filter(|&s| event.nodes[s].decision.changes())
-            .collect();
-        let force = |slave: usize, mode, hold| Intervention::Force { slave, mode, hold };
-        let keep = |&slave: &usize| force(slave, event.nodes[slave].decision.before, false);
-        let first_only = || changing.iter().skip(1).map(keep).collect();
-        match self.rule {
-            Rule::None => Vec::new(),
-            Rule::EnterSliding => changing
-                .iter()
-                .filter(|&&s| {
-                    let decision = &event.nodes[s].decision;
-                    (decision.before, decision.next) == (Mode::Free, Mode::Fixed)
-                })
-                .map(|&s| force(s, Mode::Sliding, false))
-                .collect(),
-            Rule::LeastIndex => first_only(),
-            Rule::Block => {
-                self.rounds += 1;
-                if changing.len() < self.fewest {
-                    (self.fewest, self.rounds) = (changing.len(), 0);
-                }
-                match self.rounds > PATIENCE {
-                    true => first_only(),
-                    false => Vec::new(),
-                }
-            }
-            Rule::Hysteresis => {
-                let near = |record: &NodeRecord| {
-                    let margins = record.decision.tests.iter().flatten();
-                    let size = |tested| scale_of(tested, stepper, event);
-                    margins
-                        .filter(|test| test.margin < 0.0)
-                        .all(|test| -test.margin < HYSTERESIS * size(test.tested))
-                };
-                let hold = changing.iter().filter(|&&s| near(&event.nodes[s]));
-                let hold = hold.map(|&s| force(s, event.nodes[s].decision.before, true));
-                let held = event.nodes.iter().enumerate().filter(|(_, record)| {
-                    matches!(record.forced, Forced::Held(_))
-                        && record.decision.wanted != record.decision.next
-                        && !near(record)
-                });
-                let release = held.map(|(slave, _)| Intervention::Release { slave });
-                hold.chain(release).collect()
-            }
-        }
-    }
+/// What is held, and released, after a minor iteration that did not settle.
+fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
+    let near = |record: &NodeRecord| {
+        let margins = record.decision.tests.iter().flatten();
+        let size = |tested| scale_of(tested, stepper, event);
+        margins
+            .filter(|test| test.margin < 0.0)
+            .all(|test| -test.margin < HYSTERESIS * size(test.tested))
+    };
+    let records = || event.nodes.iter().enumerate();
+    let hold = records()
+        .filter(|(_, record)| record.decision.changes() && near(record))
+        .map(|(slave, record)| Intervention::Force {
+            slave,
+            mode: record.decision.before,
+            hold: true,
+        });
+    let held = records().filter(|(_, record)| {
+        matches!(record.forced, Forced::Held(_))
+            && record.decision.wanted != record.decision.next
+            && !near(record)
+    });
+    let release = held.map(|(slave, _)| Intervention::Release { slave });
+    hold.chain(release).collect()
 }
 
 /// The scale of what is tested: a force or a length.
 fn scale_of(tested: crate::contact::decision::Tested, stepper: &Stepper, event: &Event) -> f64 {
     use crate::contact::decision::Tested;
     match tested {
-        Tested::NormalForce | Tested::ShearForce => event.before.scale,
+        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
+            event.before.scale
+        }
         Tested::Slip | Tested::Gap => stepper.model().length,
+        Tested::Cover => 1.0,
     }
 }
 
@@ -367,6 +329,8 @@ pub fn end_words(end: &End) -> String {
         End::Failed(Failure::Singular(_)) => "singular".into(),
         End::Failed(Failure::Diverged { .. }) => "diverged".into(),
         End::Failed(Failure::Jammed { .. }) => "jammed".into(),
+        End::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
+        End::Failed(Failure::Ray) => "ray".into(),
     }
 }
 

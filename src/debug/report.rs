@@ -1,6 +1,7 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
 use crate::contact::decision::{Decision, Rule};
+use crate::scene::spec::Strategy;
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
 use crate::solve::rounds::{Round, Stop};
@@ -41,6 +42,27 @@ pub const TABLE_2: [[[&str; 2]; 3]; 3] = [
     [["g < 0, rough", ""], ["g < 0, smooth", ""], ["g > 0", ""]],
 ];
 
+/// Newton's table, whose columns are Table 2's; it does not ask which mode a node has.
+const NEWTON: [[&str; 2]; 3] = [
+    ["F_n > k g", "|F_t+k s| ≤ lim"],
+    ["F_n > k g", "|F_t+k s| > lim"],
+    ["F_n ≤ k g", ""],
+];
+
+/// What sends a node from mode to mode, by the rule's strategy; empty where all nodes are looked at together.
+pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
+    match rule {
+        Rule::NewtonOpens | Rule::NewtonSticks | Rule::NewtonSlides => [NEWTON; 3],
+        Rule::Pivots | Rule::Found => [[["", ""]; 3]; 3],
+        Rule::FreeEnters => {
+            let mut table = TABLE_2;
+            table[2] = [["", ""], ["g < 0", ""], ["g > 0", ""]];
+            table
+        }
+        _ => TABLE_2,
+    }
+}
+
 /// A rule's name: the row of Table 2, and what it does.
 pub fn rule(rule: Rule) -> &'static str {
     match rule {
@@ -55,6 +77,13 @@ pub fn rule(rule: Rule) -> &'static str {
         Rule::FreeStays => "free-stays",
         Rule::OffSurface => "off-surface",
         Rule::Held => "held",
+        Rule::FreeEnters => "free-enters",
+        Rule::Waits => "waits",
+        Rule::NewtonOpens => "newton-opens",
+        Rule::NewtonSticks => "newton-sticks",
+        Rule::NewtonSlides => "newton-slides",
+        Rule::Pivots => "pivots",
+        Rule::Found => "found",
     }
 }
 
@@ -73,6 +102,33 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
         Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
         Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
         Rule::FreeStays => "Stays free: the gap is open.",
+        Rule::FreeEnters => {
+            "Free → sliding: the node has gone into the surface, and the strategy lets it slide against its travel."
+        }
+        Rule::Waits => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!(
+                "Waits {next}: one change at a time, and another node comes first; {wanted} is wanted (◁)."
+            );
+        }
+        Rule::NewtonOpens => "Newton: free, since F_n does not exceed k·g.",
+        Rule::NewtonSticks => "Newton: fixed, since force and slip keep within the friction.",
+        Rule::NewtonSlides if !friction => {
+            "Newton: slides; there is no friction that could hold it."
+        }
+        Rule::NewtonSlides => "Newton: slides, since force and slip exceed the friction.",
+        Rule::Pivots => {
+            return format!(
+                "Lemke: {} in this basis of the problem relaxed by z.",
+                mode(decision.next)
+            );
+        }
+        Rule::Found => {
+            return format!(
+                "Found {} in a consistent state; checked next.",
+                mode(decision.next)
+            );
+        }
         Rule::OffSurface => {
             "Free: the projection lies past an end of every surface, so there is nothing to touch."
         }
@@ -115,6 +171,15 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: {}; damped: aims at load {aim} first",
             cycle(model, c)
         ),
+        Outcome::Climbed { why, to } => format!(
+            "{at}: {}; goes on with strategy {}",
+            describe_failure(model, why),
+            strategy(*to)
+        ),
+        Outcome::Cut { why, size } => format!(
+            "{at}: {}; the increment is cut to {size}",
+            describe_failure(model, why)
+        ),
         Outcome::Major { after, settled } => {
             let how = if *settled {
                 "minors settled"
@@ -138,6 +203,21 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             )
         }
         Outcome::Failed(failure) => format!("{at}: {}", describe_failure(model, failure)),
+    }
+}
+
+/// A strategy's name, as settings have it.
+pub fn strategy(strategy: Strategy) -> &'static str {
+    match strategy {
+        Strategy::Ladder => "ladder",
+        Strategy::Table2 => "table2",
+        Strategy::Sliding => "sliding",
+        Strategy::Least => "least",
+        Strategy::SlidingLeast => "sliding_least",
+        Strategy::Block => "block",
+        Strategy::Newton => "newton",
+        Strategy::Lemke => "lemke",
+        Strategy::Census => "census",
     }
 }
 
@@ -246,8 +326,12 @@ pub fn failure(model: &Model, at: Position, load: f64, accepted: f64, failure: &
 pub fn advice(failure: &Failure) -> &'static str {
     match failure {
         Failure::Cycle(_) => {
-            "the debugger, to force one of the nodes to its third mode, or settings.at_cycle=damp, or another history.increment"
+            "settings.strategy=ladder, or the debugger, to force one of the nodes to its third mode, or another history.increment"
         }
+        Failure::NoAnswer { .. } => {
+            "a smaller history.least, other loads or friction, or a prescribed displacement instead of a load"
+        }
+        Failure::Ray => "settings.strategy=ladder, or a smaller history.increment",
         Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
         Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
         Failure::MajorCycle(_) => {
@@ -285,6 +369,19 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             "no equilibrium within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
         ),
         Failure::MajorCycle(round) => major_cycle(model, round),
+        Failure::NoAnswer { first, tried } => {
+            let none = match tried {
+                0 => "no strategy of the ladder found a consistent state".to_owned(),
+                n => format!("no consistent state at this increment: all {n} assignments were tried"),
+            };
+            match **first {
+                Failure::Ray => none,
+                ref first => format!("{none} (table2: {})", describe_failure(model, first)),
+            }
+        }
+        Failure::Ray => {
+            "pivoting ended on a ray from every start, so it found no consistent state".into()
+        }
         Failure::Singular(Singular::Rigid { motions }) => {
             let motions = motions.iter().map(motion).collect();
             format!("nothing holds a rigid motion: {}", some(motions, "; "))

@@ -725,7 +725,7 @@ impl Session {
         let same = of(&strips[before]) == of(shown)
             && matches!(
                 strips[before].kind,
-                Kind::Minor | Kind::Cycle | Kind::Failed
+                Kind::Minor | Kind::Climbed | Kind::Cycle | Kind::Failed
             );
         (shown.kind.is_solved() && same).then_some(before)
     }
@@ -900,7 +900,7 @@ impl Session {
         paths::set(&mut spec, path, value)?;
         let sound = Scene::from_spec(&self.scene.name, spec).map_err(|e| e.message)?;
         if path.starts_with("settings.") {
-            Ok(Intervention::Settings(sound.spec.settings))
+            Ok(Intervention::Settings(sound.model.settings))
         } else if path.starts_with("friction.") {
             Ok(Intervention::Friction(sound.spec.friction))
         } else if path == "history.increment" {
@@ -1034,7 +1034,7 @@ pub fn curve(frames: &[Frame], monitor: usize) -> Vec<[f64; 2]> {
 pub(super) fn ends(unit: Unit, kind: Kind) -> bool {
     match unit {
         Unit::Minor => kind.is_solved(),
-        Unit::Major => kind.is_solved() && !matches!(kind, Kind::Minor | Kind::Damped),
+        Unit::Major => kind.ends_major(),
         Unit::Increment => kind.is_accepted() || kind.is_failure(),
         Unit::Run => kind == Kind::Last || kind.is_failure(),
     }

@@ -18,6 +18,10 @@ pub enum Kind {
     Minor,
     /// A cycle of minors, damped.
     Damped,
+    /// The ladder's next strategy took over.
+    Climbed,
+    /// The increment was cut.
+    Cut,
     /// The end of a major iteration.
     Major,
     /// The end of an increment: accepted.
@@ -31,10 +35,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    fn of(outcome: &Outcome) -> Kind {
+    /// What an outcome makes of an iteration.
+    pub fn of(outcome: &Outcome) -> Kind {
         match outcome {
             Outcome::Minor => Kind::Minor,
             Outcome::Damped { .. } => Kind::Damped,
+            Outcome::Climbed { .. } => Kind::Climbed,
+            Outcome::Cut { .. } => Kind::Cut,
             Outcome::Major { .. } => Kind::Major,
             Outcome::Increment { last: false, .. } => Kind::Increment,
             Outcome::Increment { last: true, .. } => Kind::Last,
@@ -46,6 +53,11 @@ impl Kind {
     /// Whether a minor iteration was solved here.
     pub fn is_solved(self) -> bool {
         !matches!(self, Kind::Start | Kind::Intervention)
+    }
+
+    /// Whether a major iteration ended here, well or not.
+    pub fn ends_major(self) -> bool {
+        self.is_solved() && !matches!(self, Kind::Minor | Kind::Damped | Kind::Climbed)
     }
 
     /// Whether the increment failed here.

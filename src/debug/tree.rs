@@ -342,7 +342,7 @@ impl Tree {
                     continue;
                 }
                 let class = match strip.kind {
-                    Kind::Minor | Kind::Damped => 0,
+                    Kind::Minor | Kind::Damped | Kind::Climbed => 0,
                     Kind::Major => 1,
                     _ => 2 + (at % 2) as u8,
                 };

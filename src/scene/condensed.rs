@@ -76,6 +76,7 @@ pub(crate) fn at_once() -> History {
     History {
         path: vec![0.0, 1.0],
         increment: 1.0,
+        least: None,
     }
 }
 

@@ -7,8 +7,8 @@ use super::error::{Path, at, nearest, quoted};
 use super::spec::{
     AtCycle, AtLimit, Axis, Bar, BodySpec, Component, Friction, FrictionLimit, Geometry,
     InitialState, Law, LoadSpec, Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity,
-    Region, ResidualMethod, Scale, Settings, Side, Sides, SlipCount, Solver, Spec, Sticking, Ties,
-    Update,
+    Region, ResidualMethod, Scale, Settings, Side, Sides, SlipCount, Solver, Spec, Sticking,
+    Strategy, Ties, Touch, Update,
 };
 
 /// A value set from outside.
@@ -282,6 +282,12 @@ choices! {
     Law { "svk" => Law::Svk, "neohookean" => Law::NeoHookean }
     Plane { "strain" => Plane::Strain, "stress" => Plane::Stress }
     Update { "total" => Update::Total, "updated" => Update::Updated }
+    Strategy {
+        "ladder" => Strategy::Ladder, "table2" => Strategy::Table2, "sliding" => Strategy::Sliding,
+        "least" => Strategy::Least, "sliding_least" => Strategy::SlidingLeast, "block" => Strategy::Block,
+        "newton" => Strategy::Newton, "lemke" => Strategy::Lemke, "census" => Strategy::Census,
+    }
+    Touch { "auto" => Touch::Auto, "ratio" => Touch::Ratio, "start" => Touch::Start }
     Ties { "keep" => Ties::Keep, "printed" => Ties::Printed }
     AtCycle { "stop" => AtCycle::Stop, "damp" => AtCycle::Damp }
     AtLimit { "stop" => AtLimit::Stop, "accept" => AtLimit::Accept }
@@ -350,6 +356,12 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
         &root("history").field("increment"),
         Scalar::Number(&mut spec.history.increment),
     );
+    let before = spec.history.least();
+    let mut after = before;
+    visit(&root("history").field("least"), Scalar::Number(&mut after));
+    if after != before {
+        spec.history.least = Some(after);
+    }
     settings(&root("settings"), &mut spec.settings, visit);
     for (k, entry) in spec.monitors.iter_mut().enumerate() {
         monitor(&root("monitors").called(&entry.name, k), entry, visit);
@@ -656,6 +668,10 @@ fn load(place: &Place, entry: &mut LoadSpec, visit: &mut Visit<'_>) {
 
 fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
     visit(
+        &place.field("strategy"),
+        Scalar::Choice(&mut settings.strategy),
+    );
+    visit(
         &place.field("residual"),
         Scalar::Choice(&mut settings.residual),
     );
@@ -670,6 +686,7 @@ fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
         &place.field("sticking"),
         Scalar::Choice(&mut settings.sticking),
     );
+    visit(&place.field("touch"), Scalar::Choice(&mut settings.touch));
     visit(&place.field("ties"), Scalar::Choice(&mut settings.ties));
     visit(&place.field("minors"), Scalar::Limit(&mut settings.minors));
     visit(&place.field("majors"), Scalar::Limit(&mut settings.majors));

@@ -544,12 +544,28 @@ pub struct History {
     pub path: Vec<f64>,
     /// Size of an increment of the load factor; the last one of each leg is shorter where it must be.
     pub increment: f64,
+    /// Size below which an increment that fails is not cut any more (`strategy: ladder` halves it). Default: a 64th of
+    /// `increment`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least: Option<f64>,
 }
+
+impl History {
+    /// Size below which an increment is not cut.
+    pub fn least(&self) -> f64 {
+        self.least.unwrap_or(self.increment / LEAST)
+    }
+}
+
+/// How many times smaller than an increment the smallest is that it is cut to, where the scene does not say.
+const LEAST: f64 = 64.0;
 
 /// Choices of the method, and its limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
+    /// How the next modes are chosen. Default: ladder.
+    pub strategy: Strategy,
     /// How the total force of a slave node is found after a major iteration. Default: stress.
     pub residual: ResidualMethod,
     /// What the minor iterations solve. Default: auto.
@@ -562,6 +578,8 @@ pub struct Settings {
     pub slip: SlipCount,
     /// What a fixed node holds on to. Default: anchored.
     pub sticking: Sticking,
+    /// Where a node is held that touches within an increment. Default: auto.
+    pub touch: Touch,
     /// What a tie in Table 2 does. Default: keep.
     pub ties: Ties,
     /// Most minor iterations in a major one. Default: 100.
@@ -581,12 +599,14 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Settings {
+            strategy: Strategy::default(),
             residual: ResidualMethod::default(),
             solver: Solver::default(),
             geometry: Geometry::default(),
             t_max: FrictionLimit::default(),
             slip: SlipCount::default(),
             sticking: Sticking::default(),
+            touch: Touch::default(),
             ties: Ties::default(),
             minors: 100,
             majors: 60,
@@ -596,6 +616,46 @@ impl Default for Settings {
             tolerance: 1e-11,
         }
     }
+}
+
+/// How the modes of the next minor iteration are chosen, as README's list of strategies says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Strategy {
+    /// Table 2 first; where it cycles or cannot go on, what gets out at the least cost: `sliding`, `sliding_least`, `lemke`,
+    /// `census`, with T_max in the matrix. Where none finds a consistent state, the increment is halved, down to
+    /// `history.least`, and grows again afterwards.
+    #[default]
+    Ladder,
+    /// Table 2 as printed.
+    Table2,
+    /// Table 2, but a rough node that touches enters sliding, against its travel.
+    Sliding,
+    /// Table 2, one change at a time: of all nodes that would change, only the first does.
+    Least,
+    /// `sliding`, one change at a time.
+    SlidingLeast,
+    /// `sliding`, all changes at once; one at a time while their number does not fall.
+    Block,
+    /// Semismooth Newton on the projections of the forces; T_max stands in the matrix.
+    Newton,
+    /// Lemke's pivoting on the linear complementarity problem of Coulomb's law in the plane.
+    Lemke,
+    /// All assumptions of what the nodes do, tried; for few nodes.
+    Census,
+}
+
+/// Where a node is held that touches within an increment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Touch {
+    /// `ratio` where a body is a mesh; `start` where all are given by numbers, as interface problems are posed.
+    #[default]
+    Auto,
+    /// Where its straight way meets the surface (ρ, eqn 14), as in the paper.
+    Ratio,
+    /// At the foot of where it was when the major iteration started: one step of Coulomb's law.
+    Start,
 }
 
 /// The paper's two residual methods ("Formulation of the residual force vector").

@@ -3,6 +3,7 @@
 use crate::contact::decision::Decision;
 use crate::contact::projection::Spot;
 use crate::scene::Mode;
+use crate::scene::spec::Strategy;
 use crate::solve::rounds::Round;
 use serde::{Deserialize, Serialize};
 
@@ -101,6 +102,10 @@ pub enum Outcome {
     /// The minor iterations cycle, and the settings want this major iteration damped: it starts its minor iterations
     /// again, aiming at this load factor.
     Damped { cycle: Cycle, aim: f64 },
+    /// The strategy cannot go on, and the ladder's next one leads this major iteration from its start on.
+    Climbed { why: Failure, to: Strategy },
+    /// The increment failed, and is started again with this size.
+    Cut { why: Failure, size: f64 },
     /// The minor iterations are done, but equilibrium is not reached: another major iteration. `settled` is false
     /// where the limit of minor iterations was accepted.
     Major { after: Norms, settled: bool },
@@ -135,6 +140,11 @@ pub enum Failure {
     Singular(Singular),
     /// The residual or the displacements grew out of all bounds.
     Diverged { relative: f64 },
+    /// Nothing on the ladder found a consistent state. `first` is what Table 2 failed of; `tried` is the number of
+    /// assumptions that were tried, which is all of them, or 0 where they are too many.
+    NoAnswer { first: Box<Failure>, tried: usize },
+    /// Lemke's pivoting ended on a ray, from every start.
+    Ray,
     /// A touching node and its master can neither of them move to close the gap (slave number).
     Jammed { slave: usize, gap: f64 },
 }

@@ -4,15 +4,16 @@
 //! (the relation of `condensed`). What each node may do is Coulomb's law for the whole increment: a free node has
 //! a gap and no force; a touching one is pressed, and either sticks where the increment found it, within the friction
 //! limit, or slips against friction at the limit. This module solves for one assumption of what every node does, and
-//! says how far the answer is from obeying; [`crate::debug::census`] tries them all.
+//! says how far the answer is from obeying; [`crate::solve::census`] tries them all.
 
 use crate::contact::decision::Ties;
+use crate::contact::strategy::one_at_a_time;
 use crate::contact::table1::{Equation, Known, Limit};
 use crate::linalg::DenseFactors;
 use crate::scene::{Friction, Mode, Settings, spec};
 use crate::solve::condensed::Relation;
 use crate::solve::event::NodeRecord;
-use crate::solve::minor::{self, Given, Site, supported};
+use crate::solve::minor::{self, Check, Given, Site, supported};
 use crate::solve::state::NodeState;
 use serde::{Deserialize, Serialize};
 
@@ -84,7 +85,8 @@ impl Assumed {
         }
     }
 
-    fn sign(self) -> f64 {
+    /// Sign of F_t; where it does not matter, 1.
+    pub fn sign(self) -> f64 {
         if self == Assumed::Minus { -1.0 } else { 1.0 }
     }
 }
@@ -227,16 +229,26 @@ impl<'a> Trials<'a> {
             [node.f_n + given.force[0], node.f_t + given.force[1]].map(f64::abs)
         });
         let ties = problem.ties(forces.fold(problem.force, f64::max));
+        let check = Check {
+            settings: problem.settings,
+            ties,
+            stiffness: problem.relation.stiffness,
+        };
         let mut settled = true;
+        let before = nodes.to_vec();
         let all = nodes.iter_mut().zip(&problem.nodes).zip(given);
-        let records = all.map(|((state, node), given)| {
-            let settings = &problem.settings;
-            let (record, still) =
-                minor::judge(state, &node.site, given, &node.friction, settings, &ties);
-            settled &= still;
-            record
-        });
-        Some((records.collect(), settled))
+        let mut records: Vec<NodeRecord> = all
+            .map(|((state, node), given)| {
+                let (record, still) =
+                    minor::judge(state, &node.site, given, &node.friction, &check);
+                settled &= still;
+                record
+            })
+            .collect();
+        if one_at_a_time(problem.settings.strategy, false) {
+            minor::one_at_a_time(nodes, &before, &mut records);
+        }
+        Some((records, settled))
     }
 
     /// What a minor iteration gives for what the nodes bring.

@@ -1,10 +1,10 @@
 //! What a user does to a run: force a mode, change the increment, friction or settings.
 
 use crate::contact::table1::t_max;
-use crate::scene::spec::{Friction, Settings};
+use crate::scene::spec::{Friction, Settings, Touch};
 use crate::scene::{Mode, Model};
 use crate::solve::event::Forced;
-use crate::solve::state::{NodeState, State, Status, next_load_factor};
+use crate::solve::state::{NodeState, Piece, Search, State, Status};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -56,6 +56,7 @@ impl State {
             Intervention::Friction(friction) => self.rub(friction)?,
             Intervention::Settings(settings) => self.set(settings)?,
         }
+        self.search = Search::default();
         self.forget_trail();
         self.forget_rounds();
         Ok(())
@@ -76,10 +77,11 @@ impl State {
     }
 
     /// Sets out on the increment that follows `start`.
-    pub(super) fn begin(&mut self, model: &Model) {
+    pub(super) fn begin(&mut self) {
         (self.next.major, self.next.minor) = (1, 1);
         (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
-        self.load_factor = next_load_factor(&model.path, &self.start, self.controls.increment);
+        self.load_factor = self.piece.target();
+        self.search = Search::default();
         (self.aim, self.reached) = (self.load_factor, self.start.load_factor);
         self.forget_trail();
         self.forget_rounds();
@@ -93,11 +95,12 @@ impl State {
     }
 
     fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), String> {
+        let touch = self.controls.settings.touch;
         let node = self.node_mut(slave)?;
         if node.spot.is_none() && mode != Mode::Free {
             return Err("the node is past the end of its surface: it has nothing to touch".into());
         }
-        if node.mode == Mode::Free && mode != Mode::Free {
+        if node.mode == Mode::Free && mode != Mode::Free && touch != Touch::Start {
             node.ratio = node.travel;
         }
         node.mode = mode;
@@ -155,7 +158,16 @@ impl State {
                 "an increment is a positive number, not {increment}"
             ));
         }
-        Arc::make_mut(&mut self.controls).increment = increment;
+        let controls = Arc::make_mut(&mut self.controls);
+        controls.increment = increment;
+        controls.least = controls.least.min(increment);
+        self.piece = Piece::whole(model, &self.start, increment);
+        self.start_again();
+        Ok(())
+    }
+
+    /// Starts the present increment again, from its start to the end of the present piece.
+    pub(super) fn start_again(&mut self) {
         self.u = self.start.u.clone();
         for (node, start) in self.nodes.iter_mut().zip(&self.start.nodes) {
             let forced = node.forced;
@@ -167,7 +179,6 @@ impl State {
         }
         self.next.attempt += 1;
         self.status = Status::Running;
-        self.begin(model);
-        Ok(())
+        self.begin();
     }
 }

@@ -1,11 +1,12 @@
-//! One minor iteration at one slave node: Table 1's equations before the solve, Table 2's verdict after it.
+//! One minor iteration at one slave node: Table 1's equations before the solve, the strategy's verdict after it.
 //!
 //! Pure functions of what the node brings and what the solve gave, so that a minor iteration on a frozen interface
 //! problem alone ([`super::frozen`]) is the same as one of the stepper.
 
-use crate::contact::decision::{Numbers, Rule, Ties, decide};
+use crate::contact::decision::{Entry, Numbers, Rule, Ties, decide};
+use crate::contact::strategy;
 use crate::contact::table1::{Equation, Known, Limit, direction, equations, gone, t_max};
-use crate::scene::spec::{FrictionLimit, SlipCount};
+use crate::scene::spec::{FrictionLimit, SlipCount, Strategy, Touch};
 use crate::scene::{Friction, Mode, Settings};
 use crate::solve::event::{Forced, NodeRecord};
 use crate::solve::state::NodeState;
@@ -30,6 +31,16 @@ pub struct Site {
 pub struct Given {
     pub force: [f64; 2],
     pub motion: [f64; 2],
+}
+
+/// What the modes are checked by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Check {
+    /// Those in force: the strategy is never the ladder itself ([`crate::solve::State::settings`]).
+    pub settings: Settings,
+    pub ties: Ties,
+    /// Stiffness of the springs that compare lengths with forces.
+    pub stiffness: f64,
 }
 
 /// Table 1's rows of a node; a row in which nothing can move is given to the support ([`carried`]).
@@ -80,18 +91,18 @@ pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
     ]
 }
 
-/// Checks a node's mode against Table 2 and leaves that of the next minor iteration in it; returns the record and
-/// whether mode and T_max have settled.
+/// Checks a node's mode and leaves that of the next minor iteration in it; returns the record and whether mode and
+/// T_max have settled.
 pub fn judge(
     node: &mut NodeState,
     site: &Site,
     given: Given,
     friction: &Friction,
-    settings: &Settings,
-    ties: &Ties,
+    check: &Check,
 ) -> (NodeRecord, bool) {
     let before = *node;
-    let record = record(&before, site, given, friction, settings, ties);
+    let ties = &check.ties;
+    let (record, turned) = record(&before, site, given, friction, check);
     let [normal, tangential] = given.motion;
     node.travel = if normal.abs() > f64::MIN_POSITIVE {
         tangential / normal
@@ -99,13 +110,14 @@ pub fn judge(
         0.0
     };
     let sense = sense(&before, &record, tangential);
-    node.sign = direction(record.f_t, ties.force, sense, ties.length, before.sign);
+    node.sign = turned
+        .unwrap_or_else(|| direction(record.f_t, ties.force, sense, ties.length, before.sign));
     node.t_max = t_max(friction, record.f_n, node.sign);
     node.mode = record.decision.next;
     if let Forced::Once(_) = node.forced {
         node.forced = Forced::No;
     }
-    leave_or_enter(node, before.mode);
+    leave_or_enter(node, before.mode, check.settings.touch);
     let lag = before.mode == Mode::Sliding
         && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
     let settled = !record.decision.changes() && !lag;
@@ -116,14 +128,15 @@ pub fn judge(
     (record, settled)
 }
 
+/// What a minor iteration found at a node, and the direction of T_max where the strategy knows it.
 fn record(
     node: &NodeState,
     site: &Site,
     given: Given,
     friction: &Friction,
-    settings: &Settings,
-    ties: &Ties,
-) -> NodeRecord {
+    check: &Check,
+) -> (NodeRecord, Option<f64>) {
+    let (settings, ties) = (&check.settings, &check.ties);
     let (f_n, f_t) = (node.f_n + given.force[0], node.f_t + given.force[1]);
     let [normal, tangential] = given.motion;
     let here = tangential
@@ -139,6 +152,13 @@ fn record(
     };
     let sign = direction(f_t, ties.force, slip, ties.length, node.sign);
     let limit = t_max(friction, f_n, sign);
+    let entry = if friction.is_smooth() {
+        Entry::Smooth
+    } else if strategy::enters_sliding(settings.strategy) {
+        Entry::Sliding
+    } else {
+        Entry::Fixed
+    };
     let numbers = Numbers {
         mode: node.mode,
         gap: site.gap - normal,
@@ -146,9 +166,18 @@ fn record(
         f_t,
         t_max: limit,
         slip,
-        smooth: friction.is_smooth(),
+        entry,
     };
-    let mut decision = decide(&numbers, ties);
+    let (mut decision, turned) = match settings.strategy {
+        Strategy::Newton => {
+            let slip = node.slipped(settings) + here;
+            let numbers = Numbers { slip, ..numbers };
+            let (stiffness, had) = (check.stiffness, node.sign);
+            let (decision, sign) = strategy::newton(&numbers, friction, stiffness, had, ties);
+            (decision, Some(sign))
+        }
+        _ => (decide(&numbers, ties), None),
+    };
     if site.gap.is_infinite() {
         decision.rule = Rule::OffSurface;
         (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
@@ -158,7 +187,7 @@ fn record(
             decision.rule = Rule::Held;
         }
     }
-    NodeRecord {
+    let record = NodeRecord {
         decision,
         forced: node.forced,
         gap: numbers.gap,
@@ -179,6 +208,21 @@ fn record(
         normal: site.normal,
         foot: site.foot,
         carried: carried(node.mode, site.moves),
+    };
+    (record, turned)
+}
+
+/// Lets only the first of all nodes change that would: the others wait, as they came into the iteration.
+pub fn one_at_a_time(nodes: &mut [NodeState], before: &[NodeState], records: &mut [NodeRecord]) {
+    let all = nodes.iter_mut().zip(before).zip(records);
+    let changing = all.filter(|(_, record)| record.decision.changes());
+    for ((node, before), record) in changing.skip(1) {
+        *node = NodeState {
+            travel: node.travel,
+            forced: node.forced,
+            ..*before
+        };
+        (record.decision.next, record.decision.rule) = (before.mode, Rule::Waits);
     }
 }
 
@@ -192,10 +236,10 @@ fn sense(before: &NodeState, record: &NodeRecord, tangential: f64) -> f64 {
 }
 
 /// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens.
-fn leave_or_enter(node: &mut NodeState, before: Mode) {
+fn leave_or_enter(node: &mut NodeState, before: Mode, touch: Touch) {
     match (before, node.mode) {
         (_, Mode::Free) => node.ratio = 0.0,
-        (Mode::Free, _) => node.ratio = node.travel,
+        (Mode::Free, _) if touch != Touch::Start => node.ratio = node.travel,
         _ => {}
     }
 }

@@ -4,15 +4,18 @@
 //! - [`system`]: the linearised equations of a major iteration; `interface`: a slave node's part of them; `bodies`: the
 //!   bodies condensed; `condensed`: the interface alone; [`singular`]: why there is no solution.
 //! - [`minor`]: a minor iteration at one slave node; [`frozen`]: the interface problem by itself.
+//! - [`census`] and [`lemke`]: what finds a consistent state of it, all nodes together.
 //! - [`rounds`]: cycles of major iterations.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
 mod bodies;
+pub mod census;
 pub mod condensed;
 pub mod event;
 pub mod frozen;
 mod interface;
 pub mod intervene;
+pub mod lemke;
 pub mod minor;
 pub mod rounds;
 pub mod singular;

@@ -4,8 +4,9 @@
 //! never having left. What can be computed again from it (geometry, stiffness, factors) is not in it.
 
 use crate::contact::projection::Spot;
+use crate::contact::strategy::{LADDER, limit};
 use crate::fem::assembly::history_len;
-use crate::scene::spec::{InitialState, SlipCount, Sticking};
+use crate::scene::spec::{FrictionLimit, InitialState, SlipCount, Sticking, Strategy};
 use crate::scene::{Friction, Mode, Model, Settings};
 use crate::solve::event::{Cycle, Failure, Forced, Position};
 use crate::solve::rounds::Rounds;
@@ -36,6 +37,12 @@ pub struct State {
     pub aim: f64,
     /// Load factor that the last major iteration aimed at; at first the one at the start of the increment.
     pub reached: f64,
+    /// How far the strategy has come in the present increment.
+    #[serde(default)]
+    pub search: Search,
+    /// The part of an increment that is aimed at.
+    #[serde(default)]
+    pub piece: Piece,
     /// Minor iterations done in the present increment attempt.
     pub minors: u32,
     /// Loops of the present attempt that were ended by a limit and accepted.
@@ -104,11 +111,95 @@ pub struct IncrementStart {
     pub history: Vec<f64>,
 }
 
+/// How far the strategy has come ([`crate::contact::strategy`]).
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Search {
+    /// The rung of the ladder that the increment has come to.
+    pub rung: usize,
+    /// What the first rung failed of in the present major iteration.
+    pub first: Option<Box<Failure>>,
+    /// Fewest nodes that changed at once in the present major iteration, and the rounds since then.
+    pub fewest: Option<usize>,
+    pub rounds: u32,
+    /// How far pivoting has come in the present major iteration.
+    pub pivoting: Pivoting,
+}
+
+/// How far pivoting, or the census, has come in a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Pivoting {
+    /// The modes that the iteration began with are tried first.
+    #[default]
+    Not,
+    /// The next minor iteration is this pivot, from this start; of a census, this answer of it.
+    At { start: usize, pivot: usize },
+    /// A state was found from this start, and the next minor iteration checks it.
+    Found { start: usize },
+}
+
+/// An increment, or what it was cut to: a part of it, halved some times.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Piece {
+    /// Load factors at the start and at the end of the whole increment.
+    pub from: f64,
+    pub to: f64,
+    /// How often it was halved, and which of the parts this is, from 0.
+    pub cut: u32,
+    pub part: u32,
+}
+
+impl Piece {
+    /// The whole increment after `start`.
+    pub fn whole(model: &Model, start: &IncrementStart, increment: f64) -> Self {
+        Piece {
+            from: start.load_factor,
+            to: next_load_factor(&model.path, start, increment),
+            cut: 0,
+            part: 0,
+        }
+    }
+
+    /// Load factor at its end.
+    pub fn target(&self) -> f64 {
+        let parts = 2_u64.pow(self.cut);
+        if u64::from(self.part) + 1 == parts {
+            return self.to;
+        }
+        self.from + (self.to - self.from) * f64::from(self.part + 1) / parts as f64
+    }
+
+    /// Size.
+    pub fn size(&self) -> f64 {
+        (self.to - self.from).abs() / 2_f64.powi(self.cut as i32)
+    }
+
+    /// Its first half.
+    pub fn halved(self) -> Self {
+        Piece {
+            cut: self.cut + 1,
+            part: 2 * self.part,
+            ..self
+        }
+    }
+
+    /// The piece after it, as large as the halves allow; none where the whole increment is done.
+    pub fn next(mut self) -> Option<Self> {
+        self.part += 1;
+        while self.cut > 0 && self.part.is_multiple_of(2) {
+            (self.cut, self.part) = (self.cut - 1, self.part / 2);
+        }
+        (self.cut > 0).then_some(self)
+    }
+}
+
 /// What the user can turn during a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Controls {
     /// Increment of the load factor.
     pub increment: f64,
+    /// Size below which an increment that fails is not cut.
+    #[serde(default)]
+    pub least: f64,
     /// Friction of each slave node.
     pub friction: Vec<Friction>,
     pub settings: Settings,
@@ -231,6 +322,7 @@ impl State {
         let load_factor = model.path[0];
         let controls = Controls {
             increment: model.increment,
+            least: model.least,
             friction: model.slaves.iter().map(|s| s.friction).collect(),
             settings: model.settings,
         };
@@ -241,7 +333,8 @@ impl State {
             nodes: nodes.clone(),
             history: vec![0.0; history_len(model)],
         };
-        let aim = next_load_factor(&model.path, &start, controls.increment);
+        let piece = Piece::whole(model, &start, controls.increment);
+        let aim = piece.target();
         State {
             next: Position {
                 increment: 1,
@@ -258,11 +351,26 @@ impl State {
             rounds: Arc::default(),
             aim,
             reached: load_factor,
+            search: Search::default(),
+            piece,
             minors: 0,
             unsettled: 0,
             correction: 0.0,
             status: Status::Running,
         }
+    }
+
+    /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
+    pub fn settings(&self) -> Settings {
+        let mut settings = self.controls.settings;
+        if settings.strategy == Strategy::Ladder {
+            settings.strategy = LADDER[self.search.rung.min(LADDER.len() - 1)];
+            if self.search.rung > 0 {
+                settings.t_max = FrictionLimit::Consistent;
+            }
+        }
+        settings.t_max = limit(settings.strategy, settings.t_max);
+        settings
     }
 }
 

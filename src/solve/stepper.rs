@@ -9,18 +9,26 @@
 //! ```
 
 use crate::contact::anchor::{distance, pierced};
-use crate::contact::decision::Ties;
+use crate::contact::decision::{Decision, Rule, Test, Tested, Ties};
 use crate::contact::projection::{footing, hold, project, tangent};
+use crate::contact::strategy::{LADDER, one_at_a_time};
+use crate::contact::table1::t_max;
 use crate::scene::model::{Surface, Watched};
-use crate::scene::spec::{AtCycle, AtLimit, Axis, ResidualMethod, SlipCount, Sticking};
+use crate::scene::spec::{AtCycle, AtLimit, Axis, ResidualMethod, SlipCount, Sticking, Strategy};
 use crate::scene::{Mode, Model, spec};
-use crate::solve::event::{Cycle, Event, Failure, NodeRecord, Norms, Outcome, Position, Singular};
-use crate::solve::frozen::Frozen;
+use crate::solve::census::census;
+use crate::solve::event::{
+    Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular,
+};
+use crate::solve::frozen::{Assumed, Frozen, NodeAnswer};
 use crate::solve::intervene::Intervention;
-use crate::solve::minor::{carried, judge};
+use crate::solve::lemke::{End, Lemke, STARTS};
+use crate::solve::minor::{self, Check, carried, judge};
 use crate::solve::rounds::{Round, Scales};
 use crate::solve::singular;
-use crate::solve::state::{IncrementStart, NodeState, State, Status};
+use crate::solve::state::{
+    IncrementStart, Input, NodeState, Piece, Pivoting, Search, State, Status,
+};
 use crate::solve::system::{Solved, System};
 use std::sync::Arc;
 
@@ -34,6 +42,10 @@ const SAME: f64 = 1e-14;
 const STILL: f64 = 1e-8;
 /// From this major iteration on nodes keep their master elements a little past the borders.
 const HOLD_FROM: u32 = 5;
+/// Rounds that all changes at once may go on without getting fewer.
+const PATIENCE: u32 = 10;
+/// Sums of halves of an increment are this exact.
+const ROUNDING: f64 = 1e-9;
 /// A major iteration is not damped below this part of its load.
 const SMALLEST_PART: f64 = 1e-6;
 
@@ -44,6 +56,10 @@ pub struct Stepper {
     system: System,
     /// Whether `system` is linearised about `state`.
     linearised: bool,
+    /// The pivoting of the present major iteration, with its start and the pivots done.
+    lemke: Option<(Lemke, usize, usize)>,
+    /// What the nodes came with into the present minor iteration, where only one of them may change.
+    before: Vec<NodeState>,
     event: Event,
 }
 
@@ -62,6 +78,8 @@ impl Stepper {
             },
             state,
             linearised: false,
+            lemke: None,
+            before: Vec::new(),
             model,
         };
         stepper.find_spots();
@@ -88,6 +106,7 @@ impl Stepper {
     pub fn restore(&mut self, state: &State) {
         self.state.clone_from(state);
         self.linearised = false;
+        self.lemke = None;
     }
 
     /// Current norms and whether they could be computed: those about which the next minor iteration is linearised.
@@ -136,29 +155,55 @@ impl Stepper {
 
     fn minor(&mut self) -> Outcome {
         if !self.linearise() {
-            return Outcome::Failed(Failure::Singular(Singular::Unexplained));
+            return self.fail(Failure::Singular(Singular::Unexplained));
         }
         self.event.before = self.system.norms();
+        let strategy = self.state.settings().strategy;
+        if let (Strategy::Lemke | Strategy::Census, Pivoting::At { start, pivot }) =
+            (strategy, self.state.search.pivoting)
+        {
+            self.state.minors += 1;
+            return match strategy {
+                Strategy::Lemke => self.pivot(start, pivot),
+                _ => self.try_all(),
+            };
+        }
+        Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
         match self.system.solve(&self.model, &self.state) {
             Solved::Well => {}
             Solved::Suspicious => {
                 let singular = self.diagnose();
                 if matches!(singular, Singular::Rigid { .. }) {
-                    return Outcome::Failed(Failure::Singular(singular));
+                    return self.stuck(Failure::Singular(singular));
                 }
             }
-            Solved::Not => return Outcome::Failed(Failure::Singular(self.diagnose())),
+            Solved::Not => {
+                let singular = self.diagnose();
+                return self.stuck(Failure::Singular(singular));
+            }
         }
         if let Some(failure) = self.jammed() {
-            return Outcome::Failed(failure);
+            return self.stuck(failure);
         }
         self.state.minors += 1;
-        Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
         let settled = self.judge();
         if settled {
-            return self.end_major(true);
+            return match self.unsupported() {
+                Some(first) => self.fail(first),
+                None => self.end_major(true),
+            };
         }
         self.go_on()
+    }
+
+    /// What failed before a ladder found a state in which nothing is pressed: where the equations were singular, such a
+    /// state holds nothing that was loose.
+    fn unsupported(&self) -> Option<Failure> {
+        let first = self.state.search.first.as_deref()?;
+        let force = self.ties().force;
+        let pressed = |record: &NodeRecord| record.f_n > force;
+        let loose = matches!(first, Failure::Singular(_)) && !self.event.nodes.iter().any(pressed);
+        loose.then(|| first.clone())
     }
 
     fn diagnose(&self) -> Singular {
@@ -201,53 +246,342 @@ impl Stepper {
         })
     }
 
-    /// Checks every node's mode against Table 2 and records it; true where modes and T_max have settled.
+    /// Checks every node's mode and records it; true where modes and T_max have settled.
     ///
     /// Leaves the modes of the next minor iteration in the state.
     fn judge(&mut self) -> bool {
-        let ties = self.ties();
+        let settings = self.state.settings();
+        let check = Check {
+            settings,
+            ties: self.ties(),
+            stiffness: match settings.strategy {
+                Strategy::Newton => self.system.spring(&self.model),
+                _ => 1.0,
+            },
+        };
         let mut settled = true;
         let controls = self.state.controls.clone();
+        let singly = one_at_a_time(settings.strategy, self.is_stalled());
+        if singly {
+            self.before.clone_from(&self.state.nodes);
+        }
         for (slave, node) in self.state.nodes.iter_mut().enumerate() {
             let site = self.system.site(slave, node);
             let given = self.system.given(slave);
-            let friction = &controls.friction[slave];
-            let (record, still) = judge(node, &site, given, friction, &controls.settings, &ties);
+            let (record, still) = judge(node, &site, given, &controls.friction[slave], &check);
             settled &= still;
             self.event.nodes.push(record);
+        }
+        if settings.strategy == Strategy::Block {
+            self.count_changes();
+        }
+        if singly {
+            minor::one_at_a_time(&mut self.state.nodes, &self.before, &mut self.event.nodes);
         }
         settled
     }
 
+    /// Whether all changes at once have gone on for long without getting fewer.
+    fn is_stalled(&self) -> bool {
+        self.state.search.rounds > PATIENCE
+    }
+
+    /// Counts the rounds since fewer nodes changed than ever before in this major iteration. What went before a change
+    /// of pace tells nothing of cycles.
+    fn count_changes(&mut self) {
+        let all = self.event.nodes.iter();
+        let changing = all.filter(|record| record.decision.changes()).count();
+        let stalled = self.is_stalled();
+        let search = &mut self.state.search;
+        if search.fewest.is_none_or(|fewest| changing < fewest) {
+            (search.fewest, search.rounds) = (Some(changing), 0);
+        } else {
+            search.rounds += 1;
+        }
+        if self.is_stalled() != stalled {
+            self.state.forget_trail();
+        }
+    }
+
     /// The minor loop has not settled: look for a cycle and at the limit, and count on.
     fn go_on(&mut self) -> Outcome {
-        let settings = self.state.controls.settings;
+        let settings = self.state.settings();
+        if matches!(settings.strategy, Strategy::Lemke | Strategy::Census) {
+            return self.begin_pivoting();
+        }
         let accept = settings.at_minor_limit == AtLimit::Accept;
         let minor = self.state.next.minor;
         let tried = self.state.trail.len(self.state.nodes.len()) as u32;
-        let at_limit = tried.is_multiple_of(settings.minors);
+        let at_limit = tried > 0 && tried.is_multiple_of(settings.minors);
         if at_limit && accept {
             return self.end_major(false);
         }
-        self.state.next.minor += 1;
-        if !accept && let Some(cycle) = self.find_cycle(minor) {
+        let moves_on = settings.strategy == Strategy::Block && !self.is_stalled();
+        if !accept
+            && !moves_on
+            && let Some(cycle) = self.find_cycle(minor)
+        {
             if settings.at_cycle == AtCycle::Damp && self.damp() {
+                self.state.next.minor += 1;
                 return Outcome::Damped {
                     cycle,
                     aim: self.state.aim,
                 };
             }
-            self.state.forget_trail();
-            return Outcome::Failed(Failure::Cycle(cycle));
+            return self.stuck(Failure::Cycle(cycle));
         }
         if at_limit {
             let changing = self.changing();
-            return Outcome::Failed(Failure::MinorLimit {
+            return self.stuck(Failure::MinorLimit {
                 limit: settings.minors,
                 changing,
             });
         }
+        self.state.next.minor += 1;
         Outcome::Minor
+    }
+
+    /// The strategy cannot go on: the ladder's next one takes over, from where the major iteration began. Where there is
+    /// none, the increment fails.
+    fn stuck(&mut self, why: Failure) -> Outcome {
+        let looks_at_all = matches!(
+            self.state.settings().strategy,
+            Strategy::Lemke | Strategy::Census
+        );
+        if looks_at_all && self.state.search.pivoting == Pivoting::Not {
+            return self.begin_pivoting();
+        }
+        let strategy = self.state.controls.settings.strategy;
+        let held = |node: &NodeState| matches!(node.forced, Forced::Held(_));
+        if strategy != Strategy::Ladder || self.state.nodes.iter().any(held) {
+            self.state.next.minor += u32::from(!matches!(why, Failure::Singular(_)));
+            self.state.forget_trail();
+            return self.fail(why);
+        }
+        self.begin_again();
+        let search = &mut self.state.search;
+        let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
+        if let Some(&to) = LADDER.get(search.rung + 1) {
+            search.rung += 1;
+            (search.fewest, search.rounds, search.pivoting) = (None, 0, Pivoting::Not);
+            self.state.next.minor += 1;
+            return Outcome::Climbed { why, to };
+        }
+        let first = first.clone();
+        self.state.search = Search::default();
+        match (*first, why) {
+            (first @ (Failure::Singular(_) | Failure::Jammed { .. }), _) => self.fail(first),
+            (_, why @ Failure::NoAnswer { .. }) => self.fail(why),
+            (first, _) => self.fail(Failure::NoAnswer {
+                first: Box::new(first),
+                tried: 0,
+            }),
+        }
+    }
+
+    /// Gives the nodes what they brought into the present major iteration.
+    fn begin_again(&mut self) {
+        self.take_back();
+        self.state.forget_trail();
+    }
+
+    fn take_back(&mut self) {
+        let first = self.state.trail.first(self.state.nodes.len());
+        for (node, input) in self.state.nodes.iter_mut().zip(first) {
+            (node.mode, node.ratio) = (input.mode, input.ratio);
+            if input.mode == Mode::Sliding {
+                (node.t_max, node.sign) = (input.t_max, input.t_max.signum());
+            }
+        }
+    }
+
+    /// The modes that were tried do not hold: the next start of pivoting, or the next answer of the census.
+    fn begin_pivoting(&mut self) -> Outcome {
+        let start = match self.state.search.pivoting {
+            Pivoting::Not => 0,
+            Pivoting::At { start, .. } | Pivoting::Found { start } => start + 1,
+        };
+        self.take_back();
+        self.state.search.pivoting = Pivoting::At { start, pivot: 0 };
+        self.state.next.minor += 1;
+        Outcome::Minor
+    }
+
+    /// One pivot of Lemke's, from a start; where that has ended on a ray, the next start is next.
+    fn pivot(&mut self, start: usize, pivot: usize) -> Outcome {
+        if !matches!(self.lemke, Some((_, s, p)) if (s, p) == (start, pivot)) {
+            match self.path(start, pivot) {
+                Some(path) => self.lemke = Some(path),
+                None => return self.stuck(Failure::Ray),
+            }
+        }
+        let Some((lemke, start, pivot)) = &mut self.lemke else {
+            return self.stuck(Failure::Ray);
+        };
+        // It has ended already where its start is the answer.
+        if lemke.pivot().is_some() {
+            *pivot += 1;
+        }
+        let (start, pivot, ended, cover) = (*start, *pivot, lemke.ended(), lemke.cover());
+        let told: Vec<(Assumed, [f64; 4])> = (0..self.state.nodes.len())
+            .map(|place| (lemke.assumed(place), lemke.numbers(place)))
+            .collect();
+        self.state.search.pivoting = match ended {
+            None => Pivoting::At { start, pivot },
+            Some(End::Solved) => Pivoting::Found { start },
+            Some(End::Ray) => Pivoting::At {
+                start: start + 1,
+                pivot: 0,
+            },
+        };
+        let rule = match ended {
+            Some(End::Solved) => Rule::Found,
+            _ => Rule::Pivots,
+        };
+        for (slave, (assumed, numbers)) in told.into_iter().enumerate() {
+            self.assume(slave, assumed, numbers, rule, cover);
+        }
+        self.state.next.minor += 1;
+        Outcome::Minor
+    }
+
+    /// The tableau after this many pivots from a start, or from the first one behind it whose basis is regular.
+    fn path(&mut self, start: usize, pivot: usize) -> Option<(Lemke, usize, usize)> {
+        let problem = self.system.frozen(&self.model, &self.state).ok()?;
+        let brought = self.brought();
+        let mut starts = (start..STARTS)
+            .filter_map(|number| Some((Lemke::new(&problem, &brought, number)?, number)));
+        let (mut lemke, found) = starts.next()?;
+        let pivot = if found == start { pivot } else { 0 };
+        for _ in 0..pivot {
+            lemke.pivot()?;
+        }
+        Some((lemke, found, pivot))
+    }
+
+    /// What the nodes brought into the present major iteration.
+    fn brought(&self) -> Vec<Assumed> {
+        let first = self.state.trail.first(self.state.nodes.len());
+        let of = |input: &Input| Assumed::of(input.mode, input.t_max);
+        first.iter().map(of).collect()
+    }
+
+    /// Holds a census over all nodes that can touch, and takes the next of its answers, those first that change the least.
+    fn try_all(&mut self) -> Outcome {
+        let Pivoting::At { start: number, .. } = self.state.search.pivoting else {
+            return self.stuck(Failure::Ray);
+        };
+        let Ok(problem) = self.system.frozen(&self.model, &self.state) else {
+            return self.stuck(Failure::Ray);
+        };
+        let undecided: Vec<usize> = (0..problem.nodes.len())
+            .filter(|&place| problem.nodes[place].choices().len() > 1)
+            .collect();
+        let census = problem
+            .reduced(&undecided)
+            .and_then(|problem| census(&problem).ok());
+        let Some(mut census) = census else {
+            return self.stuck(Failure::Ray);
+        };
+        let brought = self.brought();
+        let differs = |(place, node): (&usize, &NodeAnswer)| brought[*place] != node.assumed;
+        census.answers.sort_by_key(|found| {
+            let all = undecided.iter().zip(&found.answer.nodes);
+            all.filter(|&pair| differs(pair)).count()
+        });
+        let Some(found) = census.answers.get(number) else {
+            let first = self.state.search.first.clone();
+            return self.stuck(Failure::NoAnswer {
+                first: first.unwrap_or(Box::new(Failure::Ray)),
+                tried: census.tried,
+            });
+        };
+        let free = (Assumed::Free, [0.0, 0.0, f64::INFINITY, 0.0]);
+        let mut told = vec![free; problem.nodes.len()];
+        for (&place, node) in undecided.iter().zip(&found.answer.nodes) {
+            let numbers = [node.f_n, node.f_t, node.gap, node.slip];
+            told[place] = (node.assumed, numbers);
+        }
+        for (slave, (assumed, numbers)) in told.into_iter().enumerate() {
+            self.assume(slave, assumed, numbers, Rule::Found, 0.0);
+        }
+        self.state.search.pivoting = Pivoting::Found { start: number };
+        self.state.next.minor += 1;
+        Outcome::Minor
+    }
+
+    /// Records what pivoting or the census has a node do, and leaves it in the state.
+    fn assume(
+        &mut self,
+        slave: usize,
+        assumed: Assumed,
+        [f_n, f_t, gap, slip]: [f64; 4],
+        rule: Rule,
+        cover: f64,
+    ) {
+        let friction = self.state.controls.friction[slave];
+        let node = &mut self.state.nodes[slave];
+        let site = self.system.site(slave, node);
+        let before = node.mode;
+        node.mode = assumed.mode();
+        node.ratio = 0.0;
+        node.sign = assumed.sign();
+        let sign = if f_t == 0.0 { node.sign } else { f_t.signum() };
+        node.t_max = t_max(&friction, f_n, sign);
+        let test = Test {
+            tested: Tested::Cover,
+            value: cover,
+            bound: 0.0,
+            margin: -cover,
+            tie: false,
+        };
+        let off = site.gap.is_infinite();
+        let rule = if off { Rule::OffSurface } else { rule };
+        self.event.nodes.push(NodeRecord {
+            decision: Decision {
+                before,
+                next: node.mode,
+                rule,
+                tests: [(!off).then_some(test), None],
+                wanted: node.mode,
+            },
+            forced: node.forced,
+            gap,
+            f_n,
+            f_t,
+            t_max: node.t_max,
+            t_max_used: node.t_max,
+            slip,
+            drift: node.drift,
+            spot: node.spot,
+            normal: site.normal,
+            foot: site.foot,
+            carried: [false; 2],
+        });
+    }
+
+    /// The increment fails; on the ladder it is cut, where that can help and it is not at its smallest yet.
+    fn fail(&mut self, why: Failure) -> Outcome {
+        let controls = &self.state.controls;
+        let helps = !matches!(
+            why,
+            Failure::Singular(Singular::Rigid { .. }) | Failure::Jammed { .. }
+        );
+        let half = self.state.piece.halved();
+        let least = controls.least * (1.0 - ROUNDING);
+        if controls.settings.strategy != Strategy::Ladder
+            || !helps
+            || half.size() < least
+            || half.size() == 0.0
+        {
+            return Outcome::Failed(why);
+        }
+        self.state.piece = half;
+        self.state.start_again();
+        self.linearised = false;
+        self.lemke = None;
+        let size = half.size();
+        Outcome::Cut { why, size }
     }
 
     /// Starts the minor iterations of this major one again, with half the load; false if too little is left of it.
@@ -260,14 +594,7 @@ impl Stepper {
         }
         self.state.aim = self.state.reached + left / 2.0;
         self.linearised = false;
-        let first = self.state.trail.first(self.state.nodes.len());
-        for (node, input) in self.state.nodes.iter_mut().zip(first) {
-            (node.mode, node.ratio) = (input.mode, input.ratio);
-            if input.mode == Mode::Sliding {
-                (node.t_max, node.sign) = (input.t_max, input.t_max.signum());
-            }
-        }
-        self.state.forget_trail();
+        self.begin_again();
         true
     }
 
@@ -294,14 +621,19 @@ impl Stepper {
     /// Updates displacements and forces, renews the geometry, and asks whether the increment is done.
     fn end_major(&mut self, settled: bool) -> Outcome {
         if self.system.recover(&self.model) == Solved::Not {
-            return Outcome::Failed(Failure::Singular(self.diagnose()));
+            let singular = self.diagnose();
+            return self.fail(Failure::Singular(singular));
         }
         self.update();
+        let search = &mut self.state.search;
+        (search.first, search.fewest, search.rounds) = (None, None, 0);
+        search.pivoting = Pivoting::Not;
+        self.lemke = None;
         let norms = self.norms();
         self.state.unsettled += u32::from(!settled);
         let settings = self.state.controls.settings;
         let Some(after) = norms else {
-            return Outcome::Failed(Failure::Singular(Singular::Unexplained));
+            return self.fail(Failure::Singular(Singular::Unexplained));
         };
         // The bodies' own unknowns, which come last, are forces.
         let nodal = self.model.dofs.len() - self.model.dofs.inner;
@@ -323,7 +655,7 @@ impl Stepper {
         self.state.next.major += 1;
         self.state.next.minor = 1;
         if !bounded {
-            return Outcome::Failed(Failure::Diverged {
+            return self.fail(Failure::Diverged {
                 relative: after.relative,
             });
         }
@@ -331,10 +663,10 @@ impl Stepper {
             && let Some(round) = self.find_round()
         {
             self.state.forget_rounds();
-            return Outcome::Failed(Failure::MajorCycle(round));
+            return self.fail(Failure::MajorCycle(round));
         }
         if at_limit {
-            return Outcome::Failed(Failure::MajorLimit {
+            return self.fail(Failure::MajorLimit {
                 limit: settings.majors,
                 relative: after.relative,
                 interface: after.interface,
@@ -398,13 +730,13 @@ impl Stepper {
             node.ratio = 0.0;
             node.travel = 0.0;
         }
+        self.state.forget_trail();
         self.find_spots();
         self.linearised = self.system.linearise(&self.model, &self.state).is_ok();
         if self.state.controls.settings.residual == ResidualMethod::Stress {
             self.take_forces_from_stresses();
         }
         self.system.turn(&self.model, &self.state);
-        self.state.forget_trail();
     }
 
     /// Projects every slave node anew. Forces keep their components in the frame that turns with the surface.
@@ -523,7 +855,15 @@ impl Stepper {
         } else {
             let p = &mut self.state.next;
             (p.increment, p.attempt) = (p.increment + 1, 1);
-            self.state.begin(&self.model);
+            let whole = || {
+                Piece::whole(
+                    &self.model,
+                    &self.state.start,
+                    self.state.controls.increment,
+                )
+            };
+            self.state.piece = self.state.piece.next().unwrap_or_else(whole);
+            self.state.begin();
             self.linearised = false;
         }
         Outcome::Increment {
@@ -539,6 +879,7 @@ impl Stepper {
     /// Those of [`State::intervene`].
     pub fn intervene(&mut self, intervention: &Intervention) -> Result<(), String> {
         self.linearised = false;
+        self.lemke = None;
         self.state.intervene(&self.model, intervention)
     }
 

@@ -446,20 +446,26 @@ impl System {
     /// Largest relative violation of the interface conditions by a state's forces and gaps.
     fn violation(&self, model: &Model, state: &State) -> f64 {
         let mut worst = 0.0_f64;
+        // Also in the middle of a major iteration this is about what it began with.
+        let first = state.trail.first(state.nodes.len());
         for (s, node) in state.nodes.iter().enumerate() {
+            let (mode, t_max) = match first.get(s) {
+                Some(input) => (input.mode, input.t_max),
+                None => (node.mode, node.t_max),
+            };
             let Some(gap) = self.interfaces[s].footing.map(|f| f.gap) else {
                 continue;
             };
-            let length = match node.mode {
+            let length = match mode {
                 Mode::Free => (-gap).max(0.0),
                 _ => gap.abs(),
             };
-            let force = match node.mode {
-                Mode::Sliding => (node.f_t - node.t_max).abs(),
+            let force = match mode {
+                Mode::Sliding => (node.f_t - t_max).abs(),
                 _ => 0.0,
             };
             let anchored = state.controls.settings.sticking == Sticking::Anchored;
-            let drift = match node.mode {
+            let drift = match mode {
                 Mode::Fixed if anchored && self.interfaces[s].moves[1] => node.drift.abs(),
                 _ => 0.0,
             };
@@ -633,7 +639,7 @@ impl System {
                 largest
             },
             length: model.length,
-            settings: state.controls.settings,
+            settings: state.settings(),
             relation,
         })
     }
@@ -711,7 +717,7 @@ impl System {
 
     /// Stiffness of the springs. What lies k times above or below it loses as many digits when the springs drop out, so
     /// it is midway between the stiffest degree of freedom of the interface and the softest body as a whole.
-    fn spring(&self, model: &Model) -> f64 {
+    pub fn spring(&self, model: &Model) -> f64 {
         let Some(pattern) = self.pattern() else {
             return 1.0;
         };
@@ -753,9 +759,9 @@ impl System {
 
     /// Table 1's rows of a node.
     fn rows(&self, s: usize, state: &State) -> [Equation; 2] {
-        let controls = &state.controls;
         let (node, site) = (&state.nodes[s], self.site(s, &state.nodes[s]));
-        minor::rows(node, &site, &controls.friction[s], &controls.settings)
+        let friction = &state.controls.friction[s];
+        minor::rows(node, &site, friction, &state.settings())
     }
 
     /// A slave node's surroundings in the last linearisation.

@@ -66,6 +66,7 @@ pub enum Reason {
     Singular,
     Diverged,
     Jammed,
+    NoAnswer,
 }
 
 impl From<&Failure> for Reason {
@@ -78,6 +79,7 @@ impl From<&Failure> for Reason {
             Failure::Singular(_) => Reason::Singular,
             Failure::Diverged { .. } => Reason::Diverged,
             Failure::Jammed { .. } => Reason::Jammed,
+            Failure::NoAnswer { .. } | Failure::Ray => Reason::NoAnswer,
         }
     }
 }
@@ -92,6 +94,7 @@ impl fmt::Display for Reason {
             Reason::Singular => "singular",
             Reason::Diverged => "diverged",
             Reason::Jammed => "jammed",
+            Reason::NoAnswer => "no-answer",
         })
     }
 }

@@ -120,14 +120,14 @@ fn pushes(
     let tested = tested(&record.decision);
     let of = |push: &Push| match tested {
         Tested::Gap => push.influence.gap,
-        Tested::NormalForce => push.influence.f_n,
-        Tested::ShearForce => push.influence.f_t,
+        Tested::NormalForce | Tested::Pressure | Tested::Cover => push.influence.f_n,
+        Tested::ShearForce | Tested::Drag => push.influence.f_t,
         Tested::Slip => push.influence.slip,
     };
     let symbol = match tested {
         Tested::Gap => "Δg",
-        Tested::NormalForce => "ΔF_n",
-        Tested::ShearForce => "ΔF_t",
+        Tested::NormalForce | Tested::Pressure | Tested::Cover => "ΔF_n",
+        Tested::ShearForce | Tested::Drag => "ΔF_t",
         Tested::Slip => "Δslip",
     };
     let mut found: Vec<&Push> = found.iter().filter(|push| of(push) != 0.0).collect();
@@ -273,6 +273,7 @@ fn grid(
     ruled: bool,
     theme: &Theme,
 ) -> Vec<Line<'static>> {
+    let table = decision.map_or(TABLE_2, |decision| report::table(decision.rule));
     let cell = width.saturating_sub(LABEL + 6) / 3;
     let bar = Span::styled("│ ", theme.faint);
     let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
@@ -314,7 +315,7 @@ fn grid(
                     look => look,
                 };
                 let mark = if part == 0 { mark } else { " " };
-                let text = TABLE_2[row][column][part];
+                let text = table[row][column][part];
                 // The last column takes what the division left over.
                 let cell = if column == 2 {
                     width.saturating_sub(LABEL + 6 + 2 * cell)
@@ -351,9 +352,10 @@ fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
 /// The cell that fired, alone, where there is no room for the table.
 fn fired(decision: &Decision, theme: &Theme) -> Line<'static> {
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
-    let [first, second] = TABLE_2[place(decision.before)][place(decision.next)];
+    let [first, second] =
+        report::table(decision.rule)[place(decision.before)][place(decision.next)];
     let cell = match decision.rule {
-        Rule::OffSurface | Rule::Held => String::new(),
+        Rule::OffSurface | Rule::Held | Rule::Waits | Rule::Pivots | Rule::Found => String::new(),
         _ if second.is_empty() => format!(" {first} "),
         _ => format!(" {first}, {second} "),
     };
@@ -382,10 +384,10 @@ fn cell_look(
     };
     match decision.rule {
         Rule::OffSurface => (" ", theme.text),
-        Rule::Held if decision.wanted == next => {
+        Rule::Held | Rule::Waits if decision.wanted == next => {
             ("◁", theme.text.add_modifier(Modifier::UNDERLINED))
         }
-        Rule::Held => (" ", theme.text),
+        Rule::Held | Rule::Waits => (" ", theme.text),
         _ if decision.next == next => ("◀", theme.lit(next)),
         _ => (" ", theme.text),
     }
@@ -431,6 +433,9 @@ fn inequality(test: &Test) -> String {
         Tested::ShearForce => ("|F_t|", format!("|T_max| {}", long(test.bound))),
         Tested::Slip => ("slip·sgn T_max", "0".into()),
         Tested::Gap => ("g", "0".into()),
+        Tested::Pressure => ("F_n − k·g", "0".into()),
+        Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
+        Tested::Cover => ("z", "0".into()),
     };
     format!(" {name} {} {sign} {bound}", long(test.value))
 }
@@ -438,8 +443,9 @@ fn inequality(test: &Test) -> String {
 /// How far the inequality is from switching, and its unit.
 fn margin(test: &Test, theme: &Theme) -> (String, Style) {
     let unit = match test.tested {
-        Tested::NormalForce | Tested::ShearForce => "force",
+        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => "force",
         Tested::Slip | Tested::Gap => "length",
+        Tested::Cover => "(relative)",
     };
     match test.tie {
         true => (

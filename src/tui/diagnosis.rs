@@ -1,8 +1,8 @@
 //! The diagnosis: why the minor iterations cycle from the shown state, or which states are consistent; the consistent
 //! ones side by side, one of them selected, to start from.
 
-use crate::debug::census::Census;
 use crate::debug::looks::Finding;
+use crate::solve::census::Census;
 use crate::solve::frozen::NodeAnswer;
 use crate::tui::app::App;
 use crate::tui::draw;

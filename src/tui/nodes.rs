@@ -190,8 +190,11 @@ fn margin(slave: usize, view: &View) -> Option<f64> {
     let (event, record) = (view.event()?, view.record(slave)?);
     let tests = record.decision.tests.iter().flatten();
     let size = |tested| match tested {
-        Tested::NormalForce | Tested::ShearForce => event.before.scale,
+        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
+            event.before.scale
+        }
         Tested::Slip | Tested::Gap => view.model.length,
+        Tested::Cover => 1.0,
     };
     tests
         .map(|test| (test.margin / size(test.tested)).abs())

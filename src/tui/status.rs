@@ -2,7 +2,8 @@
 
 use crate::debug::report;
 use crate::scene::Model;
-use crate::solve::{Event, Forced, Outcome};
+use crate::scene::spec::Strategy;
+use crate::solve::{Event, Forced, Outcome, Status};
 use crate::tui::app::App;
 use crate::tui::view::View;
 use crate::tui::{draw, number};
@@ -147,7 +148,10 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
     let theme = &app.theme;
     let (glyph, style) = match &event.outcome {
         Outcome::Minor | Outcome::Major { settled: true, .. } => ("▸", theme.text),
-        Outcome::Damped { .. } | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
+        Outcome::Damped { .. }
+        | Outcome::Climbed { .. }
+        | Outcome::Cut { .. }
+        | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
         Outcome::Increment { unsettled: 0, .. } => ("✓", theme.good),
         Outcome::Increment { .. } => ("✓", theme.warning),
         Outcome::Failed(_) => ("✗", theme.bad),
@@ -187,7 +191,13 @@ fn interventions(view: &View) -> Option<String> {
         .iter()
         .zip(&controls.friction)
         .any(|(slave, now)| slave.friction != *now);
+    let state = &view.frame().state;
+    let strategy = state.settings().strategy;
+    let leads = strategy != Strategy::Table2 && state.status != Status::Finished;
     let parts = [
+        leads.then(|| format!("strategy {}", report::strategy(strategy))),
+        (state.piece.cut > 0)
+            .then(|| format!("increment cut to {}", number::plain(state.piece.size()))),
         (held > 0).then(|| format!("◆ {held} held")),
         (once > 0).then(|| format!("◇ {once} forced")),
         increment,

@@ -1,8 +1,8 @@
 //! What the solver says about a state: now, some minor iterations on, or at the end of the increment.
 
-use crate::debug::census::census;
 use crate::debug::session::Frame;
 use crate::scene::{Mode, Model};
+use crate::solve::census::census;
 use crate::solve::event::Cycle;
 use crate::solve::{Event, Failure, NodeRecord, Outcome, Stepper};
 use std::sync::Arc;

@@ -560,6 +560,12 @@ fn compared(decision: &Decision) -> String {
             Tested::ShearForce => ("|F_t|", format!("|T_max| = {}", number(test.bound))),
             Tested::Slip => ("slip·sgn T_max", "0".into()),
             Tested::Gap => ("g", "0".into()),
+            Tested::Pressure => ("F_n − k·g", "0".into()),
+            Tested::Drag => (
+                "|F_t + k·slip|",
+                format!("the limit, {}", number(test.bound)),
+            ),
+            Tested::Cover => ("z", "0".into()),
         };
         format!("{name} = {} {sign} {bound}", number(test.value))
     };

@@ -6,7 +6,9 @@ use super::super::spec::{History, Settings};
 
 /// Refuses a path that goes nowhere, or that has no end.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
-    let History { path, increment } = history;
+    let History {
+        path, increment, ..
+    } = history;
     let here = at!["history", "path"];
     if path.len() < 2 {
         let message = format!(
@@ -31,6 +33,15 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
             size,
             format!(
                 "the increment is {increment:?}; it must be positive, also where the path falls"
+            ),
+        ));
+    }
+    let least = history.least();
+    if !(least > 0.0 && least <= *increment) {
+        return Err(Fault::new(
+            at!["history", "least"],
+            format!(
+                "the least increment is {least:?}; it must be above 0 and at most the increment, {increment:?}"
             ),
         ));
     }

@@ -14,9 +14,9 @@ mod tractions;
 use super::error::{Fault, at};
 use super::geometry;
 use super::limits;
-use super::model::Model;
+use super::model::{Body, BodyKind, Model};
 use super::nodes::Names;
-use super::spec::Spec;
+use super::spec::{Settings, Spec, Touch};
 pub(crate) use history::increments;
 use layout::Layout;
 
@@ -57,6 +57,10 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     history::history(&spec.history)?;
     history::settings(&spec.settings)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
+    let settings = Settings {
+        touch: touch(spec.settings.touch, &bodies),
+        ..spec.settings
+    };
     let model = Model {
         title: spec.title.clone(),
         about: spec.about.clone(),
@@ -69,11 +73,22 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         prescribed,
         path: spec.history.path.clone(),
         increment: spec.history.increment,
-        settings: spec.settings,
+        least: spec.history.least(),
+        settings,
         monitors,
         length,
     };
     Ok((model, names))
+}
+
+/// Where a node is held that touches: what `auto` stands for in a scene of these bodies.
+fn touch(wanted: Touch, bodies: &[Body]) -> Touch {
+    let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
+    match wanted {
+        Touch::Auto if bodies.iter().any(is_mesh) => Touch::Ratio,
+        Touch::Auto => Touch::Start,
+        wanted => wanted,
+    }
 }
 
 /// Refuses texts that would spoil a terminal.
