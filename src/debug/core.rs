@@ -3,9 +3,10 @@
 //! A frozen interface problem that cycles is shrunk by giving every node outside a trial set the equations of what it
 //! brings ([`Frozen::reduced`]) and running Table 2 over what is left.
 
+use crate::scene::Mode;
 use crate::solve::event::Cycle;
 use crate::solve::frozen::{Frozen, Trials};
-use crate::solve::state::Trail;
+use crate::solve::state::{NodeState, Trail};
 
 /// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
 const EXHAUSTIVE: usize = 10;
@@ -13,6 +14,9 @@ const EXHAUSTIVE: usize = 10;
 const MOST: usize = 40;
 /// Numbers of two iterations that differ by less than this, relatively, are the same.
 const SAME: f64 = 1e-12;
+
+/// Most rounds until the T_max of a cycle has come to rest.
+const ROUNDS: usize = 1000;
 
 /// The fewest nodes that still cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +27,48 @@ pub struct Core {
     pub problem: Frozen,
     /// Its cycle; members by place in `problem`.
     pub cycle: Cycle,
+}
+
+impl Core {
+    /// Its problem at a point of the cycle, where the T_max of all rounds has come to rest: of the points of one round,
+    /// that into which the nodes bring least.
+    pub fn on_cycle(&self) -> Frozen {
+        let mut nodes = self.problem.states();
+        let mut around = vec![nodes.clone()];
+        if let Some(mut trials) = Trials::new(&self.problem) {
+            for _ in 0..ROUNDS {
+                for _ in 0..self.cycle.period {
+                    if trials.minor(&mut nodes).is_some() {
+                        around.push(nodes.clone());
+                    }
+                }
+                let [first, .., last] = around.as_slice() else {
+                    break;
+                };
+                let limits =
+                    |nodes: &[NodeState]| nodes.iter().map(|n| n.t_max).collect::<Vec<_>>();
+                if limits(first) == limits(last) {
+                    break;
+                }
+                around.drain(..around.len() - 1);
+            }
+        }
+        let brings = |nodes: &&Vec<NodeState>| {
+            let of = |n: &NodeState| match n.mode {
+                Mode::Free => 0,
+                Mode::Fixed => 1 + u32::from(n.ratio != 0.0),
+                Mode::Sliding => 2 + u32::from(n.ratio != 0.0),
+            };
+            nodes.iter().map(of).sum::<u32>()
+        };
+        let mut problem = self.problem.clone();
+        if let Some(least) = around.iter().min_by_key(brings) {
+            for (node, state) in problem.nodes.iter_mut().zip(least) {
+                node.state = *state;
+            }
+        }
+        problem
+    }
 }
 
 /// Shrinks a problem that cycles from what its nodes bring; none where it does not, or where too many nodes take part.

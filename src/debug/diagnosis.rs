@@ -116,6 +116,23 @@ impl Diagnosis {
     }
 }
 
+/// The problem that goes round in a cycle: the whole one, or where that has many nodes only those that take part, all others
+/// going on with what they do. None where that is singular, or too large still. The states are where the cycle starts.
+pub fn cycling(problem: Frozen, cycle: &Cycle) -> Option<Frozen> {
+    if problem.nodes.len() <= MOST_NODES {
+        return Some(problem);
+    }
+    let takes_part = |place: &usize| {
+        let slave = problem.nodes[*place].slave;
+        cycle.members.iter().any(|(member, _)| *member == slave)
+    };
+    let members: Vec<usize> = (0..problem.nodes.len()).filter(takes_part).collect();
+    if members.len() > MOST_NODES {
+        return None;
+    }
+    problem.reduced(&members)
+}
+
 /// One period of the iterations, with who pushed whom.
 fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
     let mut trials = Trials::new(problem)?;
