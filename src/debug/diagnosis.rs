@@ -12,7 +12,8 @@ use crate::solve::event::{Cycle, NodeRecord};
 use crate::solve::frozen::{Assumed, Condition, Frozen, Trials};
 use crate::solve::state::NodeState;
 
-/// Most slave nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size.
+/// Most nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size. Of a scene
+/// with more, those that take part in the cycle are looked at ([`cycling`]).
 pub const MOST_NODES: usize = 200;
 /// Most iterations of a period that are told one by one.
 const MOST_PHASES: usize = 12;
@@ -41,7 +42,7 @@ pub struct Diagnosis {
 pub struct Phase {
     /// What it found at each node.
     pub records: Vec<NodeRecord>,
-    /// For each node whose mode it changes: the change, since the iteration before, that did most to what was tested.
+    /// For each node whose mode it changes, in the first [`MOST_PHASES`] of them: the change, since the iteration before, that did most to what was tested.
     pub pushes: Vec<Push>,
 }
 
@@ -133,6 +134,14 @@ pub fn cycling(problem: Frozen, cycle: &Cycle) -> Option<Frozen> {
     problem.reduced(&members)
 }
 
+/// That so many nodes take part in a cycle that they cannot be looked at.
+pub fn too_many(cycle: &Cycle) -> String {
+    let count = cycle.members.len();
+    format!(
+        "{count} nodes take part in the cycle: too many, or with what all others do they are singular"
+    )
+}
+
 /// One period of the iterations, with who pushed whom.
 fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
     let mut trials = Trials::new(problem)?;
@@ -150,9 +159,14 @@ fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
         phase => &states[phase - 1],
     };
     let found = all.into_iter().enumerate().map(|(phase, records)| {
-        let changed = (0..records.len()).filter(|&s| records[s].decision.changes());
-        let pushes = changed
-            .filter_map(|node| push(problem, before(phase), &states[phase], &records, node))
+        let changed = |s: &usize| records[*s].decision.changes();
+        let changed: Vec<usize> = (0..records.len()).filter(changed).collect();
+        let told = phase < MOST_PHASES && !changed.is_empty();
+        let all = told.then(|| influences(problem, before(phase), &states[phase], &changed));
+        let all = all.flatten().unwrap_or_default();
+        let pushes = changed.iter().zip(&all);
+        let pushes = pushes
+            .filter_map(|(&node, all)| push(all, before(phase), &states[phase], &records, node))
             .collect();
         Phase { records, pushes }
     });
@@ -160,7 +174,7 @@ fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
 }
 
 fn push(
-    problem: &Frozen,
+    all: &[Influence],
     before: &[NodeState],
     now: &[NodeState],
     records: &[NodeRecord],
@@ -173,7 +187,6 @@ fn push(
         Tested::ShearForce => i.f_t,
         Tested::Slip => i.slip,
     };
-    let all = influences(problem, before, now, node)?;
     let most = all
         .iter()
         .max_by(|a, b| of(a).abs().total_cmp(&of(b).abs()))?;
@@ -422,6 +435,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             nodes.join(", ")
         ));
     }
+    lines.extend(differing(census, name));
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(
             "  nearest: {}, which breaks \"{}\" at {} by {:.4e}",
@@ -429,6 +443,35 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             condition_words(margin.condition),
             name(*place),
             -margin.value
+        ));
+    }
+    lines
+}
+
+/// Where several consistent states differ, a line a node.
+fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+    let all = &census.answers;
+    let [first, _, ..] = all.as_slice() else {
+        return Vec::new();
+    };
+    let mut lines = vec!["how they differ:".to_owned()];
+    for place in 0..first.answer.nodes.len() {
+        let of = |number: usize| &all[number].answer.nodes[place];
+        if (1..all.len()).all(|number| of(number).assumed == of(0).assumed) {
+            continue;
+        }
+        let each = (0..all.len()).map(|number| {
+            let node = of(number);
+            let (does, f_n, f_t) = (assumed_words(node.assumed), node.f_n, node.f_t);
+            match node.assumed {
+                Assumed::Free => format!("{does} in {}, gap {:.4e}", number + 1, node.gap),
+                _ => format!("{does} in {}, F_n {f_n:.4e}, F_t {f_t:.4e}", number + 1),
+            }
+        });
+        lines.push(format!(
+            "  {}: {}",
+            name(place),
+            each.collect::<Vec<_>>().join("; ")
         ));
     }
     lines
