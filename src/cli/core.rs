@@ -79,6 +79,9 @@ fn text(scene: &Scene) -> Result<String, String> {
             _ => {}
         }
     };
+    if scene.model.settings.at_cycle != AtCycle::Stop {
+        tell("settings.at_cycle was put aside; with it the scene may get past this cycle");
+    }
     let (at, load) = (stepper.event().position, stepper.state().aim);
     let problem = stepper
         .frozen()

@@ -28,7 +28,8 @@ pub struct Diagnosis {
     /// The fewest nodes that still cycle; none where that cannot be told.
     pub core: Option<Core>,
     /// The problem of all nodes that take part, or of the core where those are too many for a census; the other nodes go
-    /// on with what they do.
+    /// on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
+    /// few enough.
     pub problem: Frozen,
     /// What is consistent in it; none where even the core is too large.
     pub census: Option<Census>,
@@ -98,11 +99,22 @@ impl Diagnosis {
         let phases = phases(problem, cycle.period)?;
         let core = core(problem);
         let members: Vec<usize> = cycle.members.iter().map(|member| member.0).collect();
-        let studied = match &core {
+        let mut studied = match &core {
             Some(core) if members.len() > MOST => core.problem.clone(),
             _ => problem.reduced(&members)?,
         };
-        let census = census(&studied).ok();
+        let mut found = census(&studied).ok();
+        // What is inconsistent with what the others do may be consistent with something else that they could do.
+        let all = undecided(problem);
+        let none = found.as_ref().is_some_and(|found| found.answers.is_empty());
+        if none
+            && (studied.nodes.len() + 1..=MOST).contains(&all.len())
+            && let Some(wider) = problem.reduced(&all)
+        {
+            found = census(&wider).ok();
+            studied = wider;
+        }
+        let census = found;
         let cause = cause(problem, &phases, &studied, census.as_ref());
         let ways = ways(&studied, census.as_ref());
         Some(Diagnosis {
@@ -132,6 +144,13 @@ pub fn cycling(problem: Frozen, cycle: &Cycle) -> Option<Frozen> {
         return None;
     }
     problem.reduced(&members)
+}
+
+/// The nodes that can do one thing or another, by place.
+pub fn undecided(problem: &Frozen) -> Vec<usize> {
+    let choices = |place: &usize| problem.nodes[*place].choices().len();
+    let all = 0..problem.nodes.len();
+    all.filter(|place| choices(place) > 1).collect()
 }
 
 /// That so many nodes take part in a cycle that they cannot be looked at.
@@ -292,7 +311,13 @@ fn runs(problem: &Frozen) -> bool {
 pub fn words(model: &Model, problem: &Frozen, diagnosis: &Diagnosis) -> Vec<String> {
     let name = |place: usize| report::slave(model, problem.nodes[place].slave);
     let studied = |place: usize| report::slave(model, diagnosis.problem.nodes[place].slave);
-    let mut lines = vec![format!("why: {}", cause_words(diagnosis, &studied))];
+    // Nodes that were left out of the problem, and those of it that were left out of the census.
+    let left_out = model.slaves.len() > problem.nodes.len()
+        || undecided(problem).len() > diagnosis.problem.nodes.len();
+    let mut lines = vec![format!(
+        "why: {}",
+        cause_words(diagnosis, left_out, &studied)
+    )];
     for (k, phase) in diagnosis.phases.iter().enumerate().take(MOST_PHASES) {
         for push in &phase.pushes {
             let at = format!("minor {} of the cycle", k + 1);
@@ -334,10 +359,17 @@ fn list(names: &[&str]) -> String {
     }
 }
 
-fn cause_words<'a>(diagnosis: &Diagnosis, name: &impl Fn(usize) -> &'a str) -> String {
+fn cause_words<'a>(
+    diagnosis: &Diagnosis,
+    left_out: bool,
+    name: &impl Fn(usize) -> &'a str,
+) -> String {
     let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
     let nodes = list(&members);
     match &diagnosis.cause {
+        Cause::NoAnswer if left_out => format!(
+            "no state of {nodes} obeys contact and friction as long as all other nodes go on with what they do"
+        ),
         Cause::NoAnswer => format!(
             "no state of {nodes} obeys contact and friction at this increment, so no iteration can find one; \
              a smaller increment ends before"

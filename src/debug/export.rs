@@ -114,25 +114,37 @@ pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Resul
     }
 }
 
-/// The file of a whole frozen problem, its nodes as they stand. Nodes past the ends of all surfaces are left out, free.
+/// The nodes of a problem that a file can have: those over a surface, and with something that moves.
+pub fn writable(problem: &Frozen) -> Vec<usize> {
+    let can = |place: &usize| {
+        let site = &problem.nodes[*place].site;
+        site.gap.is_finite() && site.moves != [false; 2]
+    };
+    (0..problem.nodes.len()).filter(can).collect()
+}
+
+/// The file of a whole frozen problem, its nodes as they stand, less those that no file can have ([`writable`]): these
+/// neither push nor are pushed.
 ///
 /// # Errors
 /// Why there is none.
 pub fn whole(model: &Model, origin: &Origin, problem: &Frozen) -> Result<String, String> {
-    let (here, gone): (Vec<usize>, Vec<usize>) =
-        (0..problem.nodes.len()).partition(|&place| problem.nodes[place].site.gap.is_finite());
+    let here = writable(problem);
     if here.is_empty() {
         return Err("no slave node is over a surface, so there is no interface problem".into());
     }
-    let mut head = vec!["The frozen interface problem of a major iteration: what its minor iterations know of the bodies.".to_owned(), origin.words()];
+    let mut head = vec![
+        "The frozen interface problem of a major iteration: what its minor iterations know of the bodies.".to_owned(),
+        origin.words(),
+    ];
+    let gone = (0..problem.nodes.len()).filter(|place| !here.contains(place));
+    let gone: Vec<&str> = gone
+        .map(|place| report::slave(model, problem.nodes[place].slave))
+        .collect();
     if !gone.is_empty() {
-        let names: Vec<&str> = gone
-            .iter()
-            .map(|&place| report::slave(model, problem.nodes[place].slave))
-            .collect();
         head.push(format!(
-            "Left out, since past the ends of all surfaces: {}.",
-            names.join(", ")
+            "Left out, since past the ends of all surfaces, or held like what they lie on: {}.",
+            gone.join(", ")
         ));
     }
     let problem = problem

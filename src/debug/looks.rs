@@ -432,9 +432,7 @@ pub fn finding(stepper: &mut Stepper, state: &State) -> Finding {
             census: diagnosis.census,
         };
     }
-    let undecided: Vec<usize> = (0..problem.nodes.len())
-        .filter(|&place| problem.nodes[place].choices().len() > 1)
-        .collect();
+    let undecided = diagnosis::undecided(&problem);
     if undecided.len() > MOST {
         return nothing(&format!(
             "The minor iterations do not cycle from here. A census is held over at most {MOST} slave nodes, and {} can touch.",
