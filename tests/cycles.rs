@@ -351,7 +351,7 @@ fn the_census_finds_what_solving_each_assumption_by_itself_finds() {
     let mut numbers = Random(7);
     let mut several = 0;
     for k in 0..60 {
-        let problem = random(1 + k % 4, &mut numbers);
+        let problem = random(1 + k % 5, &mut numbers);
         let (singular, wanted) = one_by_one(&problem);
         let found = census(&problem).unwrap();
         assert_eq!(found.tried, 4_usize.pow(problem.nodes.len() as u32));
@@ -383,15 +383,12 @@ fn a_census_of_eight_nodes_tries_65_536_assumptions() {
     let begin = Instant::now();
     let found = census(&problem).unwrap();
     let all = begin.elapsed();
-    let begin = Instant::now();
-    let (singular, wanted) = one_by_one(&problem);
-    println!(
-        "census {all:?}, one by one {:?}; {} answers",
-        begin.elapsed(),
-        wanted.len()
-    );
-    assert_eq!((found.tried, found.singular), (65_536, singular));
-    assert_eq!(found.answers.len(), wanted.len());
+    println!("{all:?}");
+    assert_eq!(found.tried, 65_536);
+    assert!(!found.answers.is_empty());
+    for answer in &found.answers {
+        assert!(answer.answer.obeys(1e-9));
+    }
 }
 
 /// A ring of five among 300 contacts: the diagnosis looks at the five.

@@ -1403,6 +1403,51 @@ mod tests {
     }
 
     #[test]
+    fn a_census_takes_nodes_by_name_or_by_their_place_in_the_list() {
+        let census = |slaves: &[usize]| Ok(Action::Session(Command::Census(slaves.to_vec())));
+        assert_eq!(read("census"), census(&[]));
+        assert_eq!(read("census beam.5"), census(&[1]));
+        assert_eq!(read("census beam.5,beam.4"), census(&[0, 1]));
+        assert_eq!(read("census 2, 1 2"), census(&[0, 1]));
+        assert!(read("census 3").is_err_and(|e| e.contains("no node is called '3'")));
+        assert!(read("census 0").is_err() && read("census beam.1").is_err());
+    }
+
+    #[test]
+    fn files_to_export_to_must_be_named() {
+        let export = |what, file: &str, overwrite| {
+            Ok(Action::Session(Command::Export {
+                what,
+                file: file.into(),
+                overwrite,
+            }))
+        };
+        assert_eq!(
+            read("core a b.ron"),
+            export(Exported::Core, "a b.ron", false)
+        );
+        assert_eq!(read("export! x"), export(Exported::Whole, "x", true));
+        assert_eq!(read("core"), Err("usage: core FILE".into()));
+        assert_eq!(read("export!"), Err("usage: export! FILE".into()));
+    }
+
+    #[test]
+    fn branches_complete_by_number_and_by_label() {
+        let model = std::sync::Arc::new(Scene::open("osc-two6", &[]).unwrap().model);
+        let start = crate::solve::Stepper::new(model.clone()).state().clone();
+        let tree = Tree::new(model, start, 1 << 20);
+        let context = Context {
+            tree: Some(&tree),
+            ..Context::default()
+        };
+        let label = &tree.branches()[0].label;
+        let all = complete("branch ", &context);
+        assert_eq!(all, ["branch b1".to_owned(), format!("branch {label}")]);
+        assert_eq!(complete("compare b", &context), ["compare b1"]);
+        assert!(complete("branch x", &context).is_empty());
+    }
+
+    #[test]
     fn completion_knows_names_nodes_paths_and_values() {
         let model = model();
         let scenes = ["01-pinned".to_string()];
@@ -1418,6 +1463,8 @@ mod tests {
             ["force beam.5 free", "force beam.5 fixed"]
         );
         assert_eq!(ask("release b"), ["release beam.4", "release beam.5"]);
+        let both = ["census beam.4,beam.4", "census beam.4,beam.5"];
+        assert_eq!(ask("census beam.4,b"), both);
         assert_eq!(
             ask("set friction."),
             ["set friction.angle", "set friction.cohesion"]
