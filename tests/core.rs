@@ -290,6 +290,19 @@ fn what_is_rigid_and_loose_at_once_is_refused_with_both_reasons() {
     );
 }
 
+#[test]
+fn a_spacing_that_is_no_length_is_refused_with_its_line() {
+    for spacing in ["0.0", "-1.0", "inf", "NaN"] {
+        let text = COHESIVE.replace(
+            "    matrix",
+            &format!("    spacing: {spacing},\n    matrix"),
+        );
+        let error = Scene::from_text("t", &text, &[]).unwrap_err().to_string();
+        assert!(error.starts_with("t:4:"), "{error}");
+        assert!(error.contains("positive length"), "{error}");
+    }
+}
+
 fn program(directory: &Path, arguments: &[&str]) -> Output {
     Process::new(env!("CARGO_BIN_EXE_stickslip"))
         .args(arguments)

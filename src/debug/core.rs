@@ -10,7 +10,7 @@ use crate::solve::state::{NodeState, Trail};
 
 /// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
 const EXHAUSTIVE: usize = 10;
-/// Most members of which a core is looked for.
+/// Most members of which a core is looked for; among more, of those whose modes change.
 const MOST: usize = 40;
 /// Numbers of two iterations that differ by less than this, relatively, are the same.
 const SAME: f64 = 1e-12;
@@ -74,8 +74,13 @@ impl Core {
 /// Shrinks a problem that cycles from what its nodes bring; none where it does not, or where too many nodes take part.
 pub fn core(whole: &Frozen) -> Option<Core> {
     let start = cycle(whole)?;
-    let members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
+    let mut members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
     if members.len() > MOST {
+        // Where some modes change, the T_max of many other nodes follows; those go on with what they have.
+        let changing = start.members.iter().filter(|member| changes(&member.1));
+        members = changing.map(|(place, _)| *place).collect();
+    }
+    if members.is_empty() || members.len() > MOST {
         return None;
     }
     let problem = whole.reduced(&members)?;
@@ -107,6 +112,11 @@ pub fn core(whole: &Frozen) -> Option<Core> {
         }
     }
     Some(best)
+}
+
+/// Whether a mode of a pattern is another than the rest.
+fn changes(pattern: &[Mode]) -> bool {
+    pattern.windows(2).any(|pair| pair[0] != pair[1])
 }
 
 /// The cycle into which the minor iterations of a frozen problem run; none where they settle or cannot be solved, or

@@ -16,7 +16,8 @@ use super::spec::{
     BodySpec, Friction, History, InitialState, LoadSpec, Mode, Nodes, Settings, SlaveSpec, Spec,
     SurfaceSpec,
 };
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// What a file with an interface problem begins with.
 pub const HEAD: &str = "Contacts";
@@ -67,13 +68,23 @@ pub struct Problem {
     pub free: Vec<f64>,
     /// Distance of neighbours in the row, a length that gaps and motions are comparable with: tolerances of lengths are
     /// parts of it. Default: the largest gap or free motion.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "positive")]
     pub spacing: Option<f64>,
     /// Default: one increment from 0 to 1.
     #[serde(default = "at_once")]
     pub history: History,
     #[serde(default)]
     pub settings: Settings,
+}
+
+fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Error> {
+    let value = Option::<f64>::deserialize(reader)?;
+    match value {
+        Some(x) if !(x > 0.0 && x.is_finite()) => Err(D::Error::custom(format!(
+            "the spacing is {x:?}; it must be a positive length"
+        ))),
+        _ => Ok(value),
+    }
 }
 
 /// One increment from 0 to 1.
