@@ -229,6 +229,13 @@ fn text(
             settings: settings(&problem.settings),
         };
         let text = written.text(&comments);
+        if text.len() > limits::FILE_BYTES {
+            return Err(format!(
+                "the matrix of {count} nodes takes {} MiB, and a scene file can have {}; a core is smaller",
+                text.len() >> 20,
+                limits::FILE_BYTES >> 20
+            ));
+        }
         match compared(problem, &text) {
             Ok(_) => return Ok(text),
             Err(why) => refused.push(format!("its {form} does not step as it does: {why}")),
