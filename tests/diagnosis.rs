@@ -114,7 +114,8 @@ fn influences_add_up_to_what_happened() {
                 trials.given(&pair[1]).unwrap(),
             );
             for target in 0..problem.nodes.len() {
-                let all = influences(&problem, &pair[0], &pair[1], target).unwrap();
+                let all = influences(&problem, &pair[0], &pair[1], &[target]).unwrap();
+                let all = &all[0];
                 let f_n: f64 = all.iter().map(|i| i.f_n).sum();
                 let gap: f64 = all.iter().map(|i| i.gap).sum();
                 let size = old[target].force[0].abs() + new[target].force[0].abs() + problem.force;

@@ -29,6 +29,7 @@ fn problem(contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
         contacts,
         matrix,
         free,
+        spacing: None,
         history: History {
             path: vec![0.0, 1.0],
             increment: 0.25,

@@ -228,6 +228,17 @@ fn the_node_in_the_valley_goes_to_and_fro_between_the_sides() {
     assert_eq!((round.period, round.members.len()), (2, 1), "{round:?}");
     let elements: Vec<_> = round.members[0].1.iter().map(|stop| stop.element).collect();
     assert_ne!(elements[0], elements[1]);
+    // The majors themselves, gone on with, stand by turns on the same two.
+    let (mut stepper, mut seen) = (run.stepper, Vec::new());
+    while seen.len() < 6 {
+        let event = stepper.step().unwrap();
+        if event.position.minor == 1 {
+            let spot = event.nodes[0].spot;
+            seen.push(spot.map(|spot| (spot.surface, spot.element)));
+        }
+    }
+    assert!(seen.windows(2).all(|pair| pair[0] != pair[1]), "{seen:?}");
+    assert!(seen.iter().all(|at| elements.contains(at)), "{seen:?}");
 }
 
 #[test]

@@ -366,7 +366,7 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
         solve(&mut session, Command::Follow { label, steps });
     }
     solve(&mut session, Command::Goto { step: 6 });
-    solve(&mut session, Command::Census);
+    solve(&mut session, Command::Census(vec![]));
     session.wait_for_looks();
     let finding = session.looks().finding(session.place()).flatten().unwrap();
     let starts = finding.starts(0).unwrap();

@@ -233,3 +233,57 @@ proptest! {
         let _ = read(&text);
     }
 }
+
+/// A chain of contacts, each coupled to its neighbours, pressed on by different amounts and dragged along.
+fn chain(contacts: usize) -> Friction2d {
+    let size = 2 * contacts;
+    let mut w = vec![vec![0.0; size]; size];
+    for k in 0..contacts {
+        (w[2 * k][2 * k], w[2 * k + 1][2 * k + 1]) = (1.0, 0.8);
+        (w[2 * k][2 * k + 1], w[2 * k + 1][2 * k]) = (0.15, 0.15);
+        if k + 1 < contacts {
+            for (a, b, value) in [(0, 0, 0.3), (1, 1, 0.25), (0, 1, 0.05), (1, 0, 0.1)] {
+                w[2 * k + a][2 * k + 2 + b] = value;
+                w[2 * k + 2 + b][2 * k + a] = value;
+            }
+        }
+    }
+    let q = (0..contacts).flat_map(|k| {
+        let x = k as f64;
+        [(0.37 * x).sin() - 0.4, 0.8 * (0.23 * x).cos()]
+    });
+    Friction2d {
+        w,
+        q: q.collect(),
+        mu: (0..contacts).map(|k| 0.2 + 0.4 * (k % 3) as f64).collect(),
+    }
+}
+
+/// Hundreds of contacts run to an end, with an answer or with a reason, in a bounded number of iterations.
+#[test]
+fn hundreds_of_contacts_come_to_an_end() {
+    let directory = tempfile::tempdir().unwrap();
+    for contacts in [100, 400] {
+        let problem = chain(contacts);
+        let file = directory.path().join(format!("chain-{contacts}.dat"));
+        std::fs::write(&file, problem.write(Storage::Blocks)).unwrap();
+        for limit in ["lagged", "consistent"] {
+            let begin = std::time::Instant::now();
+            let set = [("settings.t_max".to_owned(), limit.to_owned())];
+            let scene = Scene::open(file.to_str().unwrap(), &set).unwrap();
+            let run = run(&scene);
+            let most = run.stepper.state().controls.settings;
+            assert!(run.steps <= (most.minors * most.majors) as usize);
+            let (steps, failure) = (run.steps, run.failure.as_ref().map(|f| &f.1));
+            println!("{contacts}, {limit}: {steps} minors, {:?}", begin.elapsed());
+            match failure {
+                None => assert_solved(&problem, &run),
+                Some(Failure::Cycle(cycle)) => {
+                    println!("period {}, {} members", cycle.period, cycle.members.len());
+                    assert!(cycle.period >= 2 && !cycle.members.is_empty());
+                }
+                Some(failure) => panic!("{failure:?}"),
+            }
+        }
+    }
+}

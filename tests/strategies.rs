@@ -87,6 +87,7 @@ fn problem(seed: u64) -> Problem {
         contacts,
         matrix: Matrix::Stiffness(rows),
         free: Vec::new(),
+        spacing: None,
         history: History {
             path: vec![0.0, 1.0],
             increment: 1.0,

@@ -4,6 +4,7 @@
 //! Exit codes are those of [`Exit`].
 
 mod check;
+mod core;
 mod debugger;
 mod diff;
 mod interrupt;
@@ -108,6 +109,8 @@ enum Command {
     Story(story::Args),
     /// Tries what gets a scene past its first failure, and compares
     Remedies(remedies::Args),
+    /// Writes the fewest nodes that still cycle as a scene of their own
+    Core(core::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
     /// Guided lessons: lists them, begins one, checks one
@@ -178,6 +181,7 @@ pub fn main() -> ExitCode {
         Some(Command::Resume(args)) => resume::main(args),
         Some(Command::Story(args)) => story::main(args),
         Some(Command::Remedies(args)) => remedies::main(args),
+        Some(Command::Core(args)) => core::main(args),
         Some(Command::Study(args)) => study::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
     };

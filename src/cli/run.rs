@@ -8,6 +8,7 @@ use crate::debug::files::Output;
 use crate::debug::report;
 use crate::debug::snapshot::Snapshot;
 use crate::scene::{Model, Scene};
+use crate::solve::event::Cycle;
 use crate::solve::{Event, Failure, Outcome, Stepper};
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -277,8 +278,12 @@ impl<'a> Run<'a> {
                     failure,
                 );
                 tell(&format!("{name}: {told}"));
-                if matches!(failure, Failure::Cycle(_) | Failure::NoAnswer { .. }) {
-                    self.diagnose();
+                let cycle = match failure {
+                    Failure::NoAnswer { first, .. } => first,
+                    failure => failure,
+                };
+                if let Failure::Cycle(cycle) = cycle {
+                    self.diagnose(cycle);
                 }
                 Exit::Unconverged
             }
@@ -286,16 +291,12 @@ impl<'a> Run<'a> {
     }
 
     /// Tells why the minor iterations cycle, and what gets out.
-    fn diagnose(&mut self) {
-        let count = self.scene.model.slaves.len();
-        if count > diagnosis::MOST_NODES {
-            let most = diagnosis::MOST_NODES;
-            tell(&format!(
-                "  not diagnosed: {count} slave nodes, and at most {most} are looked at"
-            ));
-            return;
-        }
+    fn diagnose(&mut self, cycle: &Cycle) {
         let Some(problem) = self.stepper.frozen() else {
+            return;
+        };
+        let Some(problem) = diagnosis::cycling(problem, cycle) else {
+            tell(&format!("  not diagnosed: {}", diagnosis::too_many(cycle)));
             return;
         };
         let Some(diagnosis) = Diagnosis::of(&problem) else {

@@ -7,8 +7,10 @@
 
 use crate::debug::breakpoints::Condition;
 use crate::debug::lesson;
+use crate::debug::tree::Tree;
 use crate::debug::watches::{Quantity, Watch};
 use crate::scene::{Mode, Model, Scene};
+use crate::solve::census::MOST;
 use crate::solve::{Intervention, Start};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -39,8 +41,9 @@ pub enum Command {
         label: String,
         steps: Vec<Option<Intervention>>,
     },
-    /// Find out why the minor iterations cycle from the shown state, or which states are consistent.
-    Census,
+    /// Find out why the minor iterations cycle from the shown state, or which states are consistent; of these slave
+    /// nodes (by slave number), where there are any, all others going on with what they do.
+    Census(Vec<usize>),
     /// Try every remedy from the shown state.
     Remedies,
     /// Go to a point of the current branch's line, by its place; the start is 0.
@@ -65,11 +68,25 @@ pub enum Command {
     Watch(Watch),
     /// End a watch, by its name.
     Unwatch(String),
+    /// Write the core of the cycle that the shown state runs into, or its whole frozen interface problem, as a scene of
+    /// its own. `overwrite` only when asked.
+    Export {
+        what: Exported,
+        file: PathBuf,
+        overwrite: bool,
+    },
     /// Write a snapshot of the shown state. `overwrite` only when asked.
     Snapshot {
         file: Option<PathBuf>,
         overwrite: bool,
     },
+}
+
+/// What can be written as a scene of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Exported {
+    Core,
+    Whole,
 }
 
 /// Which branch.
@@ -274,6 +291,8 @@ pub struct Context<'a> {
     pub model: Option<&'a Model>,
     /// The scene itself, which knows more names of its nodes than the model does (`beam.end` for `beam.5`).
     pub scene: Option<&'a Scene>,
+    /// The history, whose branches have names.
+    pub tree: Option<&'a Tree>,
     /// The selected slave node, by slave number.
     pub selected: usize,
     /// Names of the built-in scenes.
@@ -362,6 +381,11 @@ enum Verb {
     Apply,
     /// A command without arguments.
     Plain(Command),
+    Census,
+    Export {
+        what: Exported,
+        overwrite: bool,
+    },
     Snapshot {
         overwrite: bool,
     },
@@ -457,7 +481,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "diagnosis", "", &["d"], "diagnosis", "Why the minor iterations cycle, and which states are consistent; Enter starts from the selected one", Verb::Do(Ui::Page(Page::Diagnosis))),
     entry(Group::Look, "remedies", "", &["r"], "remedies", "Try every remedy from here; Enter takes the selected one", Verb::Do(Ui::Page(Page::Remedies))),
     entry(Group::Look, "timeline", "", &["t"], "timeline", "All modes by iteration; Left and Right go through them with the whole screen", Verb::Do(Ui::Page(Page::Timeline))),
-    entry(Group::Look, "census", "", &[], "", "Try every assignment of modes on the problem that is solved next (at most 8 nodes)", Verb::Plain(Command::Census)),
+    entry(Group::Look, "census", "[NODES]", &[], "", "Try every assignment of modes on the problem that is solved next: of these nodes (at most 8), or of all that can touch", Verb::Census),
     entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
     entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
     entry(Group::Look, "zoom", "", &["z"], "zoom", "This pane alone, and back", Verb::Do(Ui::Zoom)),
@@ -473,6 +497,10 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "command", "", &[":"], "command", "Any action by its name; Tab completes, Up and Down recall", Verb::Do(Ui::CommandLine)),
     entry(Group::Program, "snapshot", "[FILE]", &["w"], "", "Write a snapshot of the shown state", Verb::Snapshot { overwrite: false }),
     entry(Group::Program, "snapshot!", "FILE", &[], "", "The same, over a file that is there already", Verb::Snapshot { overwrite: true }),
+    entry(Group::Program, "core", "FILE", &[], "", "Write the fewest nodes that still cycle as a scene of their own", Verb::Export { what: Exported::Core, overwrite: false }),
+    entry(Group::Program, "core!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Core, overwrite: true }),
+    entry(Group::Program, "export", "FILE", &[], "", "Write the frozen interface problem of all nodes as a scene of its own", Verb::Export { what: Exported::Whole, overwrite: false }),
+    entry(Group::Program, "export!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Whole, overwrite: true }),
     entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one", Verb::Open),
     entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
     entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
@@ -604,6 +632,13 @@ impl Entry {
             },
             Verb::Watch => Command::Watch(self.watch(&words, context)?),
             Verb::Plain(command) => command.clone(),
+            Verb::Census => Command::Census(several(&words, context)?),
+            Verb::Export { .. } if rest.is_empty() => return Err(self.usage()),
+            Verb::Export { what, overwrite } => Command::Export {
+                what: *what,
+                file: PathBuf::from(rest),
+                overwrite: *overwrite,
+            },
             Verb::Snapshot { overwrite: true } if rest.is_empty() => return Err(self.usage()),
             Verb::Snapshot { overwrite } => {
                 let file = (!rest.is_empty()).then(|| PathBuf::from(rest));
@@ -657,6 +692,7 @@ impl Entry {
     fn most_words(&self) -> usize {
         match self.verb {
             Verb::Snapshot { .. } | Verb::Open | Verb::Monitor | Verb::Lesson => usize::MAX,
+            Verb::Export { .. } | Verb::Census => usize::MAX,
             Verb::Branch(None) | Verb::Rename | Verb::Compare => usize::MAX,
             Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,
             _ => self.arguments.split_whitespace().count(),
@@ -926,6 +962,32 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, String> {
     }
 }
 
+/// Slave nodes apart by blanks or commas, ascending and each once: by name, or, where no node is called so, by the place in
+/// the scene's list, from 1.
+fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, String> {
+    let words = words.iter().flat_map(|word| word.split(','));
+    let mut nodes = Vec::new();
+    for word in words.filter(|word| !word.is_empty()) {
+        let counted = word.parse::<usize>().ok().and_then(|n| n.checked_sub(1));
+        let count = slaves(context)?.slaves.len();
+        let slave = match (exact(word, context), counted) {
+            (Ok(slave), _) => slave,
+            (Err(_), Some(place)) if place < count => place,
+            (Err(why), _) => return Err(why),
+        };
+        if !nodes.contains(&slave) {
+            nodes.push(slave);
+        }
+    }
+    nodes.sort_unstable();
+    match nodes.len() {
+        0..=MOST => Ok(nodes),
+        n => Err(format!(
+            "a census is held over at most {MOST} nodes, and these are {n}"
+        )),
+    }
+}
+
 /// The next slave node after the selected one whose name is, or else contains, the word.
 fn find(word: &str, context: &Context) -> Result<usize, String> {
     if let Ok(slave) = exact(word, context) {
@@ -965,8 +1027,14 @@ fn some_names(model: &Model) -> String {
 
 /// What a line could go on as: whole lines, of which the first is the likeliest.
 pub fn complete(line: &str, context: &Context) -> Vec<String> {
-    let start = line.rfind(char::is_whitespace).map_or(0, |at| at + 1);
-    let (before, word) = line.split_at(start);
+    let first = line.split_whitespace().next();
+    let entry = first.and_then(|name| by_name(name).ok());
+    let start = match entry.filter(|entry| entry.takes_rest()) {
+        // What is one argument, blanks and all, goes on as a whole.
+        Some(_) => line.find(char::is_whitespace),
+        None => line.rfind(|c: char| c.is_whitespace() || (c == ',' && is_list(entry))),
+    };
+    let (before, word) = line.split_at(start.map_or(0, |at| at + 1));
     let candidates: Vec<String> = match before.split_whitespace().next() {
         None => ACTIONS.iter().map(|entry| entry.name.to_string()).collect(),
         Some(name) => by_name(name).map_or(Vec::new(), |entry| entry.candidates(before, context)),
@@ -978,7 +1046,17 @@ pub fn complete(line: &str, context: &Context) -> Vec<String> {
         .collect()
 }
 
+/// Whether an action takes nodes apart by commas.
+fn is_list(entry: Option<&Entry>) -> bool {
+    entry.is_some_and(|entry| entry.verb == Verb::Census)
+}
+
 impl Entry {
+    /// Whether all that stands after its name is one argument that can be completed.
+    fn takes_rest(&self) -> bool {
+        matches!(self.verb, Verb::Branch(None) | Verb::Compare)
+    }
+
     /// What can stand as the next argument after the text before it.
     fn candidates(&self, before: &str, context: &Context) -> Vec<String> {
         let given = before.split_whitespace().count() - 1;
@@ -988,6 +1066,13 @@ impl Entry {
             (Verb::Force { .. }, 0) => modes.into_iter().chain(nodes()).collect(),
             (Verb::Force { .. }, 1) => modes.into(),
             (Verb::Release | Verb::Node, 0) => nodes().collect(),
+            (Verb::Census, _) => nodes().collect(),
+            (Verb::Branch(None) | Verb::Compare, 0) => {
+                let branches = context.tree.map_or(&[][..], Tree::branches);
+                let numbers = (1..=branches.len()).map(|number| format!("b{number}"));
+                let labels = branches.iter().map(|branch| branch.label.clone());
+                numbers.chain(labels).collect()
+            }
             (Verb::Break, 0) => CONDITIONS.map(String::from).into(),
             (Verb::Break, _) => {
                 let any = || std::iter::once("any".into()).chain(nodes());
@@ -1319,6 +1404,51 @@ mod tests {
     }
 
     #[test]
+    fn a_census_takes_nodes_by_name_or_by_their_place_in_the_list() {
+        let census = |slaves: &[usize]| Ok(Action::Session(Command::Census(slaves.to_vec())));
+        assert_eq!(read("census"), census(&[]));
+        assert_eq!(read("census beam.5"), census(&[1]));
+        assert_eq!(read("census beam.5,beam.4"), census(&[0, 1]));
+        assert_eq!(read("census 2, 1 2"), census(&[0, 1]));
+        assert!(read("census 3").is_err_and(|e| e.contains("no node is called '3'")));
+        assert!(read("census 0").is_err() && read("census beam.1").is_err());
+    }
+
+    #[test]
+    fn files_to_export_to_must_be_named() {
+        let export = |what, file: &str, overwrite| {
+            Ok(Action::Session(Command::Export {
+                what,
+                file: file.into(),
+                overwrite,
+            }))
+        };
+        assert_eq!(
+            read("core a b.ron"),
+            export(Exported::Core, "a b.ron", false)
+        );
+        assert_eq!(read("export! x"), export(Exported::Whole, "x", true));
+        assert_eq!(read("core"), Err("usage: core FILE".into()));
+        assert_eq!(read("export!"), Err("usage: export! FILE".into()));
+    }
+
+    #[test]
+    fn branches_complete_by_number_and_by_label() {
+        let model = std::sync::Arc::new(Scene::open("osc-two6", &[]).unwrap().model);
+        let start = crate::solve::Stepper::new(model.clone()).state().clone();
+        let tree = Tree::new(model, start, 1 << 20);
+        let context = Context {
+            tree: Some(&tree),
+            ..Context::default()
+        };
+        let label = &tree.branches()[0].label;
+        let all = complete("branch ", &context);
+        assert_eq!(all, ["branch b1".to_owned(), format!("branch {label}")]);
+        assert_eq!(complete("compare b", &context), ["compare b1"]);
+        assert!(complete("branch x", &context).is_empty());
+    }
+
+    #[test]
     fn completion_knows_names_nodes_paths_and_values() {
         let model = model();
         let scenes = ["01-pinned".to_string()];
@@ -1334,6 +1464,8 @@ mod tests {
             ["force beam.5 free", "force beam.5 fixed"]
         );
         assert_eq!(ask("release b"), ["release beam.4", "release beam.5"]);
+        let both = ["census beam.4,beam.4", "census beam.4,beam.5"];
+        assert_eq!(ask("census beam.4,b"), both);
         assert_eq!(
             ask("set friction."),
             ["set friction.angle", "set friction.cohesion"]

@@ -3,16 +3,20 @@
 //! A frozen interface problem that cycles is shrunk by giving every node outside a trial set the equations of what it
 //! brings ([`Frozen::reduced`]) and running Table 2 over what is left.
 
+use crate::scene::Mode;
 use crate::solve::event::Cycle;
 use crate::solve::frozen::{Frozen, Trials};
-use crate::solve::state::Trail;
+use crate::solve::state::{NodeState, Trail};
 
 /// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
 const EXHAUSTIVE: usize = 10;
-/// Most members of which a core is looked for.
+/// Most members of which a core is looked for; among more, of those whose modes change.
 const MOST: usize = 40;
 /// Numbers of two iterations that differ by less than this, relatively, are the same.
 const SAME: f64 = 1e-12;
+
+/// Most rounds until the T_max of a cycle has come to rest.
+const ROUNDS: usize = 1000;
 
 /// The fewest nodes that still cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,11 +29,58 @@ pub struct Core {
     pub cycle: Cycle,
 }
 
+impl Core {
+    /// Its problem at a point of the cycle, where the T_max of all rounds has come to rest: of the points of one round,
+    /// that into which the nodes bring least.
+    pub fn on_cycle(&self) -> Frozen {
+        let mut nodes = self.problem.states();
+        let mut around = vec![nodes.clone()];
+        if let Some(mut trials) = Trials::new(&self.problem) {
+            for _ in 0..ROUNDS {
+                for _ in 0..self.cycle.period {
+                    if trials.minor(&mut nodes).is_some() {
+                        around.push(nodes.clone());
+                    }
+                }
+                let [first, .., last] = around.as_slice() else {
+                    break;
+                };
+                let limits =
+                    |nodes: &[NodeState]| nodes.iter().map(|n| n.t_max).collect::<Vec<_>>();
+                if limits(first) == limits(last) {
+                    break;
+                }
+                around.drain(..around.len() - 1);
+            }
+        }
+        let brings = |nodes: &&Vec<NodeState>| {
+            let of = |n: &NodeState| match n.mode {
+                Mode::Free => 0,
+                Mode::Fixed => 1 + u32::from(n.ratio != 0.0),
+                Mode::Sliding => 2 + u32::from(n.ratio != 0.0),
+            };
+            nodes.iter().map(of).sum::<u32>()
+        };
+        let mut problem = self.problem.clone();
+        if let Some(least) = around.iter().min_by_key(brings) {
+            for (node, state) in problem.nodes.iter_mut().zip(least) {
+                node.state = *state;
+            }
+        }
+        problem
+    }
+}
+
 /// Shrinks a problem that cycles from what its nodes bring; none where it does not, or where too many nodes take part.
 pub fn core(whole: &Frozen) -> Option<Core> {
     let start = cycle(whole)?;
-    let members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
+    let mut members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
     if members.len() > MOST {
+        // Where some modes change, the T_max of many other nodes follows; those go on with what they have.
+        let changing = start.members.iter().filter(|member| changes(&member.1));
+        members = changing.map(|(place, _)| *place).collect();
+    }
+    if members.is_empty() || members.len() > MOST {
         return None;
     }
     let problem = whole.reduced(&members)?;
@@ -61,6 +112,11 @@ pub fn core(whole: &Frozen) -> Option<Core> {
         }
     }
     Some(best)
+}
+
+/// Whether a mode of a pattern is another than the rest.
+fn changes(pattern: &[Mode]) -> bool {
+    pattern.windows(2).any(|pair| pair[0] != pair[1])
 }
 
 /// The cycle into which the minor iterations of a frozen problem run; none where they settle or cannot be solved, or

@@ -12,7 +12,8 @@ use crate::solve::event::{Cycle, NodeRecord};
 use crate::solve::frozen::{Assumed, Condition, Frozen, Trials};
 use crate::solve::state::NodeState;
 
-/// Most slave nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size.
+/// Most nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size. Of a scene
+/// with more, those that take part in the cycle are looked at ([`cycling`]).
 pub const MOST_NODES: usize = 200;
 /// Most iterations of a period that are told one by one.
 const MOST_PHASES: usize = 12;
@@ -27,7 +28,8 @@ pub struct Diagnosis {
     /// The fewest nodes that still cycle; none where that cannot be told.
     pub core: Option<Core>,
     /// The problem of all nodes that take part, or of the core where those are too many for a census; the other nodes go
-    /// on with what they do.
+    /// on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
+    /// few enough.
     pub problem: Frozen,
     /// What is consistent in it; none where even the core is too large.
     pub census: Option<Census>,
@@ -41,7 +43,7 @@ pub struct Diagnosis {
 pub struct Phase {
     /// What it found at each node.
     pub records: Vec<NodeRecord>,
-    /// For each node whose mode it changes: the change, since the iteration before, that did most to what was tested.
+    /// For each node whose mode it changes, in the first [`MOST_PHASES`] of them: the change, since the iteration before, that did most to what was tested.
     pub pushes: Vec<Push>,
 }
 
@@ -97,11 +99,22 @@ impl Diagnosis {
         let phases = phases(problem, cycle.period)?;
         let core = core(problem);
         let members: Vec<usize> = cycle.members.iter().map(|member| member.0).collect();
-        let studied = match &core {
+        let mut studied = match &core {
             Some(core) if members.len() > MOST => core.problem.clone(),
             _ => problem.reduced(&members)?,
         };
-        let census = census(&studied).ok();
+        let mut found = census(&studied).ok();
+        // What is inconsistent with what the others do may be consistent with something else that they could do.
+        let all = undecided(problem);
+        let none = found.as_ref().is_some_and(|found| found.answers.is_empty());
+        if none
+            && (studied.nodes.len() + 1..=MOST).contains(&all.len())
+            && let Some(wider) = problem.reduced(&all)
+        {
+            found = census(&wider).ok();
+            studied = wider;
+        }
+        let census = found;
         let cause = cause(problem, &phases, &studied, census.as_ref());
         let ways = ways(&studied, census.as_ref());
         Some(Diagnosis {
@@ -114,6 +127,38 @@ impl Diagnosis {
             ways,
         })
     }
+}
+
+/// The problem that goes round in a cycle: the whole one, or where that has many nodes only those that take part, all others
+/// going on with what they do. None where that is singular, or too large still. The states are where the cycle starts.
+pub fn cycling(problem: Frozen, cycle: &Cycle) -> Option<Frozen> {
+    if problem.nodes.len() <= MOST_NODES {
+        return Some(problem);
+    }
+    let takes_part = |place: &usize| {
+        let slave = problem.nodes[*place].slave;
+        cycle.members.iter().any(|(member, _)| *member == slave)
+    };
+    let members: Vec<usize> = (0..problem.nodes.len()).filter(takes_part).collect();
+    if members.len() > MOST_NODES {
+        return None;
+    }
+    problem.reduced(&members)
+}
+
+/// The nodes that can do one thing or another, by place.
+pub fn undecided(problem: &Frozen) -> Vec<usize> {
+    let choices = |place: &usize| problem.nodes[*place].choices().len();
+    let all = 0..problem.nodes.len();
+    all.filter(|place| choices(place) > 1).collect()
+}
+
+/// That so many nodes take part in a cycle that they cannot be looked at.
+pub fn too_many(cycle: &Cycle) -> String {
+    let count = cycle.members.len();
+    format!(
+        "{count} nodes take part in the cycle: too many, or with what all others do they are singular"
+    )
 }
 
 /// One period of the iterations, with who pushed whom.
@@ -133,9 +178,14 @@ fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
         phase => &states[phase - 1],
     };
     let found = all.into_iter().enumerate().map(|(phase, records)| {
-        let changed = (0..records.len()).filter(|&s| records[s].decision.changes());
-        let pushes = changed
-            .filter_map(|node| push(problem, before(phase), &states[phase], &records, node))
+        let changed = |s: &usize| records[*s].decision.changes();
+        let changed: Vec<usize> = (0..records.len()).filter(changed).collect();
+        let told = phase < MOST_PHASES && !changed.is_empty();
+        let all = told.then(|| influences(problem, before(phase), &states[phase], &changed));
+        let all = all.flatten().unwrap_or_default();
+        let pushes = changed.iter().zip(&all);
+        let pushes = pushes
+            .filter_map(|(&node, all)| push(all, before(phase), &states[phase], &records, node))
             .collect();
         Phase { records, pushes }
     });
@@ -143,7 +193,7 @@ fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
 }
 
 fn push(
-    problem: &Frozen,
+    all: &[Influence],
     before: &[NodeState],
     now: &[NodeState],
     records: &[NodeRecord],
@@ -156,7 +206,6 @@ fn push(
         Tested::ShearForce | Tested::Drag => i.f_t,
         Tested::Slip => i.slip,
     };
-    let all = influences(problem, before, now, node)?;
     let most = all
         .iter()
         .max_by(|a, b| of(a).abs().total_cmp(&of(b).abs()))?;
@@ -264,7 +313,13 @@ fn runs(problem: &Frozen) -> bool {
 pub fn words(model: &Model, problem: &Frozen, diagnosis: &Diagnosis) -> Vec<String> {
     let name = |place: usize| report::slave(model, problem.nodes[place].slave);
     let studied = |place: usize| report::slave(model, diagnosis.problem.nodes[place].slave);
-    let mut lines = vec![format!("why: {}", cause_words(diagnosis, &studied))];
+    // Nodes that were left out of the problem, and those of it that were left out of the census.
+    let left_out = model.slaves.len() > problem.nodes.len()
+        || undecided(problem).len() > diagnosis.problem.nodes.len();
+    let mut lines = vec![format!(
+        "why: {}",
+        cause_words(diagnosis, left_out, &studied)
+    )];
     for (k, phase) in diagnosis.phases.iter().enumerate().take(MOST_PHASES) {
         for push in &phase.pushes {
             let at = format!("minor {} of the cycle", k + 1);
@@ -306,10 +361,17 @@ fn list(names: &[&str]) -> String {
     }
 }
 
-fn cause_words<'a>(diagnosis: &Diagnosis, name: &impl Fn(usize) -> &'a str) -> String {
+fn cause_words<'a>(
+    diagnosis: &Diagnosis,
+    left_out: bool,
+    name: &impl Fn(usize) -> &'a str,
+) -> String {
     let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
     let nodes = list(&members);
     match &diagnosis.cause {
+        Cause::NoAnswer if left_out => format!(
+            "no state of {nodes} obeys contact and friction as long as all other nodes go on with what they do"
+        ),
         Cause::NoAnswer => format!(
             "no state of {nodes} obeys contact and friction at this increment, so no iteration can find one; \
              a smaller increment ends before"
@@ -407,6 +469,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             nodes.join(", ")
         ));
     }
+    lines.extend(differing(census, name));
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(
             "  nearest: {}, which breaks \"{}\" at {} by {:.4e}",
@@ -414,6 +477,35 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             condition_words(margin.condition),
             name(*place),
             -margin.value
+        ));
+    }
+    lines
+}
+
+/// Where several consistent states differ, a line a node.
+fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+    let all = &census.answers;
+    let [first, _, ..] = all.as_slice() else {
+        return Vec::new();
+    };
+    let mut lines = vec!["how they differ:".to_owned()];
+    for place in 0..first.answer.nodes.len() {
+        let of = |number: usize| &all[number].answer.nodes[place];
+        if (1..all.len()).all(|number| of(number).assumed == of(0).assumed) {
+            continue;
+        }
+        let each = (0..all.len()).map(|number| {
+            let node = of(number);
+            let (does, f_n, f_t) = (assumed_words(node.assumed), node.f_n, node.f_t);
+            match node.assumed {
+                Assumed::Free => format!("{does} in {}, gap {:.4e}", number + 1, node.gap),
+                _ => format!("{does} in {}, F_n {f_n:.4e}, F_t {f_t:.4e}", number + 1),
+            }
+        });
+        lines.push(format!(
+            "  {}: {}",
+            name(place),
+            each.collect::<Vec<_>>().join("; ")
         ));
     }
     lines

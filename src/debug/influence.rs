@@ -21,42 +21,50 @@ pub struct Influence {
     pub f_t: f64,
 }
 
-/// What the change of every node did to node `target`, from the iteration that the nodes go into with `before` to that
-/// with `after`; nodes that changed nothing are left out. None where either has no solution.
+/// What the change of every node did to each of the nodes `targets`, from the iteration that the nodes go into with
+/// `before` to that with `after`; nodes that changed nothing are left out. None where either has no solution.
 pub fn influences(
     problem: &Frozen,
     before: &[NodeState],
     after: &[NodeState],
-    target: usize,
-) -> Option<Vec<Influence>> {
+    targets: &[usize],
+) -> Option<Vec<Vec<Influence>>> {
     let mut trials = Trials::new(problem)?;
     let old = trials.given(before)?;
     trials.given(after)?;
-    let mut found = Vec::new();
+    let mut found = vec![Vec::new(); targets.len()];
     for (from, node) in problem.nodes.iter().enumerate() {
         let rows = minor::rows(&after[from], &node.site, &node.friction, &problem.settings);
-        let mut influence = Influence {
+        let none = Influence {
             from,
             ..Influence::default()
         };
+        let mut on = vec![none; targets.len()];
         for (k, row) in rows.iter().enumerate() {
             let missed = row.value - left_side(row, &old[from]);
             if missed == 0.0 {
                 continue;
             }
-            let change = trials.answers_to(from, k)?[target];
-            influence.gap -= missed * change.motion[0];
-            influence.slip += missed * change.motion[1];
-            influence.f_n += missed * change.force[0];
-            influence.f_t += missed * change.force[1];
+            let changes = trials.answers_to(from, k)?;
+            for (influence, &target) in on.iter_mut().zip(targets) {
+                let change = changes[target];
+                influence.gap -= missed * change.motion[0];
+                influence.slip += missed * change.motion[1];
+                influence.f_n += missed * change.force[0];
+                influence.f_t += missed * change.force[1];
+            }
         }
-        found.push(influence);
+        for (all, influence) in found.iter_mut().zip(on) {
+            all.push(influence);
+        }
     }
     let tiny = f64::EPSILON * 64.0;
-    found.retain(|i| {
-        i.gap.abs().max(i.slip.abs()) > tiny * problem.length
-            || i.f_n.abs().max(i.f_t.abs()) > tiny * problem.force
-    });
+    for all in &mut found {
+        all.retain(|i| {
+            i.gap.abs().max(i.slip.abs()) > tiny * problem.length
+                || i.f_n.abs().max(i.f_t.abs()) > tiny * problem.force
+        });
+    }
     Some(found)
 }
 

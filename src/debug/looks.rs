@@ -4,20 +4,27 @@
 //!   thread goes over both iterations again and takes the frozen interface problem between them.
 //! - **Findings**: the diagnosis of the cycle that the shown state runs into, or else the census of the frozen problem
 //!   that is solved next from it.
+//! - **Exports**: the frozen problem, or the core of its cycle, written as a scene of its own ([`export`]).
 //! - **Remedies**: trials of every way out ([`remedies`]).
 //!
 //! Pushes and findings are kept by place (branch and step on its line), which never changes its meaning.
 
-use crate::debug::diagnosis::{self, Diagnosis, started};
+use crate::debug::command::Exported;
+use crate::debug::core::{core, cycle};
+use crate::debug::diagnosis::{self, Diagnosis, MOST_NODES, cycling, started, too_many};
+use crate::debug::export::{self, Origin};
+use crate::debug::files;
 use crate::debug::influence::{Influence, influences};
 use crate::debug::remedies::{self, Trial};
 use crate::debug::report;
 use crate::scene::{Mode, Model};
 use crate::solve::census::{Census, MOST, census};
+use crate::solve::event::Cycle;
 use crate::solve::frozen::Frozen;
 use crate::solve::state::NodeState;
-use crate::solve::{Intervention, Start, State, Status, Stepper};
+use crate::solve::{Failure, Intervention, Outcome, Start, State, Status, Stepper};
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -25,6 +32,8 @@ use std::thread;
 
 /// Most entries that are kept of pushes, and of findings.
 const KEPT: usize = 512;
+const NOT_CONDENSED: &str =
+    "The bodies cannot be condensed to the interface here, so there is no small problem to study.";
 
 /// A place: branch, and step on its line.
 pub type Place = (usize, usize);
@@ -87,18 +96,29 @@ pub struct Way {
     pub before: usize,
 }
 
+/// A scene to be written of the problem that is frozen at a state.
+pub struct Export {
+    pub what: Exported,
+    pub file: PathBuf,
+    pub overwrite: bool,
+    pub origin: Origin,
+    pub state: Box<State>,
+}
+
 enum Ask {
     Pushes(Place, usize, Way),
-    Finding(Place, Box<State>),
+    Finding(Place, Box<State>, Vec<usize>),
     Remedies(Box<State>),
+    Export(Export),
 }
 
 enum Told {
     Pushes(Place, usize, Option<Vec<Push>>),
-    Finding(Place, Box<Finding>),
+    Finding(Place, Vec<usize>, Box<Finding>),
     Trying { all: usize, now: String },
     Tried(Box<Trial>),
     Done { stopped: bool },
+    Exported(Result<String, String>),
 }
 
 /// The thread, and what it found.
@@ -110,7 +130,9 @@ pub struct Looks {
     /// Asked and not yet answered.
     waiting: usize,
     pushes: HashMap<(Place, usize), Option<Vec<Push>>>,
-    findings: HashMap<Place, Option<Finding>>,
+    /// By place: the nodes that were asked for, and what was found.
+    findings: HashMap<Place, (Vec<usize>, Option<Finding>)>,
+    exported: Option<Result<String, String>>,
     tried: Option<Tried>,
     trying: bool,
 }
@@ -138,6 +160,7 @@ impl Looks {
             waiting: 0,
             pushes: HashMap::new(),
             findings: HashMap::new(),
+            exported: None,
             tried: None,
             trying: false,
         }
@@ -156,7 +179,7 @@ impl Looks {
 
     /// What is known of the problem at a place; an inner none while it is being found out.
     pub fn finding(&self, place: Place) -> Option<Option<&Finding>> {
-        Some(self.findings.get(&place)?.as_ref())
+        Some(self.findings.get(&place)?.1.as_ref())
     }
 
     /// The remedies that were tried last.
@@ -176,15 +199,27 @@ impl Looks {
         }
     }
 
-    /// Asks for the finding at a place, with the state there.
-    pub(super) fn ask_finding(&mut self, place: Place, state: &State) {
-        if !self.findings.contains_key(&place) {
+    /// Asks for the finding at a place, with the state there: of these nodes, or (none) of what matters.
+    pub(super) fn ask_finding(&mut self, place: Place, state: &State, nodes: &[usize]) {
+        let known = self.findings.get(&place);
+        if known.is_none_or(|(asked, _)| asked != nodes) {
             if self.findings.len() >= KEPT {
                 self.findings.clear();
             }
-            self.findings.insert(place, None);
-            self.send(Ask::Finding(place, Box::new(state.clone())));
+            self.findings.insert(place, (nodes.to_vec(), None));
+            let state = Box::new(state.clone());
+            self.send(Ask::Finding(place, state, nodes.to_vec()));
         }
+    }
+
+    /// Has a scene written.
+    pub(super) fn ask_export(&mut self, export: Export) {
+        self.send(Ask::Export(export));
+    }
+
+    /// What came of the scene that was written last; once.
+    pub(super) fn exported(&mut self) -> Option<Result<String, String>> {
+        self.exported.take()
     }
 
     /// Tries all remedies from the state at a place.
@@ -249,8 +284,17 @@ impl Looks {
                 self.pushes.insert((place, slave), found);
                 self.waiting -= 1;
             }
-            Told::Finding(place, found) => {
-                self.findings.insert(place, Some(*found));
+            Told::Finding(place, nodes, found) => {
+                // Something else may have been asked for in the meantime.
+                if let Some(kept) = self.findings.get_mut(&place)
+                    && kept.0 == nodes
+                {
+                    kept.1 = Some(*found);
+                }
+                self.waiting -= 1;
+            }
+            Told::Exported(result) => {
+                self.exported = Some(result);
                 self.waiting -= 1;
             }
             Told::Trying { all, now } => {
@@ -288,9 +332,16 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
             let found = pushes(stepper, slave, &way);
             news.send(Told::Pushes(place, slave, found)).ok()
         }
-        Ask::Finding(place, state) => {
-            let found = Box::new(finding(stepper, &state));
-            news.send(Told::Finding(place, found)).ok()
+        Ask::Finding(place, state, nodes) => {
+            let found = Box::new(match nodes.as_slice() {
+                [] => finding(stepper, &state),
+                some => census_of(stepper, &state, some),
+            });
+            news.send(Told::Finding(place, nodes, found)).ok()
+        }
+        Ask::Export(ask) => {
+            let done = write(stepper, &ask).map(|()| format!("wrote {}", ask.file.display()));
+            news.send(Told::Exported(done)).ok()
         }
         Ask::Remedies(state) => {
             let all = remedies::all(stepper, &state);
@@ -334,13 +385,13 @@ fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
     let after = problem.states();
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
     let of = |node: usize| problem.nodes[node].slave;
-    let found = influences(&problem, &pick(&problem, &before), &after, target)?;
+    let found = influences(&problem, &pick(&problem, &before), &after, &[target])?;
     let push = |influence: Influence| Push {
         slave: of(influence.from),
         modes: [before[of(influence.from)].mode, after[influence.from].mode],
         influence,
     };
-    Some(found.into_iter().map(push).collect())
+    Some(found.into_iter().flatten().map(push).collect())
 }
 
 /// States of a problem's nodes among those of all slave nodes.
@@ -348,25 +399,32 @@ fn pick(problem: &Frozen, nodes: &[NodeState]) -> Vec<NodeState> {
     problem.nodes.iter().map(|node| nodes[node.slave]).collect()
 }
 
-/// Diagnosis or census at a state.
-pub fn finding(stepper: &mut Stepper, state: &State) -> Finding {
-    let nothing = |why: &str| Finding {
+fn nothing(why: &str) -> Finding {
+    Finding {
         lines: vec![why.into()],
         cycles: false,
         problem: None,
         census: None,
-    };
+    }
+}
+
+/// Diagnosis or census at a state.
+pub fn finding(stepper: &mut Stepper, state: &State) -> Finding {
     if state.status == Status::Finished {
         return nothing("The history is done; nothing is solved next from here.");
     }
     stepper.restore(state);
     let Some(problem) = stepper.frozen() else {
-        return nothing(
-            "The bodies cannot be condensed to the interface here, so there is no small problem to study.",
-        );
+        return nothing(NOT_CONDENSED);
+    };
+    let round = match going_round(stepper, state, &problem) {
+        Err(why) => return nothing(&why),
+        Ok(round) => round,
     };
     let model = stepper.model();
-    if let Some(diagnosis) = Diagnosis::of(&problem) {
+    if let Some((problem, _)) = round
+        && let Some(diagnosis) = Diagnosis::of(&problem)
+    {
         return Finding {
             lines: diagnosis::words(model, &problem, &diagnosis),
             cycles: true,
@@ -374,9 +432,7 @@ pub fn finding(stepper: &mut Stepper, state: &State) -> Finding {
             census: diagnosis.census,
         };
     }
-    let undecided: Vec<usize> = (0..problem.nodes.len())
-        .filter(|&place| problem.nodes[place].choices().len() > 1)
-        .collect();
+    let undecided = diagnosis::undecided(&problem);
     if undecided.len() > MOST {
         return nothing(&format!(
             "The minor iterations do not cycle from here. A census is held over at most {MOST} slave nodes, and {} can touch.",
@@ -386,18 +442,113 @@ pub fn finding(stepper: &mut Stepper, state: &State) -> Finding {
     let Some(studied) = problem.reduced(&undecided) else {
         return nothing("The frozen interface problem is singular here.");
     };
-    match census(&studied) {
-        Err(why) => nothing(&why),
-        Ok(census) => {
-            let name = |place: usize| report::slave(model, studied.nodes[place].slave);
-            let mut lines = vec!["The minor iterations do not cycle from here.".into()];
-            lines.extend(diagnosis::census_words(&census, &name));
-            Finding {
-                lines,
-                cycles: false,
-                census: Some(census),
-                problem: Some(studied),
-            }
+    counted(
+        model,
+        &studied,
+        "The minor iterations do not cycle from here.",
+    )
+}
+
+/// Census of these slave nodes at a state, all others going on with what they do.
+fn census_of(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> Finding {
+    if state.status == Status::Finished {
+        return nothing("The history is done; nothing is solved next from here.");
+    }
+    stepper.restore(state);
+    let Some(problem) = stepper.frozen() else {
+        return nothing(NOT_CONDENSED);
+    };
+    let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
+    let places: Vec<usize> = (0..problem.nodes.len()).filter(wanted).collect();
+    let Some(studied) = problem.reduced(&places) else {
+        return nothing("With what all other nodes do, the frozen interface problem is singular.");
+    };
+    let model = stepper.model();
+    let names = slaves.iter().map(|&slave| report::slave(model, slave));
+    let names = names.collect::<Vec<_>>().join(", ");
+    let head = format!("Of {names}, all other nodes going on with what they do:");
+    counted(model, &studied, &head)
+}
+
+/// What a census finds.
+fn counted(model: &Model, studied: &Frozen, head: &str) -> Finding {
+    let census = match census(studied) {
+        Err(why) => return nothing(&why),
+        Ok(census) => census,
+    };
+    let name = |place: usize| report::slave(model, studied.nodes[place].slave);
+    let mut lines = vec![head.to_owned()];
+    lines.extend(diagnosis::census_words(&census, &name));
+    Finding {
+        lines,
+        cycles: false,
+        census: Some(census),
+        problem: Some(studied.clone()),
+    }
+}
+
+/// The problem that goes round in a cycle from a state that the stepper stands at, and the cycle by slave number; none
+/// where there is no cycle. A large problem is stepped on to its cycle, so that only those nodes are looked at that take
+/// part.
+///
+/// # Errors
+/// Why that cannot be told.
+fn going_round(
+    stepper: &mut Stepper,
+    state: &State,
+    problem: &Frozen,
+) -> Result<Option<(Frozen, Cycle)>, String> {
+    let by_slave = |cycle: Cycle| Cycle {
+        members: cycle
+            .members
+            .into_iter()
+            .map(|(place, modes)| (problem.nodes[place].slave, modes))
+            .collect(),
+        ..cycle
+    };
+    if problem.nodes.len() <= MOST_NODES {
+        return Ok(cycle(problem).map(|cycle| (problem.clone(), by_slave(cycle))));
+    }
+    let known = match &state.status {
+        Status::Failed(Failure::Cycle(cycle)) => Some(cycle.clone()),
+        _ => step_to_cycle(stepper),
+    };
+    let Some(cycle) = known else {
+        return Ok(None);
+    };
+    let problem = stepper.frozen().ok_or(NOT_CONDENSED)?;
+    match cycling(problem, &cycle) {
+        Some(problem) => Ok(Some((problem, cycle))),
+        None => Err(too_many(&cycle)),
+    }
+}
+
+fn step_to_cycle(stepper: &mut Stepper) -> Option<Cycle> {
+    while let Some(event) = stepper.step() {
+        match &event.outcome {
+            Outcome::Minor => {}
+            Outcome::Failed(Failure::Cycle(cycle)) => return Some(cycle.clone()),
+            _ => return None,
         }
     }
+    None
+}
+
+/// Writes a core, or a whole problem, as a scene.
+fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), String> {
+    if ask.state.status == Status::Finished {
+        return Err("the history is done; nothing is solved next from here".into());
+    }
+    stepper.restore(&ask.state);
+    let problem = stepper.frozen().ok_or(NOT_CONDENSED)?;
+    let text = match ask.what {
+        Exported::Whole => export::whole(stepper.model(), &ask.origin, &problem)?,
+        Exported::Core => {
+            let (problem, cycle) = going_round(stepper, &ask.state, &problem)?
+                .ok_or("the minor iterations do not cycle from here, so there is no core")?;
+            let core = core(&problem).ok_or_else(|| too_many(&cycle))?;
+            export::core(stepper.model(), &ask.origin, &cycle, &core)?
+        }
+    };
+    files::write(&ask.file, &text, ask.overwrite).map_err(|e| e.to_string())
 }

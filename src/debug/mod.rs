@@ -7,6 +7,7 @@
 //! - [`breakpoints`], [`watches`]: where a run stops, and what is looked at.
 //! - [`looks`]: what is found out beside the run: who pushed whom, censuses, and [`remedies`] tried.
 //! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
+//! - [`core`]: the fewest nodes that still cycle; [`export`]: they, or the whole frozen problem, as a scene of their own.
 //! - [`lesson`]: guided lessons, and free mode.
 //! - [`report`]: what happened, in words.
 
@@ -17,6 +18,7 @@ pub mod compare;
 pub mod core;
 pub mod diagnosis;
 pub mod differences;
+pub mod export;
 pub mod files;
 pub mod influence;
 pub mod journal;

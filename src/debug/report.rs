@@ -492,6 +492,9 @@ fn place(model: &Model, element: Option<(usize, usize)>) -> String {
     }
 }
 
+/// Most nodes of a cycle that are named though their modes stay.
+const MOST_FOLLOWING: usize = 3;
+
 /// A cycle of modes.
 pub fn cycle(model: &Model, cycle: &Cycle) -> String {
     let member = |(s, modes): &(usize, Vec<Mode>)| {
@@ -503,10 +506,27 @@ pub fn cycle(model: &Model, cycle: &Cycle) -> String {
             modes => format!("{name} {} > …", pattern(modes)),
         }
     };
+    // Those whose modes change come first: the T_max of many others may follow.
+    let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
+    let (changing, following): (Vec<_>, Vec<_>) =
+        cycle.members.iter().partition(|(_, modes)| changes(modes));
+    let mut told = Vec::new();
+    if !changing.is_empty() {
+        told.push(some(changing.into_iter().map(member).collect(), "; "));
+    }
+    match following.len() {
+        0 => {}
+        n if n > MOST_FOLLOWING => {
+            told.push(format!(
+                "{n} nodes keep their modes while their T_max repeats"
+            ));
+        }
+        _ => told.extend(following.into_iter().map(member)),
+    }
     format!(
         "the modes {}-cycle since minor {}: {}",
         cycle.period,
         cycle.start,
-        some(cycle.members.iter().map(member).collect(), "; ")
+        told.join("; ")
     )
 }

@@ -12,10 +12,12 @@
 
 use crate::debug::branches::{self, Summary};
 use crate::debug::breakpoints::{self, Breakpoint, Condition};
-use crate::debug::command::{Command, To, Unit};
+use crate::debug::command::{Command, Exported, To, Unit};
 use crate::debug::compare::{self, Comparison};
+use crate::debug::export::Origin;
+use crate::debug::files;
 use crate::debug::journal::{self, Entry, Journal, JournalError};
-use crate::debug::looks::{Looks, Way};
+use crate::debug::looks::{Export, Looks, Way};
 use crate::debug::report;
 use crate::debug::snapshot::{Applied, Snapshot};
 use crate::debug::strip::{Kind, Strip};
@@ -276,7 +278,12 @@ impl Session {
             }
             Command::Assume(starts) => self.intervene(Intervention::Assume(starts), None),
             Command::Follow { label, steps } => self.follow(label, steps),
-            Command::Census => Ok(self.census()),
+            Command::Census(nodes) => Ok(self.census(&nodes)),
+            Command::Export {
+                what,
+                file,
+                overwrite,
+            } => self.export(what, file, overwrite),
             Command::Remedies => Ok(self.remedies()),
             Command::Branch(to) => self.branch(&to),
             Command::Rename(label) => self.rename(label),
@@ -399,8 +406,9 @@ impl Session {
         let looks = matches!(
             command,
             Command::Branches
-                | Command::Census
+                | Command::Census(_)
                 | Command::Remedies
+                | Command::Export { .. }
                 | Command::Compare(_)
                 | Command::Breakpoints
                 | Command::Snapshot { .. }
@@ -692,8 +700,8 @@ impl Session {
             return;
         }
         let place = self.place();
-        if self.strips()[self.cursor].kind == Kind::Cycle {
-            self.census();
+        if self.strips()[self.cursor].kind == Kind::Cycle && self.looks.finding(place).is_none() {
+            self.census(&[]);
         }
         let Some(before) = self.minor_before() else {
             return;
@@ -730,12 +738,46 @@ impl Session {
         (shown.kind.is_solved() && same).then_some(before)
     }
 
-    /// Finds out why the minor iterations cycle from the shown state, or which states are consistent.
-    fn census(&mut self) -> Reply {
+    /// Finds out why the minor iterations cycle from the shown state, or which states are consistent; of some nodes only,
+    /// where these are given.
+    fn census(&mut self, nodes: &[usize]) -> Reply {
         let place = self.place();
         let state = &self.tree.frames()[self.cursor].state;
-        self.looks.ask_finding(place, state);
+        self.looks.ask_finding(place, state, nodes);
         Reply("the diagnosis (d) tells what is found".into())
+    }
+
+    /// Has the core or the whole interface problem of the shown state written; what came of it comes with
+    /// [`Session::exported`].
+    fn export(&mut self, what: Exported, file: PathBuf, overwrite: bool) -> Result<Reply, String> {
+        // Sooner rather than later; it leaves nothing behind.
+        drop(files::Output::create(&file, overwrite).map_err(|e| e.to_string())?);
+        let frame = self.frame();
+        let at = match &frame.event {
+            Some(event) if matches!(frame.state.status, Status::Failed(_)) => event.position,
+            _ => frame.state.next,
+        };
+        let mut origin = Origin::of(&self.scene, at, frame.state.aim);
+        let changed = self.record().1;
+        let words = changed
+            .iter()
+            .map(|a| report::intervention(self.model(), &a.intervention));
+        origin.changes.extend(words);
+        let told = format!("writing {}", file.display());
+        let state = Box::new(frame.state.clone());
+        self.looks.ask_export(Export {
+            what,
+            file,
+            overwrite,
+            origin,
+            state,
+        });
+        Ok(Reply(told))
+    }
+
+    /// What came of the last file that [`Command::Export`] wrote; once.
+    pub fn exported(&mut self) -> Option<Result<Reply, String>> {
+        Some(self.looks.exported()?.map(Reply))
     }
 
     fn remedies(&mut self) -> Reply {

@@ -100,8 +100,9 @@ fn done(model: &Model, entry: &Entry) -> String {
         Command::Branches
         | Command::Compare(_)
         | Command::Breakpoints
-        | Command::Census
+        | Command::Census(_)
         | Command::Remedies
+        | Command::Export { .. }
         | Command::Snapshot { .. } => "Looked around.".into(),
     }
 }

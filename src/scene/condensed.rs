@@ -8,14 +8,16 @@
 //! K (u − free λ) = load λ + f        or        u = free λ + W (load λ + f),        gap = gap_0 + u_n
 //! ```
 //!
-//! A RON file that begins with `Contacts(` is one, with the fields of [`Problem`]. [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless
-//! floor y = 0, where u_n = u_y and u_t = −u_x.
+//! A RON file that begins with `Contacts(` is one, with the fields of [`Problem`]; [`Problem::text`] writes it.
+//! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless floor
+//! y = 0, where u_n = u_y and u_t = −u_x.
 
 use super::spec::{
     BodySpec, Friction, History, InitialState, LoadSpec, Mode, Nodes, Settings, SlaveSpec, Spec,
     SurfaceSpec,
 };
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// What a file with an interface problem begins with.
 pub const HEAD: &str = "Contacts";
@@ -64,11 +66,25 @@ pub struct Problem {
     /// Displacement under no force, at load factor 1: two components a contact, or none at all. Default: none.
     #[serde(default)]
     pub free: Vec<f64>,
+    /// Distance of neighbours in the row, a length that gaps and motions are comparable with: tolerances of lengths are
+    /// parts of it. Default: the largest gap or free motion.
+    #[serde(default, deserialize_with = "positive")]
+    pub spacing: Option<f64>,
     /// Default: one increment from 0 to 1.
     #[serde(default = "at_once")]
     pub history: History,
     #[serde(default)]
     pub settings: Settings,
+}
+
+fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Error> {
+    let value = Option::<f64>::deserialize(reader)?;
+    match value {
+        Some(x) if !(x > 0.0 && x.is_finite()) => Err(D::Error::custom(format!(
+            "the spacing is {x:?}; it must be a positive length"
+        ))),
+        _ => Ok(value),
+    }
 }
 
 /// One increment from 0 to 1.
@@ -137,11 +153,113 @@ impl Problem {
 
     /// A length that its gaps and motions are comparable with.
     fn length(&self) -> f64 {
+        if let Some(spacing) = self.spacing {
+            return spacing;
+        }
         let gaps = self.contacts.iter().map(|contact| contact.gap);
         let most = gaps.chain(self.free.iter().copied()).map(f64::abs);
         let most = most.fold(0.0, f64::max);
         if most > 0.0 { most } else { 1.0 }
     }
+}
+
+impl Problem {
+    /// The file that it is: comment lines first, then every field that differs from its default. Numbers are written so
+    /// that they are read back to the last bit.
+    pub fn text(&self, comments: &[String]) -> String {
+        let mut text = String::new();
+        for line in comments {
+            let line: String = line.chars().filter(|c| !c.is_control()).collect();
+            text += format!("// {line}").trim_end();
+            text.push('\n');
+        }
+        text += &format!("{HEAD}(\n    title: {},\n", quoted(&self.title));
+        if !self.about.is_empty() {
+            text += &format!("    about: {},\n", quoted(&self.about));
+        }
+        text += "    contacts: [\n";
+        for contact in &self.contacts {
+            text += &format!("        ({}),\n", contact.fields().join(", "));
+        }
+        text += "    ],\n";
+        let (form, rows) = match &self.matrix {
+            Matrix::Stiffness(rows) => ("Stiffness", rows),
+            Matrix::Compliance(rows) => ("Compliance", rows),
+        };
+        text += &format!("    matrix: {form}([\n");
+        for row in rows {
+            text += &format!("        [{}],\n", list(row));
+        }
+        text += "    ]),\n";
+        if self.free.iter().any(|&u| u != 0.0) {
+            text += &format!("    free: [{}],\n", list(&self.free));
+        }
+        if let Some(spacing) = self.spacing {
+            text += &format!("    spacing: {spacing:?},\n");
+        }
+        let once = at_once();
+        if self.history != once {
+            let (path, increment) = (list(&self.history.path), self.history.increment);
+            text += &format!("    history: (path: [{path}], increment: {increment:?}),\n");
+        }
+        let set = differences(&self.settings, &Settings::default());
+        if !set.is_empty() {
+            text += &format!("    settings: ({}),\n", set.join(", "));
+        }
+        text + ")\n"
+    }
+}
+
+impl Contact {
+    /// Its fields that differ from their defaults.
+    fn fields(&self) -> Vec<String> {
+        let mut fields = vec![format!("id: {}", quoted(&self.id))];
+        if self.gap != 0.0 {
+            fields.push(format!("gap: {:?}", self.gap));
+        }
+        let friction = differences(&self.friction, &Friction::default());
+        if !friction.is_empty() {
+            fields.push(format!("friction: ({})", friction.join(", ")));
+        }
+        if self.load.iter().any(|&f| f != 0.0) {
+            fields.push(format!("load: ({})", list(&self.load)));
+        }
+        if let (Some(start), true) = (ron(&self.start), self.start != Mode::default()) {
+            fields.push(format!("start: {start}"));
+        }
+        let state = differences(&self.state, &InitialState::default());
+        if !state.is_empty() {
+            fields.push(format!("state: ({})", state.join(", ")));
+        }
+        fields
+    }
+}
+
+/// Numbers apart by commas; 0 has no sign.
+fn list(numbers: &[f64]) -> String {
+    let words = numbers.iter().map(|&x| format!("{:?}", x + 0.0));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+fn quoted(text: &str) -> String {
+    ron(&text).unwrap_or_default()
+}
+
+fn ron(value: &impl Serialize) -> Option<String> {
+    ron::to_string(value).ok()
+}
+
+/// The fields of a flat struct that differ from those of another, as `name: value`.
+fn differences<T: Serialize>(value: &T, other: &T) -> Vec<String> {
+    // Pretty-printed, each field has a line.
+    let pretty = || ron::ser::PrettyConfig::new().indentor("").new_line("\n");
+    let lines = |value: &T| ron::ser::to_string_pretty(value, pretty()).unwrap_or_default();
+    let (ours, theirs) = (lines(value), lines(other));
+    let pairs = ours.lines().zip(theirs.lines());
+    let differing = pairs.filter(|(ours, theirs)| ours != theirs);
+    differing
+        .map(|(ours, _)| ours.trim_end_matches(',').to_owned())
+        .collect()
 }
 
 const FLOOR: &str = "floor";

@@ -327,6 +327,7 @@ impl Friction2d {
             contacts: self.mu.iter().enumerate().map(contact).collect(),
             matrix: Matrix::Compliance(self.w.clone()),
             free: self.q.clone(),
+            spacing: None,
             history: at_once(),
             // W is sparse as a rule, and condensing it has nothing to take out.
             settings: Settings {

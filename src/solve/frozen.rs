@@ -18,7 +18,7 @@ use crate::solve::state::NodeState;
 use serde::{Deserialize, Serialize};
 
 /// Estimated norm of a scaled inverse from which on an assumption counts as singular.
-const SINGULAR: f64 = 1e11;
+pub const SINGULAR: f64 = 1e11;
 
 /// The frozen interface problem of a major iteration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -103,7 +103,8 @@ impl FrozenNode {
         }
     }
 
-    fn equations(&self, assumed: Assumed, settings: &Settings) -> [Equation; 2] {
+    /// Table 1's equations of an assumption, T_max in them.
+    pub fn equations(&self, assumed: Assumed, settings: &Settings) -> [Equation; 2] {
         let known = Known {
             gap: if self.site.gap.is_finite() {
                 self.site.gap
@@ -371,7 +372,7 @@ impl Frozen {
 }
 
 /// What force and motion increments mean for a node that was assumed to do this.
-fn judge(
+pub fn judge(
     problem: &Frozen,
     node: &FrozenNode,
     assumed: Assumed,

@@ -172,6 +172,54 @@ mod tests {
         }
     }
 
+    /// Two nodes: the first is shaken for a while and then stays, the second goes round elements and modes.
+    fn planted(transient: usize, period: usize, k: usize) -> Vec<NodeState> {
+        let along = 0.1 * transient.saturating_sub(k) as f64;
+        let mut two = nodes(along, 7);
+        let round = (k + 3 * period - transient) % period;
+        let mut goes = nodes(0.2, round / 2);
+        goes[0].mode = [Mode::Sliding, Mode::Fixed][round % 2];
+        goes[0].f_n = 1.0 + 0.5 * round as f64;
+        two.append(&mut goes);
+        two
+    }
+
+    #[test]
+    fn a_planted_round_of_majors_is_found_with_its_start_period_and_stops() {
+        for (transient, period) in [(0, 2), (0, 3), (1, 4), (2, 5), (3, 7)] {
+            let mut rounds = Rounds::default();
+            for k in 0..=transient + period {
+                let places = [[0.0; 2], [1.0, 0.0]];
+                rounds.push(&planted(transient, period, k), places.into_iter());
+                let found = rounds.cycle(2, k as u32 + 1, ONE);
+                assert_eq!(found.is_some(), k == transient + period, "{period}: {k}");
+                let Some(found) = found else { continue };
+                let at = (found.start as usize, found.period as usize);
+                assert_eq!(at, (transient + 1, period));
+                let [(slave, stops)] = found.members.as_slice() else {
+                    panic!("{found:?}")
+                };
+                assert_eq!((*slave, stops.len()), (1, period));
+                for (round, stop) in stops.iter().enumerate() {
+                    assert_eq!(stop.element, Some((0, round / 2)));
+                    assert_eq!(stop.mode, [Mode::Sliding, Mode::Fixed][round % 2]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn standing_still_and_drifting_away_are_no_cycles() {
+        let (mut still, mut drifting) = (Rounds::default(), Rounds::default());
+        for k in 0..20 {
+            still.push(&nodes(0.3, 0), HERE.into_iter());
+            assert_eq!(still.cycle(1, k + 1, ONE), None);
+            let away = nodes(1e-6 * f64::from(k), (k % 2) as usize);
+            drifting.push(&away, HERE.into_iter());
+            assert_eq!(drifting.cycle(1, k + 1, ONE), None);
+        }
+    }
+
     #[test]
     fn converging_to_and_fro_is_no_cycle() {
         let mut rounds = Rounds::default();

@@ -777,10 +777,14 @@ impl Stepper {
         self.linearised = false;
     }
 
-    /// Anchors the nodes that bring slip into the scene as far back as they have slipped.
+    /// Anchors the nodes that bring slip into the scene as far back as they have slipped. One that has just opened is not
+    /// anchored, and takes its slip back all the same, should it stick in this major iteration.
     fn place_anchors(&mut self) {
         let (surfaces, positions) = (&self.model.surfaces, &self.system.positions);
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
+            if node.mode == Mode::Free {
+                node.drift = node.slip;
+            }
             let Some(spot) = node
                 .spot
                 .filter(|_| node.mode != Mode::Free && node.slip != 0.0)

@@ -544,7 +544,7 @@ impl App {
         match page {
             Page::Diagnosis if view.finding().is_none() => {
                 (self.answer, self.scroll) = (0, 0);
-                self.submit(Command::Census, Some(view))
+                self.submit(Command::Census(Vec::new()), Some(view))
             }
             Page::Branches => {
                 let all = summaries(view.tree?);
@@ -850,6 +850,7 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
     Context {
         model,
         scene,
+        tree: view.and_then(|view| view.tree),
         selected,
         scenes,
     }

@@ -415,6 +415,11 @@ impl Debugger {
         if std::mem::replace(&mut self.trying, trying) && !trying {
             self.app.say("");
         }
+        match session.exported() {
+            Some(Ok(Reply(told))) => self.app.say(told),
+            Some(Err(why)) => self.app.complain(why),
+            None => {}
+        }
         let reply = session.poll();
         let said = reply.is_some();
         if let Some(reply) = reply {

@@ -31,19 +31,22 @@ struct Column {
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let strips = view.strips;
-    let title = title(view);
+    let mut title = title(view);
+    let count = view.model.slaves.len();
+    let selected = app.selected.min(count.saturating_sub(1));
+    let rows = usize::from(area.height.saturating_sub(2 + FRAME));
+    if rows < count {
+        title += &format!("  node {} of {count}", selected + 1);
+    }
     let inner = draw::frame(buffer, area, &title, app.focus == Pane::Timeline, theme);
     if strips.is_empty() || inner.height <= FRAME {
         return;
     }
-    let count = view.model.slaves.len();
-    let selected = app.selected.min(count.saturating_sub(1));
     let longest = (0..count).map(|slave| view.slave(slave).width()).max();
     let name = longest.unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
     let left = inner.x + name as u16;
     let room = usize::from(inner.right().saturating_sub(left));
     let columns = columns(strips, view.cursor, left, room);
-    let rows = usize::from(inner.height - FRAME);
     let top = selected
         .saturating_sub(rows / 2)
         .min(count.saturating_sub(rows));
@@ -228,11 +231,14 @@ fn bracket(
 ) {
     let event = view.frames[column.at].event.as_deref();
     let cycle = match event.map(|event| &event.outcome) {
-        Some(Outcome::Failed(Failure::Cycle(cycle)) | Outcome::Damped { cycle, .. })
-            if view.frames[column.at].intervention.is_none() =>
-        {
-            cycle
-        }
+        Some(
+            Outcome::Failed(Failure::Cycle(cycle))
+            | Outcome::Damped { cycle, .. }
+            | Outcome::Climbed {
+                why: Failure::Cycle(cycle),
+                ..
+            },
+        ) if view.frames[column.at].intervention.is_none() => cycle,
         _ => return,
     };
     let first = (column.at + 1).saturating_sub(cycle.period as usize);

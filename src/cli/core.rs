@@ -1,0 +1,97 @@
+//! `stickslip core SCENE`: solves up to the first true cycle of minor iterations, shrinks it to the fewest nodes that still
+//! cycle, and writes these as a scene of their own.
+//!
+//! Exit code 0 says that there is such a scene, 3 that there is none, and the message why: the scene converges, fails
+//! otherwise, or its core cannot be written as a matrix.
+
+use super::{Error, Exit, SceneArgs, say, tell};
+use crate::debug::core::core;
+use crate::debug::diagnosis::cycling;
+use crate::debug::export::{self, Origin};
+use crate::debug::files::{self, Output};
+use crate::debug::report;
+use crate::scene::Scene;
+use crate::scene::spec::{AtCycle, AtLimit, Strategy};
+use crate::solve::{Failure, Outcome, Stepper};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Where to; - is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+    /// Overwrites a file that exists
+    #[arg(long)]
+    force: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let scene = args.scene.open()?;
+    let file = (args.output.as_os_str() != "-").then_some(&args.output);
+    if let Some(path) = file {
+        // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
+        drop(Output::create(path, args.force)?);
+    }
+    let text = match text(&scene) {
+        Ok(text) => text,
+        Err(why) => {
+            tell(&format!("{}: {why}", scene.name));
+            return Ok(Exit::Unconverged);
+        }
+    };
+    match file {
+        None => say(&text)?,
+        Some(path) => {
+            files::write(path, &text, args.force)?;
+            tell(&format!("wrote {}", path.display()));
+        }
+    }
+    Ok(Exit::Good)
+}
+
+/// The core's file, or why there is none.
+fn text(scene: &Scene) -> Result<String, String> {
+    let mut model = scene.model.clone();
+    // A cycle is what is looked for, and not to be got out of.
+    model.settings.at_cycle = AtCycle::Stop;
+    if model.settings.strategy == Strategy::Ladder {
+        model.settings.strategy = Strategy::Table2;
+    }
+    let passes = model.settings.at_minor_limit == AtLimit::Accept;
+    let mut stepper = Stepper::new(Arc::new(model));
+    let cycle = loop {
+        let Some(event) = stepper.step() else {
+            let hint = if passes {
+                "; settings.at_minor_limit: accept passes over cycles, and stop would not"
+            } else {
+                ""
+            };
+            return Err(format!("it converges, so there is no cycle to write{hint}"));
+        };
+        match &event.outcome {
+            Outcome::Failed(Failure::Cycle(cycle)) => break cycle.clone(),
+            Outcome::Failed(_) => {
+                let told = report::outcome(&scene.model, event);
+                return Err(format!(
+                    "it fails, but in no cycle of minor iterations: {told}"
+                ));
+            }
+            _ => {}
+        }
+    };
+    if scene.model.settings.at_cycle != AtCycle::Stop {
+        tell("settings.at_cycle was put aside; with it the scene may get past this cycle");
+    }
+    let (at, load) = (stepper.event().position, stepper.state().aim);
+    let problem = stepper
+        .frozen()
+        .and_then(|problem| cycling(problem, &cycle))
+        .ok_or("the bodies cannot be condensed to the interface there, so there is no small problem to write")?;
+    let core = core(&problem).ok_or(
+        "no core was found: too many nodes take part in the cycle, or it hangs on round-off",
+    )?;
+    export::core(&scene.model, &Origin::of(scene, at, load), &cycle, &core)
+}
