@@ -9,6 +9,8 @@ mod diff;
 mod interrupt;
 mod lesson;
 mod list;
+mod map;
+mod outputs;
 mod record;
 mod remedies;
 mod replay;
@@ -110,6 +112,8 @@ enum Command {
     Remedies(remedies::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
+    /// Shows where the iterations converge and where they do not
+    Map(map::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
 }
@@ -160,6 +164,7 @@ pub fn main() -> ExitCode {
             Command::Run(_)
                 | Command::Record(_)
                 | Command::Study(_)
+                | Command::Map(_)
                 | Command::Resume(_)
                 | Command::Lesson(_)
         )
@@ -179,6 +184,7 @@ pub fn main() -> ExitCode {
         Some(Command::Story(args)) => story::main(args),
         Some(Command::Remedies(args)) => remedies::main(args),
         Some(Command::Study(args)) => study::main(args),
+        Some(Command::Map(args)) => map::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
     };
     ended

@@ -72,7 +72,7 @@ pub struct Problem {
 }
 
 /// One increment from 0 to 1.
-pub(crate) fn at_once() -> History {
+pub fn at_once() -> History {
     History {
         path: vec![0.0, 1.0],
         increment: 1.0,

@@ -80,7 +80,7 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
 }
 
 /// A text as a field of a CSV file.
-fn field(text: &str) -> String {
+pub(super) fn field(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

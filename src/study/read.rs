@@ -51,6 +51,58 @@ pub struct Vary {
     pub values: Vec<String>,
 }
 
+impl Vary {
+    /// What is varied, as typed: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` are four evenly spaced values, ends
+    /// included, `0.01..0.1/4log` four with even ratios. `2x` is twice what the scene has (the plan works it out).
+    ///
+    /// # Errors
+    /// A message that says what it must be.
+    pub fn parse(text: &str) -> Result<Vary, String> {
+        let Some((path, values)) = text.split_once('=') else {
+            return Err("it must be PATH=A,B,C, as history.increment=0.01,0.02".to_owned());
+        };
+        let values = values.split(',').map(|value| spread(value.trim()));
+        let values: Result<Vec<Vec<String>>, String> = values.collect();
+        Ok(Vary {
+            path: path.trim().to_owned(),
+            values: values?.concat(),
+        })
+    }
+}
+
+/// A value, or those of a range.
+fn spread(value: &str) -> Result<Vec<String>, String> {
+    let Some((low, rest)) = value.split_once("..") else {
+        return Ok(vec![value.to_owned()]);
+    };
+    let wrong =
+        || format!("{value}: a range is LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, as 0.01..0.1/4");
+    let (high, count) = rest.split_once('/').ok_or_else(wrong)?;
+    let (count, even_ratios) = match count.strip_suffix("log") {
+        Some(count) => (count, true),
+        None => (count, false),
+    };
+    let number = |text: &str| text.parse::<f64>().ok().filter(|x| x.is_finite());
+    let (low, high) = number(low).zip(number(high)).ok_or_else(wrong)?;
+    let count = count.parse::<u32>().ok().filter(|n| (2..=1000).contains(n));
+    let count = count.ok_or_else(wrong)?;
+    if even_ratios && !(low > 0.0 && high > 0.0) {
+        return Err(format!("{value}: even ratios need ends above 0"));
+    }
+    let at = |k: u32| {
+        let part = f64::from(k) / f64::from(count - 1);
+        let value = match even_ratios {
+            true => low * (high / low).powf(part),
+            false => low + (high - low) * part,
+        };
+        // As a person would have typed it, without the round-off of the division.
+        format!("{value:.9e}")
+            .parse::<f64>()
+            .map_or(value, |short| short)
+    };
+    Ok((0..count).map(|k| at(k).to_string()).collect())
+}
+
 /// A number that every accepted increment has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Quantity {
@@ -324,4 +376,31 @@ fn nothing_there(name: &str) -> String {
         studies.join(", "),
         scenes.join(", ")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(text: &str) -> Vec<String> {
+        Vary::parse(text).unwrap().values
+    }
+
+    #[test]
+    fn ranges_have_their_ends() {
+        assert_eq!(values("a=1,2, 3x"), ["1", "2", "3x"]);
+        assert_eq!(values("a=0.1..0.4/4"), ["0.1", "0.2", "0.3", "0.4"]);
+        assert_eq!(values("a=0.01..1/3log,5"), ["0.01", "0.1", "1", "5"]);
+        assert_eq!(values("a=-1..1/3"), ["-1", "0", "1"]);
+        for wrong in [
+            "a",
+            "a=1..2",
+            "a=1..2/1",
+            "a=x..2/3",
+            "a=0..1/3log",
+            "a=1..2/2.5",
+        ] {
+            assert!(Vary::parse(wrong).is_err(), "{wrong}");
+        }
+    }
 }
