@@ -3,6 +3,7 @@
 //! Standard output carries data only; messages go to standard error, and progress there only if it is a terminal.
 //! Exit codes are those of [`Exit`].
 
+mod chart;
 mod check;
 mod debugger;
 mod diff;
@@ -114,6 +115,8 @@ enum Command {
     Study(study::Args),
     /// Shows where the iterations converge and where they do not
     Map(map::Args),
+    /// Charts what settings cost against how near they come to the truth
+    Chart(chart::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
 }
@@ -165,6 +168,7 @@ pub fn main() -> ExitCode {
                 | Command::Record(_)
                 | Command::Study(_)
                 | Command::Map(_)
+                | Command::Chart(_)
                 | Command::Resume(_)
                 | Command::Lesson(_)
         )
@@ -185,6 +189,7 @@ pub fn main() -> ExitCode {
         Some(Command::Remedies(args)) => remedies::main(args),
         Some(Command::Study(args)) => study::main(args),
         Some(Command::Map(args)) => map::main(args),
+        Some(Command::Chart(args)) => chart::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
     };
     ended

@@ -11,9 +11,15 @@
 //! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures; [`sheet`]: pictures as plain data.
 //! - [`verdict`]: what a run is worth; [`log`]: results that outlive a kill; [`origin`]: where results come from.
 //!
+//! Work-precision charts:
+//!
+//! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_figure`]: drawn.
+//! - [`reference`]: what runs are measured against.
+//!
 //! Nothing here knows a command line.
 
 pub mod builtin;
+pub mod chart_file;
 pub mod csv;
 pub mod figure;
 pub mod log;
@@ -21,8 +27,11 @@ pub mod map;
 pub mod origin;
 pub mod plan;
 pub mod plot;
+pub mod precision;
+pub mod precision_figure;
 pub mod random;
 pub mod read;
+pub mod reference;
 pub mod result;
 pub mod run;
 pub mod sheet;

@@ -20,7 +20,7 @@ use crate::scene::locate::locate;
 use crate::scene::read::{options, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, Visitor};
+use serde::de::{DeserializeOwned, Deserializer, Visitor};
 use serde_path_to_error::Segment;
 use std::fmt;
 
@@ -175,7 +175,11 @@ impl Study {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
-        let mut file = parse(name, text)?;
+        let mut file: File = parse(name, text)?;
+        if file.scene.is_some() && !file.scenes.is_empty() {
+            let twice = "a study has either scene or scenes";
+            return Err(SceneError::whole(name, twice));
+        }
         if let Some(scene) = file.scene.take() {
             file.scenes.insert(0, scene);
         }
@@ -183,20 +187,12 @@ impl Study {
             let message = "a study needs a scene: \"NAME\", or scenes: [\"NAME\", \"NAME\"]";
             return Err(SceneError::whole(name, message));
         }
-        let values = |words: Vec<Word>| words.into_iter().map(|word| word.0).collect();
         Ok(Study {
             name: name.to_owned(),
             title: file.title,
             about: file.about,
             scenes: file.scenes,
-            vary: file
-                .vary
-                .into_iter()
-                .map(|(path, words)| Vary {
-                    path,
-                    values: values(words),
-                })
-                .collect(),
+            vary: vary(file.vary),
             set: file.set.into_iter().map(|(path, w)| (path, w.0)).collect(),
             x: file.x.as_deref().map(Quantity::named),
             y: file.y.as_deref().map(Quantity::named),
@@ -247,7 +243,7 @@ struct File {
 }
 
 /// A value of a setting: a number, a flag, or a text; settings take all of them as text.
-struct Word(String);
+pub(super) struct Word(pub(super) String);
 
 impl<'de> Deserialize<'de> for Word {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Word, D::Error> {
@@ -292,22 +288,27 @@ impl Visitor<'_> for WordVisitor {
     }
 }
 
-fn parse(name: &str, text: &str) -> Result<File, SceneError> {
+/// What is varied, as a file has it.
+pub(super) fn vary(words: Vec<(String, Vec<Word>)>) -> Vec<Vary> {
+    let vary = |(path, words): (String, Vec<Word>)| Vary {
+        path,
+        values: words.into_iter().map(|word| word.0).collect(),
+    };
+    words.into_iter().map(vary).collect()
+}
+
+/// Reads a file that holds one value.
+pub(super) fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, SceneError> {
     let options = options();
     let mut reader = ron::Deserializer::from_str_with_options(text, &options)
         .map_err(|e| unreadable(name, &e, String::new()))?;
-    let file = serde_path_to_error::deserialize::<_, File>(&mut reader).map_err(|e| {
+    let file = serde_path_to_error::deserialize::<_, T>(&mut reader).map_err(|e| {
         let path = plain(e.path()).to_string();
         unreadable(name, &reader.span_error(e.into_inner()), path)
     })?;
     reader
         .end()
         .map_err(|e| unreadable(name, &reader.span_error(e), String::new()))?;
-    // A text that is all of a study and one thing twice is none.
-    if file.scene.is_some() && !file.scenes.is_empty() {
-        let twice = ron::Error::custom("a study has either scene or scenes");
-        return Err(unreadable(name, &reader.span_error(twice), String::new()));
-    }
     Ok(file)
 }
 

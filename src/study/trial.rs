@@ -14,7 +14,7 @@ use super::random::{Drawn, Population};
 use super::result::Reason;
 use super::verdict::Verdict;
 use crate::scene::condensed::{Matrix, Problem};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, paths};
 use crate::solve::census::census;
 use crate::solve::{Outcome, Stepper};
 use serde::{Deserialize, Serialize};
@@ -93,7 +93,7 @@ pub fn judge(
         }
         let mut own = scene.clone();
         for (path, value) in &variant.settings {
-            own = own.with(path, value)?;
+            own = own.with(&paths::whole(&own.spec, path), value)?;
         }
         judged.trials.push(one(&problem, own));
     }

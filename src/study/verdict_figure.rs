@@ -13,6 +13,8 @@ const ROW: f64 = 28.0;
 const BAR: f64 = 560.0;
 /// Width of a cell with two letters.
 const CELL: f64 = 44.0;
+/// Where the numbers of problems without an answer stand, right of the bars.
+const NONE: (f64, f64) = (430.0, 470.0);
 const WHITE: Colour = (255, 255, 255);
 
 fn colour(verdict: Verdict) -> Colour {
@@ -87,15 +89,16 @@ pub fn bars(survey: &Survey) -> Result<Sheet, PlotError> {
         .map_or((0, 0), |t| (t.solvable, t.unsolvable));
     let title =
         format!("Random interface problems by strategy, per 1,000 of {some} with an answer");
-    let mut sheet = Sheet::new(numbers + 420.0, &title)?;
+    let mut sheet = Sheet::new(numbers + NONE.1 + MARGIN, &title)?;
     let y = sheet.height + 0.5 * ROW;
     let heads = ["✓", "≠", "↺", "✗", "∅"].iter().enumerate();
     for (k, head) in heads {
         let x = numbers + 52.0 * (k + 1) as f64;
         sheet.text((x, y), head, LABEL, BLACK, Anchor::Right);
     }
-    let head = format!("{none} without: ∅  ≠");
-    sheet.text((numbers + 400.0, y), &head, SMALL, BLACK, Anchor::Right);
+    let head = format!("of {none} without: ∅");
+    sheet.text((numbers + NONE.0, y), &head, LABEL, BLACK, Anchor::Right);
+    sheet.text((numbers + NONE.1, y), "≠", LABEL, BLACK, Anchor::Right);
     sheet.height += ROW;
     for (variant, tally) in survey.variants.iter().zip(&tallies) {
         let y = sheet.height;
@@ -128,14 +131,10 @@ pub fn bars(survey: &Survey) -> Result<Sheet, PlotError> {
             sheet.text(at, &format!("{thousand:.1}"), SMALL, BLACK, Anchor::Right);
             x += width;
         }
-        let none = format!("{}  {}", tally.admitted, tally.invented);
-        sheet.text(
-            (numbers + 400.0, y + 0.5 * ROW),
-            &none,
-            SMALL,
-            BLACK,
-            Anchor::Right,
-        );
+        for (x, count) in [(NONE.0, tally.admitted), (NONE.1, tally.invented)] {
+            let at = (numbers + x, y + 0.5 * ROW);
+            sheet.text(at, &count.to_string(), SMALL, BLACK, Anchor::Right);
+        }
         sheet.height += ROW;
     }
     sheet.height += 0.5 * ROW;
