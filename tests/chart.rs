@@ -275,3 +275,66 @@ fn wrong_usage_is_refused_with_2() {
         );
     }
 }
+
+#[test]
+fn a_table_is_drawn_again_as_it_was_and_tables_of_other_programs_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let first = [
+        CIRCLE,
+        "--over",
+        "refine=1,2",
+        "--set",
+        "history.increment=0.5",
+        "--repeats",
+        "1",
+        "--csv",
+        "a.csv",
+    ];
+    assert!(ran(directory.path(), &first).status.success());
+    let output = ran(
+        directory.path(),
+        &["--from", "a.csv", "--csv", "-", "--target", "1"],
+    );
+    let again = rows(&output);
+    let table = std::fs::read_to_string(directory.path().join("a.csv")).unwrap();
+    assert_eq!(again.len(), 2);
+    for row in &again {
+        assert!(table.contains(&row["error"]) && table.contains(&row["seconds"]));
+    }
+    assert!(
+        err(&output).contains("The cheapest run with an error of at most 1.0"),
+        "{}",
+        err(&output)
+    );
+    let peers = "# two programs\nscene,series,run,status,error,seconds\nA,one,\"n=1, m=2\",whole,1e-3,0.5\nA,two,n=1,died,,9\n";
+    std::fs::write(directory.path().join("peers.csv"), peers).unwrap();
+    let output = ran(
+        directory.path(),
+        &["--from", "peers.csv", "--svg", "b.svg", "--csv", "-"],
+    );
+    let table = rows(&output);
+    assert_eq!(
+        (table[0]["run"].as_str(), table[0]["front"].as_str()),
+        ("n=1, m=2", "true")
+    );
+    let svg = std::fs::read_to_string(directory.path().join("b.svg")).unwrap();
+    assert!(svg.contains("✗ two, n=1: died") && svg.contains("two programs"));
+    for (text, part) in [
+        ("", "no header"),
+        ("a,b\n", "no table of a chart"),
+        ("scene,series,run,status,error,seconds\n", "no rows"),
+        (
+            "scene,series,run,status,error,seconds\nA,b,c,whole,x,1\n",
+            "c.csv:2: \"x\" under error",
+        ),
+        (
+            "scene,series,run,status,error,seconds\nA,b,c\n",
+            "c.csv:2: the row has 3 fields",
+        ),
+    ] {
+        std::fs::write(directory.path().join("c.csv"), text).unwrap();
+        let output = ran(directory.path(), &["--from", "c.csv"]);
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(err(&output).contains(part), "{}", err(&output));
+    }
+}

@@ -8,7 +8,7 @@ use crate::study::chart_file::{Chart, Truth};
 use crate::study::figure::short;
 use crate::study::precision::{self, Cost, Measure, Precision};
 use crate::study::{Vary, Watch, precision_figure};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -19,8 +19,15 @@ Runs that fail are results, and stand on a rail at the top of the picture: the e
 done, 2 for bad input or usage, and 130 if it was interrupted; files have what was done.")]
 pub struct Args {
     /// Scenes: files, or built-in names
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(
+        value_name = "SCENE",
+        required_unless_present = "from",
+        conflicts_with = "from"
+    )]
     scenes: Vec<String>,
+    /// Draws the table of a chart that was made before (--csv), and runs nothing
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
     /// Runs with each of the values, instead of the scene's own chart; may be repeated for the product of all
     #[arg(long, value_name = "PATH=A,B,C", value_parser = Vary::parse)]
     over: Vec<Vary>,
@@ -56,6 +63,14 @@ fn cost(text: &str) -> Result<Cost, String> {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    if let Some(file) = &args.from {
+        let name = file.display().to_string();
+        let text =
+            std::fs::read_to_string(file).map_err(|e| Error::Usage(format!("{name}: {e}")))?;
+        let charts = precision::read(&name, &text, args.cost, args.target).map_err(Error::Usage)?;
+        let outputs = Outputs::open(&args.out)?;
+        return finish(args, outputs, &charts);
+    }
     let interrupt = Interrupt::listen();
     let mut planned = Vec::new();
     for scene in &args.scenes {
@@ -96,12 +111,17 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         }
         charts => charts.map_err(|e| Error::Usage(e.to_string()))?,
     };
+    finish(args, outputs, &charts)
+}
+
+/// Writes, draws and tells charts.
+fn finish(args: &Args, outputs: Outputs, charts: &[Precision]) -> Result<Exit, Error> {
     let sent = outputs.write(
-        &precision::csv(&charts),
-        || precision_figure::sheet(&charts)?.svg(),
-        || precision_figure::sheet(&charts)?.png(),
+        &precision::csv(charts),
+        || precision_figure::sheet(charts)?.svg(),
+        || precision_figure::sheet(charts)?.png(),
     )?;
-    for chart in &charts {
+    for chart in charts {
         if !args.out.quiet {
             tell_chart(chart);
         }
@@ -163,7 +183,11 @@ fn tell_chart(chart: &Precision) {
         tell(&line);
     }
     tell("* beaten by no other run in cost and error   + as near as is wanted");
-    for line in chart.verdict().into_iter().chain(chart.origin()) {
+    for line in chart
+        .verdict()
+        .into_iter()
+        .chain(chart.about.iter().cloned())
+    {
         tell(&line);
     }
 }

@@ -31,13 +31,10 @@ const LONG: f64 = 20.0;
 pub struct Precision {
     pub scene: String,
     pub title: String,
-    /// Settings of all runs.
-    pub set: Vec<(String, String)>,
-    /// What it was measured against.
-    pub reference: String,
-    /// The monitors whose errors count, and the number of loads at which.
+    /// The monitors whose errors count.
     pub monitors: Vec<String>,
-    pub loads: usize,
+    /// What it was made from, and by what.
+    pub about: Vec<String>,
     /// Names of the series.
     pub series: Vec<String>,
     pub points: Vec<Point>,
@@ -189,10 +186,8 @@ pub fn run(
     let mut precision = Precision {
         scene: chart.scene.clone(),
         title: chart.title.clone(),
-        set: chart.set.clone(),
-        reference: reference.source.clone(),
         monitors: Vec::new(),
-        loads: 0,
+        about: Vec::new(),
         series: chart
             .series
             .iter()
@@ -206,8 +201,9 @@ pub fn run(
     if let Some(own) = own {
         all[own].point.reference = true;
     }
-    compare(&mut precision, &mut all, &reference, &chart.monitors)?;
+    let loads = compare(&mut precision, &mut all, &reference, &chart.monitors)?;
     precision.points = all.into_iter().map(|measured| measured.point).collect();
+    precision.about = origin(chart, &precision, loads, &reference);
     mark_front(&mut precision.points, measure.cost);
     Ok(precision)
 }
@@ -351,15 +347,15 @@ fn truth(
     }
 }
 
-/// Measures all errors.
+/// Measures all errors; the number of loads at which.
 fn compare(
     precision: &mut Precision,
     all: &mut [Measured],
     reference: &Reference,
     wanted: &[String],
-) -> Result<(), PrecisionError> {
+) -> Result<usize, PrecisionError> {
     let Some(first) = all.first() else {
-        return Ok(());
+        return Ok(0);
     };
     let names = first.run.monitors.join(", ");
     let kinds = first.run.monitors.iter().cloned().zip(first.kinds.clone());
@@ -390,7 +386,6 @@ fn compare(
             "there is no load that the reference and all runs have in common".to_owned(),
         ));
     }
-    precision.loads = rows.len();
     let columns: Vec<(usize, &String)> = precision
         .monitors
         .iter()
@@ -424,7 +419,7 @@ fn compare(
         }
         measured.point.error = Some(error);
     }
-    Ok(())
+    Ok(rows.len())
 }
 
 /// Marks the runs that none beats in cost and error.
@@ -469,41 +464,146 @@ impl Precision {
         let none = || format!("No run has an error of at most {target:?}.");
         Some(self.cheapest().map_or_else(none, meets))
     }
+}
 
-    /// What it was made from, and by what.
-    pub fn origin(&self) -> Vec<String> {
-        let set: String = self
-            .set
-            .iter()
-            .map(|(path, value)| format!("; {path}={value}"))
-            .collect();
-        let repeats = self
-            .points
-            .iter()
-            .map(|point| point.repeats)
-            .max()
-            .unwrap_or(0);
-        vec![
-            format!("Scene: {}{set}", self.scene),
-            format!(
-                "Error: largest difference of {} over the largest value, at {} loads that all whole runs have, to {}",
-                self.monitors.join(", "),
-                self.loads,
-                self.reference
-            ),
-            format!(
-                "Time: processor time of the solve, median of {repeats}. {} on {}",
-                origin::program(),
-                origin::machine()
-            ),
-        ]
+/// What a chart was made from, and by what.
+fn origin(
+    chart: &Chart,
+    precision: &Precision,
+    loads: usize,
+    reference: &Reference,
+) -> Vec<String> {
+    let set: String = chart
+        .set
+        .iter()
+        .map(|(path, value)| format!("; {path}={value}"))
+        .collect();
+    let repeats = precision.points.iter().map(|point| point.repeats).max();
+    vec![
+        format!("Scene: {}{set}", chart.scene),
+        format!(
+            "Error: largest difference of {} over the largest value, at {loads} loads that all whole runs have, to {}",
+            precision.monitors.join(", "),
+            reference.source
+        ),
+        format!(
+            "Time: processor time of the solve, median of {}. {} on {}",
+            repeats.unwrap_or(0),
+            origin::program(),
+            origin::machine()
+        ),
+    ]
+}
+
+/// Charts from a table as [`csv`] writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
+/// missing, and the runs need not be of this program.
+///
+/// # Errors
+/// If it cannot be read: file, line, what is wrong.
+pub fn read(
+    name: &str,
+    text: &str,
+    cost: Cost,
+    target: Option<f64>,
+) -> Result<Vec<Precision>, String> {
+    let comments = text.lines().filter_map(|line| line.strip_prefix('#'));
+    let about: Vec<String> = comments.map(|line| line.trim().to_owned()).collect();
+    let lines = text
+        .lines()
+        .enumerate()
+        .map(|(k, line)| (k + 1, line.trim_end()));
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (_, header) = lines
+        .next()
+        .ok_or_else(|| format!("{name}: there is no header"))?;
+    let heads = super::csv::split(header);
+    for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
+        if !heads.iter().any(|head| head == wanted) {
+            return Err(format!(
+                "{name}: it is no table of a chart: it has no column {wanted}"
+            ));
+        }
     }
+    let mut charts: Vec<Precision> = Vec::new();
+    for (line, text) in lines {
+        let fields = super::csv::split(text);
+        if fields.len() != heads.len() {
+            let (has, wants) = (fields.len(), heads.len());
+            return Err(format!(
+                "{name}:{line}: the row has {has} fields, the header {wants}"
+            ));
+        }
+        let word = |head: &str| {
+            let place = heads.iter().position(|own| own == head);
+            place.map_or("", |k| fields[k].as_str())
+        };
+        let number = |head: &str| match word(head) {
+            "" => Ok(None),
+            word => {
+                let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
+                let wrong = || {
+                    format!("{name}:{line}: {word:?} under {head} is no number that can be drawn")
+                };
+                value.map(Some).ok_or_else(wrong)
+            }
+        };
+        let count = |head: &str| number(head).map(|value| value.unwrap_or(0.0) as u64);
+        let (scene, own) = (word("scene"), word("series"));
+        if charts.last().is_none_or(|chart| chart.scene != scene) {
+            charts.push(Precision {
+                scene: scene.to_owned(),
+                title: scene.to_owned(),
+                monitors: Vec::new(),
+                about: Vec::new(),
+                series: Vec::new(),
+                points: Vec::new(),
+                cost,
+                target,
+                planned: 0,
+            });
+        }
+        let Some(chart) = charts.last_mut() else {
+            continue;
+        };
+        let series = chart.series.iter().position(|name| name == own);
+        let series = series.unwrap_or_else(|| {
+            chart.series.push(own.to_owned());
+            chart.series.len() - 1
+        });
+        let status = word("status");
+        chart.points.push(Point {
+            series,
+            name: word("run").to_owned(),
+            settings: Vec::new(),
+            seconds: number("seconds")?.unwrap_or(0.0),
+            repeats: count("repeats")? as usize,
+            factorizations: count("factorizations")?,
+            majors: count("majors")?,
+            minors: count("minors")?,
+            increments: count("increments")?,
+            unknowns: count("unknowns")? as usize,
+            failed: (!["whole", "reference"].contains(&status)).then(|| status.to_owned()),
+            unsettled: count("unsettled")? as usize,
+            error: number("error")?,
+            reference: status == "reference",
+            front: false,
+        });
+    }
+    for chart in &mut charts {
+        chart.planned = chart.points.len();
+        mark_front(&mut chart.points, cost);
+    }
+    let last = charts
+        .last_mut()
+        .ok_or_else(|| format!("{name}: it has no rows"))?;
+    last.about = about;
+    Ok(charts)
 }
 
 /// A row for each run of some charts, after lines that say what they are.
 pub fn csv(charts: &[Precision]) -> String {
     let mut text = String::new();
-    for line in charts.iter().flat_map(Precision::origin) {
+    for line in charts.iter().flat_map(|chart| &chart.about) {
         text += &format!("# {line}\n");
     }
     text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\

@@ -111,7 +111,7 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     }
     let told: Vec<String> = chart.verdict().into_iter().collect();
     sheet.paragraph(&told, SMALL, BLACK)?;
-    sheet.paragraph(&chart.origin(), SMALL, GREY)
+    sheet.paragraph(&chart.about, SMALL, GREY)
 }
 
 /// Where failures stand.

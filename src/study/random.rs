@@ -233,7 +233,7 @@ mod tests {
         assert_ne!(all.draw(2).problem.matrix, all.draw(3).problem.matrix);
         // Planted: whatever changes these numbers makes published counts void.
         let first = all.draw(0);
-        assert_eq!((first.form, first.cohesive), (Form::Compliance, false));
+        assert_eq!((first.form, first.cohesive), (Form::Singular, false));
         assert_eq!(first.problem.contacts.len(), 2);
         let Matrix::Compliance(rows) = &first.problem.matrix else {
             panic!("{:?}", first.problem.matrix)
