@@ -149,11 +149,7 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
     let arguments = [
         BEAM,
         "--over",
-        "at_cycle=damp,stop",
-        "--set",
-        "settings.touch=ratio",
-        "--set",
-        "settings.strategy=table2",
+        "majors=60,1",
         "--repeats",
         "1",
         "--csv",
@@ -166,13 +162,13 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
     assert_eq!(table[0]["status"], "whole");
     assert!(number(&table[0], "error") < 1e-8, "{table:?}");
     assert!(
-        table[1]["status"].contains("cycle of minors at load 0"),
+        table[1]["status"].starts_with("major-limit at load 0.01"),
         "{table:?}"
     );
     assert!(table[1]["error"].is_empty() && table[1]["front"] == "false");
     let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
     assert!(
-        svg.contains("✗ settings.at_cycle, at_cycle=stop: ") && svg.contains("#C00000"),
+        svg.contains("✗ majors, majors=1: major-limit") && svg.contains("#C00000"),
         "{svg}"
     );
 }

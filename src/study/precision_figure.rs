@@ -17,7 +17,7 @@ const LEFT: f64 = 84.0;
 /// The colour of crosses, and of nothing else.
 const CROSS: Colour = (192, 0, 0);
 /// Errors below this are drawn here: they are none.
-const NOTHING: f64 = 1e-16;
+pub const NOTHING: f64 = 1e-16;
 
 /// An axis in decades.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,7 +152,7 @@ fn axes(sheet: &mut Sheet, chart: &Precision, x: Decades, y: Decades) {
 }
 
 /// A power of ten for a person.
-fn power(decade: i32) -> String {
+pub fn power(decade: i32) -> String {
     match decade {
         -2..=3 => format!("{}", 10f64.powi(decade)),
         _ => format!("1e{decade}"),
