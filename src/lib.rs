@@ -8,7 +8,7 @@
 //! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.
 //! - [`solve`]: the stepper: increments, major iterations, minor iterations, one per call.
 //! - [`debug`]: the debugger without a terminal: session, commands, snapshots.
-//! - [`study`]: many runs of a scene, as a table and as a figure.
+//! - [`study`]: many runs of a scene: sweeps, stability maps, work-precision charts.
 //! - [`cli`] and [`tui`]: the two front ends.
 
 pub mod cli;

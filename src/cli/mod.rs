@@ -3,6 +3,7 @@
 //! Standard output carries data only; messages go to standard error, and progress there only if it is a terminal.
 //! Exit codes are those of [`Exit`].
 
+mod chart;
 mod check;
 mod core;
 mod debugger;
@@ -10,6 +11,8 @@ mod diff;
 mod interrupt;
 mod lesson;
 mod list;
+mod map;
+mod outputs;
 mod record;
 mod remedies;
 mod replay;
@@ -113,6 +116,10 @@ enum Command {
     Core(core::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
+    /// Shows where the iterations converge and where they do not
+    Map(map::Args),
+    /// Charts what settings cost against how near they come to the truth
+    Chart(chart::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
 }
@@ -163,6 +170,8 @@ pub fn main() -> ExitCode {
             Command::Run(_)
                 | Command::Record(_)
                 | Command::Study(_)
+                | Command::Map(_)
+                | Command::Chart(_)
                 | Command::Resume(_)
                 | Command::Lesson(_)
         )
@@ -183,6 +192,8 @@ pub fn main() -> ExitCode {
         Some(Command::Remedies(args)) => remedies::main(args),
         Some(Command::Core(args)) => core::main(args),
         Some(Command::Study(args)) => study::main(args),
+        Some(Command::Map(args)) => map::main(args),
+        Some(Command::Chart(args)) => chart::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
     };
     ended

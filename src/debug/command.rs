@@ -139,6 +139,8 @@ pub enum Ui {
     StartFrom(usize),
     /// Take this remedy of the list (from 0).
     Apply(usize),
+    /// Show the work-precision chart of a file.
+    Chart(String),
     /// The shape larger, smaller, and all of it.
     Enlarge,
     Shrink,
@@ -395,6 +397,7 @@ enum Verb {
     Filter,
     Monitor,
     Lesson,
+    Chart,
     Answer,
     Predict,
     Do(Ui),
@@ -482,6 +485,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "remedies", "", &["r"], "remedies", "Try every remedy from here; Enter takes the selected one", Verb::Do(Ui::Page(Page::Remedies))),
     entry(Group::Look, "timeline", "", &["t"], "timeline", "All modes by iteration; Left and Right go through them with the whole screen", Verb::Do(Ui::Page(Page::Timeline))),
     entry(Group::Look, "census", "[NODES]", &[], "", "Try every assignment of modes on the problem that is solved next: of these nodes (at most 8), or of all that can touch", Verb::Census),
+    entry(Group::Look, "chart", "FILE", &[], "", "Error over cost: a table that `stickslip chart --csv` made", Verb::Chart),
     entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
     entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
     entry(Group::Look, "zoom", "", &["z"], "zoom", "This pane alone, and back", Verb::Do(Ui::Zoom)),
@@ -659,6 +663,8 @@ impl Entry {
                 let filter = one_of(&words, Filter::ALL, Filter::word)?;
                 return Ok(Action::Ui(Ui::Filter(filter)));
             }
+            Verb::Chart if rest.is_empty() => return Err(self.usage()),
+            Verb::Chart => return Ok(Action::Ui(Ui::Chart(rest.into()))),
             Verb::Lesson if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Lesson))),
             Verb::Lesson => return Ok(Action::Ui(Ui::Lesson(rest.into()))),
             Verb::Answer if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Answer))),
@@ -691,7 +697,8 @@ impl Entry {
     /// File and scene names may hold blanks; elsewhere a word too many is a mistake.
     fn most_words(&self) -> usize {
         match self.verb {
-            Verb::Snapshot { .. } | Verb::Open | Verb::Monitor | Verb::Lesson => usize::MAX,
+            Verb::Snapshot { .. } | Verb::Open | Verb::Monitor => usize::MAX,
+            Verb::Lesson | Verb::Chart => usize::MAX,
             Verb::Export { .. } | Verb::Census => usize::MAX,
             Verb::Branch(None) | Verb::Rename | Verb::Compare => usize::MAX,
             Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,

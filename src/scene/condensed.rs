@@ -88,7 +88,7 @@ fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Erro
 }
 
 /// One increment from 0 to 1.
-pub(crate) fn at_once() -> History {
+pub fn at_once() -> History {
     History {
         path: vec![0.0, 1.0],
         increment: 1.0,

@@ -67,6 +67,24 @@ pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, String>
     }
 }
 
+/// The whole path for one without its first or last step, where a person may leave it out: `increment` for
+/// `history.increment`, `t_max` for `settings.t_max`, `friction` for `friction.angle`. What is none of these stays.
+pub fn whole(spec: &Spec, path: &str) -> String {
+    let all = list(spec);
+    let path = path.trim();
+    let wholes = [
+        path.to_owned(),
+        format!("history.{path}"),
+        format!("settings.{path}"),
+        format!("{path}.angle"),
+    ];
+    let known = |whole: &String| all.iter().any(|listed| listed.path == *whole);
+    wholes
+        .into_iter()
+        .find(known)
+        .unwrap_or_else(|| path.to_owned())
+}
+
 fn unknown(spec: &Spec, path: &str) -> String {
     let all = list(spec);
     let names = || all.iter().map(|listed| listed.path.as_str());

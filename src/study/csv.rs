@@ -80,10 +80,42 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
 }
 
 /// A text as a field of a CSV file.
-fn field(text: &str) -> String {
+pub(super) fn field(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()
+    }
+}
+
+/// The fields of a line of a CSV file; quoted ones may have commas, and quotes twice.
+pub fn split(line: &str) -> Vec<String> {
+    let (mut fields, mut quoted) = (vec![String::new()], false);
+    let mut letters = line.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let doubled = quoted && letter == '"' && letters.peek() == Some(&'"');
+        match (letter, fields.last_mut()) {
+            ('"', Some(field)) if doubled => {
+                letters.next();
+                field.push('"');
+            }
+            ('"', _) => quoted = !quoted,
+            (',', _) if !quoted => fields.push(String::new()),
+            (letter, Some(field)) => field.push(letter),
+            (_, None) => {}
+        }
+    }
+    fields
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_split_as_they_were_joined() {
+        let fields = ["a", "b,c", "", "say \"no\"", "✗"];
+        let line: Vec<String> = fields.iter().map(|f| field(f)).collect();
+        assert_eq!(split(&line.join(",")), fields);
     }
 }

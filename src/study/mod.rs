@@ -1,20 +1,44 @@
-//! Studies: one scene (or a few) solved with many settings, and what came of it as a table and as a figure.
+//! Studies: scenes solved with many settings, and what came of it as tables and figures.
 //!
 //! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
 //! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
 //! - [`run`]: the cases side by side, each on one thread; [`result`]: what one of them came to.
 //! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG.
 //!
+//! Stability maps:
+//!
+//! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, judged; [`survey`]: all of them.
+//! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures; [`sheet`]: pictures as plain data.
+//! - [`verdict`]: what a run is worth; [`log`]: results that outlive a kill; [`origin`]: where results come from.
+//!
+//! Work-precision charts:
+//!
+//! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_figure`]: drawn.
+//! - [`reference`]: what runs are measured against.
+//!
 //! Nothing here knows a command line.
 
 pub mod builtin;
+pub mod chart_file;
 pub mod csv;
 pub mod figure;
+pub mod log;
+pub mod map;
+pub mod origin;
 pub mod plan;
 pub mod plot;
+pub mod precision;
+pub mod precision_figure;
+pub mod random;
 pub mod read;
+pub mod reference;
 pub mod result;
 pub mod run;
+pub mod sheet;
+pub mod survey;
+pub mod trial;
+pub mod verdict;
+pub mod verdict_figure;
 
 pub use plan::{Case, Plan};
 pub use read::{Quantity, Study, Vary};

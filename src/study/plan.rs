@@ -44,6 +44,19 @@ impl Case {
     pub fn open(&self) -> Result<Scene, SceneError> {
         Scene::from_text(&self.scene, &self.text, &self.settings)
     }
+
+    /// All that its result depends on, in parts.
+    pub fn identity(&self) -> impl Iterator<Item = &str> {
+        let settings = self.settings.iter();
+        let settings = settings.flat_map(|(path, value)| [path.as_str(), value.as_str()]);
+        std::iter::once(&*self.text).chain(settings)
+    }
+
+    /// What was set last at a path from outside, if anything.
+    pub fn value(&self, path: &str) -> Option<&str> {
+        let set = self.settings.iter().rev().find(|(own, _)| own == path);
+        set.map(|(_, value)| value.as_str())
+    }
 }
 
 impl Plan {
@@ -51,7 +64,14 @@ impl Plan {
     ///
     /// # Errors
     /// If a scene, a path or a value will not do, in any of the cases, or an axis is nothing that the scenes have.
-    pub fn new(study: Study) -> Result<Plan, SceneError> {
+    pub fn new(mut study: Study) -> Result<Plan, SceneError> {
+        if let Some(first) = study.scenes.first() {
+            let spec = Scene::open(first, &[])?.spec;
+            let paths = study.vary.iter_mut().map(|vary| &mut vary.path);
+            for path in paths.chain(study.set.iter_mut().map(|(path, _)| path)) {
+                *path = paths::whole(&spec, path);
+            }
+        }
         check_values(&study)?;
         let mut plan = Plan {
             title: study.title.clone(),
@@ -76,6 +96,16 @@ impl Plan {
         Ok(plan)
     }
 
+    /// The problem that a case poses: its values of all columns but those that say how it is computed.
+    pub fn posed<'a>(&self, case: &'a Case) -> Vec<&'a str> {
+        let how = |path: &str| {
+            path.starts_with("settings.") || ["history.increment", "history.least"].contains(&path)
+        };
+        let values = self.columns.iter().zip(&case.values);
+        let posed = values.filter(|(path, _)| !how(path));
+        posed.map(|(_, value)| value.as_str()).collect()
+    }
+
     /// Increments of all cases together.
     pub fn increments(&self) -> u64 {
         self.cases.iter().map(|case| case.increments).sum()
@@ -97,6 +127,11 @@ impl Plan {
             values.extend(settings.iter().map(|(_, value)| value.clone()));
             let mut all = set.clone();
             all.extend(expanded(&base, &settings));
+            for (path, value) in &mut all {
+                if let Some(times) = multiple(&base, path, value) {
+                    *value = times;
+                }
+            }
             let mut case = Case {
                 values,
                 scene: base.name.clone(),
@@ -170,7 +205,7 @@ fn check_values(study: &Study) -> Result<(), SceneError> {
 }
 
 /// All combinations of values, path by path; the last path changes fastest.
-fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
+pub fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
     let mut all = vec![Vec::new()];
     for Vary { path, values } in vary {
         all = all
@@ -185,6 +220,17 @@ fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
             .collect();
     }
     all
+}
+
+/// What `2x` means: twice what the scene has; none where it is no multiple, or there is no number to be multiplied.
+fn multiple(scene: &Scene, path: &str, value: &str) -> Option<String> {
+    let factor: f64 = value.strip_suffix('x')?.parse().ok()?;
+    let all = paths::list(&scene.spec);
+    let own = all.into_iter().find(|listed| listed.path == path)?;
+    let product = factor * own.value.parse::<f64>().ok()?;
+    // As a person would have typed it, without the round-off of the product.
+    let short: f64 = format!("{product:.12e}").parse().ok()?;
+    Some(short.to_string())
 }
 
 /// Settings with each `*` replaced by all steps that fit. A pattern that nothing fits stays, for the scene to refuse.

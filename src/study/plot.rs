@@ -51,11 +51,11 @@ pub enum End {
 /// Why a chart could not be drawn.
 #[derive(Debug, thiserror::Error)]
 #[error("the chart cannot be drawn: {0}")]
-pub struct PlotError(String);
+pub struct PlotError(pub(super) String);
 
 /// All sizes are for SVG; a PNG has this many pixels for each.
-const PNG_SCALE: f64 = 2.0;
-const FONT: &str = "sans-serif";
+pub(super) const PNG_SCALE: f64 = 2.0;
+pub(super) const FONT: &str = "sans-serif";
 const PLOT: (f64, f64) = (720.0, 520.0);
 const MARGIN: f64 = 14.0;
 const TITLE: f64 = 22.0;
@@ -116,7 +116,11 @@ pub fn png(chart: &Chart) -> Result<Vec<u8>, PlotError> {
     encode(&pixels, width, height).map_err(|e| PlotError(e.to_string()))
 }
 
-fn encode(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
+pub(super) fn encode(
+    pixels: &[u8],
+    width: u32,
+    height: u32,
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -128,7 +132,7 @@ fn encode(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::Encodi
 }
 
 /// Machines without fonts draw, too.
-fn load_font() -> Result<(), PlotError> {
+pub(super) fn load_font() -> Result<(), PlotError> {
     static LOADED: OnceLock<bool> = OnceLock::new();
     let loaded = LOADED
         .get_or_init(|| register_font(FONT, FontStyle::Normal, dejavu::sans::regular()).is_ok());
@@ -222,7 +226,7 @@ impl Layout {
     }
 }
 
-fn width_of(text: &str, size: f64) -> Result<f64, PlotError> {
+pub(super) fn width_of(text: &str, size: f64) -> Result<f64, PlotError> {
     let measured = (FONT, size).into_font().box_size(text);
     measured
         .map(|(width, _)| f64::from(width))
@@ -230,7 +234,7 @@ fn width_of(text: &str, size: f64) -> Result<f64, PlotError> {
 }
 
 /// Lines that are no wider than that, broken between words.
-fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotError> {
+pub(super) fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotError> {
     let mut all = Vec::new();
     for line in lines {
         let mut present = String::new();

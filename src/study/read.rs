@@ -20,7 +20,7 @@ use crate::scene::locate::locate;
 use crate::scene::read::{options, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, Visitor};
+use serde::de::{DeserializeOwned, Deserializer, Visitor};
 use serde_path_to_error::Segment;
 use std::fmt;
 
@@ -49,6 +49,58 @@ pub struct Study {
 pub struct Vary {
     pub path: String,
     pub values: Vec<String>,
+}
+
+impl Vary {
+    /// What is varied, as typed: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` are four evenly spaced values, ends
+    /// included, `0.01..0.1/4log` four with even ratios. `2x` is twice what the scene has (the plan works it out).
+    ///
+    /// # Errors
+    /// A message that says what it must be.
+    pub fn parse(text: &str) -> Result<Vary, String> {
+        let Some((path, values)) = text.split_once('=') else {
+            return Err("it must be PATH=A,B,C, as history.increment=0.01,0.02".to_owned());
+        };
+        let values = values.split(',').map(|value| spread(value.trim()));
+        let values: Result<Vec<Vec<String>>, String> = values.collect();
+        Ok(Vary {
+            path: path.trim().to_owned(),
+            values: values?.concat(),
+        })
+    }
+}
+
+/// A value, or those of a range.
+fn spread(value: &str) -> Result<Vec<String>, String> {
+    let Some((low, rest)) = value.split_once("..") else {
+        return Ok(vec![value.to_owned()]);
+    };
+    let wrong =
+        || format!("{value}: a range is LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, as 0.01..0.1/4");
+    let (high, count) = rest.split_once('/').ok_or_else(wrong)?;
+    let (count, even_ratios) = match count.strip_suffix("log") {
+        Some(count) => (count, true),
+        None => (count, false),
+    };
+    let number = |text: &str| text.parse::<f64>().ok().filter(|x| x.is_finite());
+    let (low, high) = number(low).zip(number(high)).ok_or_else(wrong)?;
+    let count = count.parse::<u32>().ok().filter(|n| (2..=1000).contains(n));
+    let count = count.ok_or_else(wrong)?;
+    if even_ratios && !(low > 0.0 && high > 0.0) {
+        return Err(format!("{value}: even ratios need ends above 0"));
+    }
+    let at = |k: u32| {
+        let part = f64::from(k) / f64::from(count - 1);
+        let value = match even_ratios {
+            true => low * (high / low).powf(part),
+            false => low + (high - low) * part,
+        };
+        // As a person would have typed it, without the round-off of the division.
+        format!("{value:.9e}")
+            .parse::<f64>()
+            .map_or(value, |short| short)
+    };
+    Ok((0..count).map(|k| at(k).to_string()).collect())
 }
 
 /// A number that every accepted increment has.
@@ -123,7 +175,11 @@ impl Study {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
-        let mut file = parse(name, text)?;
+        let mut file: File = parse(name, text)?;
+        if file.scene.is_some() && !file.scenes.is_empty() {
+            let twice = "a study has either scene or scenes";
+            return Err(SceneError::whole(name, twice));
+        }
         if let Some(scene) = file.scene.take() {
             file.scenes.insert(0, scene);
         }
@@ -131,20 +187,12 @@ impl Study {
             let message = "a study needs a scene: \"NAME\", or scenes: [\"NAME\", \"NAME\"]";
             return Err(SceneError::whole(name, message));
         }
-        let values = |words: Vec<Word>| words.into_iter().map(|word| word.0).collect();
         Ok(Study {
             name: name.to_owned(),
             title: file.title,
             about: file.about,
             scenes: file.scenes,
-            vary: file
-                .vary
-                .into_iter()
-                .map(|(path, words)| Vary {
-                    path,
-                    values: values(words),
-                })
-                .collect(),
+            vary: vary(file.vary),
             set: file.set.into_iter().map(|(path, w)| (path, w.0)).collect(),
             x: file.x.as_deref().map(Quantity::named),
             y: file.y.as_deref().map(Quantity::named),
@@ -195,7 +243,7 @@ struct File {
 }
 
 /// A value of a setting: a number, a flag, or a text; settings take all of them as text.
-struct Word(String);
+pub(super) struct Word(pub(super) String);
 
 impl<'de> Deserialize<'de> for Word {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Word, D::Error> {
@@ -240,22 +288,27 @@ impl Visitor<'_> for WordVisitor {
     }
 }
 
-fn parse(name: &str, text: &str) -> Result<File, SceneError> {
+/// What is varied, as a file has it.
+pub(super) fn vary(words: Vec<(String, Vec<Word>)>) -> Vec<Vary> {
+    let vary = |(path, words): (String, Vec<Word>)| Vary {
+        path,
+        values: words.into_iter().map(|word| word.0).collect(),
+    };
+    words.into_iter().map(vary).collect()
+}
+
+/// Reads a file that holds one value.
+pub(super) fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, SceneError> {
     let options = options();
     let mut reader = ron::Deserializer::from_str_with_options(text, &options)
         .map_err(|e| unreadable(name, &e, String::new()))?;
-    let file = serde_path_to_error::deserialize::<_, File>(&mut reader).map_err(|e| {
+    let file = serde_path_to_error::deserialize::<_, T>(&mut reader).map_err(|e| {
         let path = plain(e.path()).to_string();
         unreadable(name, &reader.span_error(e.into_inner()), path)
     })?;
     reader
         .end()
         .map_err(|e| unreadable(name, &reader.span_error(e), String::new()))?;
-    // A text that is all of a study and one thing twice is none.
-    if file.scene.is_some() && !file.scenes.is_empty() {
-        let twice = ron::Error::custom("a study has either scene or scenes");
-        return Err(unreadable(name, &reader.span_error(twice), String::new()));
-    }
     Ok(file)
 }
 
@@ -324,4 +377,31 @@ fn nothing_there(name: &str) -> String {
         studies.join(", "),
         scenes.join(", ")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(text: &str) -> Vec<String> {
+        Vary::parse(text).unwrap().values
+    }
+
+    #[test]
+    fn ranges_have_their_ends() {
+        assert_eq!(values("a=1,2, 3x"), ["1", "2", "3x"]);
+        assert_eq!(values("a=0.1..0.4/4"), ["0.1", "0.2", "0.3", "0.4"]);
+        assert_eq!(values("a=0.01..1/3log,5"), ["0.01", "0.1", "1", "5"]);
+        assert_eq!(values("a=-1..1/3"), ["-1", "0", "1"]);
+        for wrong in [
+            "a",
+            "a=1..2",
+            "a=1..2/1",
+            "a=x..2/3",
+            "a=0..1/3log",
+            "a=1..2/2.5",
+        ] {
+            assert!(Vary::parse(wrong).is_err(), "{wrong}");
+        }
+    }
 }

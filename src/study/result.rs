@@ -1,7 +1,9 @@
 //! What one run of a study came to.
 
 use super::read::Quantity;
+use super::verdict::Verdict;
 use crate::solve::Failure;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A run, as far as it went.
@@ -47,6 +49,7 @@ pub enum End {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Failed {
     pub reason: Reason,
+    pub verdict: Verdict,
     pub increment: u32,
     /// The load factor that was tried.
     pub load: f64,
@@ -57,7 +60,7 @@ pub struct Failed {
 }
 
 /// Why an increment failed, in a word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Reason {
     MinorCycle,
     MinorLimit,
@@ -67,6 +70,21 @@ pub enum Reason {
     Diverged,
     Jammed,
     NoAnswer,
+}
+
+impl Reason {
+    /// A letter for it, where there is no room for the word.
+    pub fn letter(self) -> char {
+        match self {
+            Reason::MinorCycle | Reason::MajorCycle => 'o',
+            Reason::MinorLimit => 'm',
+            Reason::MajorLimit => 'M',
+            Reason::Singular => 's',
+            Reason::Diverged => 'd',
+            Reason::Jammed => 'j',
+            Reason::NoAnswer => 'n',
+        }
+    }
 }
 
 impl From<&Failure> for Reason {

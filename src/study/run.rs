@@ -1,7 +1,9 @@
 //! The cases of a plan, side by side: each on one thread, so that its bits are those of a run alone.
 
+use super::log::LogError;
 use super::plan::{Case, Plan};
 use super::result::{End, Failed, Reason, Row, Run};
+use super::verdict::Verdict;
 use crate::scene::SceneError;
 use crate::solve::{Outcome, Stepper};
 use rayon::prelude::*;
@@ -26,6 +28,8 @@ pub enum RunError {
     Threads(#[from] rayon::ThreadPoolBuildError),
     #[error(transparent)]
     Scene(#[from] SceneError),
+    #[error(transparent)]
+    Log(#[from] LogError),
 }
 
 /// Runs all cases of a plan on a number of threads. The results are in the order of the plan.
@@ -33,16 +37,24 @@ pub enum RunError {
 /// # Errors
 /// If there are no threads to be had. What fails in a run is its result.
 pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, RunError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs.get().min(plan.cases.len().max(1)))
-        .stack_size(STACK)
-        .build()?;
+    let pool = pool(jobs, plan.cases.len())?;
     let runs: Result<Vec<Run>, SceneError> = pool.install(|| {
         // One by one: cases differ much in what they cost, and the first ones are to be done first.
         let cases = plan.cases.par_iter().with_max_len(1);
         cases.map(|case| one(case, watch)).collect()
     });
     Ok(runs?)
+}
+
+/// Threads for a number of runs.
+pub(super) fn pool(
+    jobs: NonZeroUsize,
+    runs: usize,
+) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs.get().min(runs.max(1)))
+        .stack_size(STACK)
+        .build()
 }
 
 /// Runs one case to the end of its history, to its first failure, or to where it is stopped.
@@ -76,6 +88,7 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
             Outcome::Failed(failure) => {
                 break End::Failed(Failed {
                     reason: Reason::from(failure),
+                    verdict: Verdict::of(failure),
                     increment: at.increment,
                     load: event.load_factor,
                     major: at.major,

@@ -16,6 +16,7 @@ use crate::tui::nodes;
 use crate::tui::number;
 use crate::tui::theme::{self, Theme};
 use crate::tui::view::View;
+use crate::tui::workprecision;
 use crossterm::event::KeyEvent;
 
 /// What a key asks of the world outside the app.
@@ -29,6 +30,8 @@ pub enum Effect {
     Open(String),
     /// Begin a lesson, by file or built-in name.
     Lesson(String),
+    /// Show the work-precision chart of a file.
+    Chart(String),
     Suspend,
     Redraw,
     Quit,
@@ -46,6 +49,8 @@ pub enum Overlay {
     Chooser {
         at: usize,
     },
+    /// A work-precision chart.
+    Chart(Box<workprecision::Page>),
     /// A line being typed.
     Line(CommandLine),
     /// A letter for the mode of the selected node.
@@ -246,6 +251,7 @@ impl App {
             (Overlay::None, _) => self.pane_key(&name, view),
             (Overlay::Help { .. }, _) => self.help_key(&name),
             (Overlay::Chooser { .. }, _) => self.chooser_key(&name, view),
+            (Overlay::Chart(_), _) => self.chart_key(&name, view),
             (Overlay::Line(_), _) => self.line_key(key, &name, view),
             (Overlay::Mode, _) => self.mode_key(&name, view),
             (Overlay::Answer, _) => self.answer_key(&name, view),
@@ -421,6 +427,7 @@ impl App {
             Ui::SortBackward => self.backward = !self.backward,
             Ui::Filter(filter) => self.filter = filter.unwrap_or(next(&Filter::ALL, self.filter)),
             Ui::Monitor(monitor) => self.watch(monitor, view),
+            Ui::Chart(file) => return Some(Effect::Chart(file)),
             Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
             Ui::On => self.go_on(view),
             Ui::Answer(word) => self.answer(&word, view),
@@ -743,6 +750,16 @@ impl App {
         match name {
             "Esc" | "q" | "?" | "F1" | "Enter" => self.overlay = Overlay::None,
             _ => *top = scrolled(*top, name, usize::MAX),
+        }
+        None
+    }
+
+    fn chart_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        let Overlay::Chart(page) = &mut self.overlay else {
+            return None;
+        };
+        if !page.key(name) && ["Esc", "q", "Enter"].contains(&name) {
+            self.close(view);
         }
         None
     }

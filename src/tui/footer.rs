@@ -63,6 +63,15 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
     match &app.overlay {
         Overlay::None => table_keys(app, places, room),
         Overlay::Help { .. } => listed(&[("↑↓", "scroll"), ("Esc", "back")], app),
+        Overlay::Chart(_) => listed(
+            &[
+                ("←→", "run"),
+                ("x", "cost"),
+                ("Tab", "next chart"),
+                ("Esc", "back"),
+            ],
+            app,
+        ),
         Overlay::Chooser { .. } => {
             let leave = if view.is_some() { "back" } else { "quit" };
             listed(

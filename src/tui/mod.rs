@@ -31,6 +31,7 @@ pub mod terminal;
 pub mod theme;
 pub mod timeline;
 pub mod view;
+pub mod workprecision;
 
 pub use app::{App, Effect};
 pub use draw::picture;

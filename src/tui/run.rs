@@ -6,12 +6,13 @@ use crate::debug::lesson::{Lesson, Tutor};
 use crate::debug::report;
 use crate::debug::session::{Reply, Session};
 use crate::scene::{Scene, builtin};
-use crate::tui::app::{App, Effect, Offer};
+use crate::tui::app::{App, Effect, Offer, Overlay};
 use crate::tui::draw;
 use crate::tui::keys;
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
+use crate::tui::workprecision::Page;
 use crossterm::event::{self, Event, KeyEvent};
 use std::collections::VecDeque;
 use std::io::{self, IsTerminal};
@@ -252,6 +253,10 @@ impl Debugger {
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
             Effect::Open(scene) => self.open(&scene),
+            Effect::Chart(file) => match Page::open(&file) {
+                Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
+                Err(error) => self.app.complain(error),
+            },
             Effect::Lesson(name) => match Lesson::open(&name) {
                 Ok(lesson) => self.teach(lesson),
                 Err(error) => self.app.complain(error.to_string()),

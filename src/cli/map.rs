@@ -1,0 +1,347 @@
+//! `stickslip map`: where the iterations converge and where they do not.
+
+use super::interrupt::Interrupt;
+use super::outputs::{OutputArgs, Outputs, aligned};
+use super::sink::Sent;
+use super::{Error, Exit, SetArgs, say, tell};
+use crate::debug::files;
+use crate::scene::builtin;
+use crate::study::map::{self, Cell, Map};
+use crate::study::plan::product;
+use crate::study::random::{self, NODES, Population};
+use crate::study::survey::Survey;
+use crate::study::trial::{Judged, TOLERANCE, Variant};
+use crate::study::{Plan, Study, Vary, Watch, verdict_figure};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+/// All strategies, the default first.
+const STRATEGIES: [&str; 9] = [
+    "ladder",
+    "table2",
+    "sliding",
+    "least",
+    "sliding_least",
+    "block",
+    "newton",
+    "lemke",
+    "census",
+];
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+A value of --over may be a range, 0.01..0.1/4 (evenly spaced) or 0.01..0.1/4log (even ratios), or a multiple
+of what the scene has, 2x. Where nothing is varied, scenes are tried with all strategies.
+
+Cells that fail are results: the exit code is 0 if the map was done, 2 for bad input or usage, and 130 if it
+was interrupted; files are whole then and have what was done.")]
+pub struct Args {
+    /// Scenes: files, or built-in names; all: every built-in one
+    #[arg(value_name = "SCENE", required_unless_present_any = ["random", "write"], conflicts_with_all = ["random", "write"])]
+    scenes: Vec<String>,
+    /// Tries that many random interface problems, each of which has a number of answers that is known
+    #[arg(long, value_name = "N", value_parser = count)]
+    random: Option<usize>,
+    /// Seed of the random problems
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Numbers of nodes of the random problems: K, or A..B [default: 1..4]
+    #[arg(long, value_name = "A..B", value_parser = range)]
+    nodes: Option<RangeInclusive<usize>>,
+    /// Writes the random problem of that number as a scene file, and runs nothing
+    #[arg(long, value_name = "K")]
+    write: Option<usize>,
+    /// Where --write writes to; - is standard output [default: -]
+    #[arg(long, short, value_name = "FILE", requires = "write")]
+    output: Option<PathBuf>,
+    /// Runs with each of the values; may be repeated for the product of all
+    #[arg(long, value_name = "PATH=A,B,C", value_parser = Vary::parse)]
+    over: Vec<Vary>,
+    /// Runs with each of the strategies; all: every one that there is
+    #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
+    strategies: Vec<String>,
+    #[command(flatten)]
+    set: SetArgs,
+    /// Ends that differ from the reference by more than this part of the largest value are wrong branches
+    #[arg(long, value_name = "PART", default_value_t = map::TOLERANCE)]
+    tolerance: f64,
+    /// Keeps each result in this file as it comes, and takes up what is there already
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    #[command(flatten)]
+    out: OutputArgs,
+}
+
+fn range(text: &str) -> Result<RangeInclusive<usize>, String> {
+    let number = |text: &str| text.trim().parse::<usize>().ok();
+    let ends = match text.split_once("..") {
+        Some((low, high)) => number(low).zip(number(high.trim_start_matches('='))),
+        None => number(text).map(|k| (k, k)),
+    };
+    // A census of more takes long: 4 to that power.
+    const MOST: usize = 6;
+    match ends {
+        Some((low, high)) if (1..=high).contains(&low) && high <= MOST => Ok(low..=high),
+        _ => Err(format!("it must be a number or A..B, within 1 to {MOST}")),
+    }
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    const MOST: usize = 10_000_000;
+    let count = text
+        .parse::<usize>()
+        .ok()
+        .filter(|n| (1..=MOST).contains(n));
+    count.ok_or_else(|| format!("it must be a whole number from 1 to {MOST}"))
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    if !args.scenes.is_empty() {
+        return scenes(args);
+    }
+    let population = Population {
+        seed: args.seed,
+        count: args.random.unwrap_or(0),
+        nodes: args.nodes.clone().unwrap_or(NODES),
+    };
+    if let Some(k) = args.write {
+        return write(args, &population, k);
+    }
+    survey(args, population)
+}
+
+/// Writes one random problem.
+fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> {
+    let (low, high) = population.nodes.clone().into_inner();
+    let head = [format!(
+        "stickslip map --random {} --seed {} --nodes {low}..{high} --write {k}",
+        population.count.max(k + 1),
+        population.seed
+    )];
+    let text = random::text(&population.draw(k).problem, &head);
+    match &args.output {
+        Some(path) if path.as_os_str() != "-" => {
+            files::write(path, &text, args.out.force)?;
+            tell(&format!("wrote {}", path.display()));
+        }
+        _ => say(&text)?,
+    }
+    Ok(Exit::Good)
+}
+
+/// Runs scenes over settings.
+fn scenes(args: &Args) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
+    let plan = Plan::new(study(args)?)?;
+    let outputs = Outputs::open(&args.out)?;
+    let progress = args.out.progress(plan.increments(), "increments");
+    let watch = Watch {
+        stop: &|| interrupt.came(),
+        done: &|increments| progress.inc(increments),
+    };
+    let kept = args.resume.as_deref();
+    let map = map::run(plan, args.tolerance, kept, args.out.jobs(), &watch);
+    progress.finish_and_clear();
+    let map = map.map_err(|e| Error::Usage(e.to_string()))?;
+    let sent = outputs.write(
+        &map.csv(),
+        || verdict_figure::grid(&map)?.svg(),
+        || verdict_figure::grid(&map)?.png(),
+    )?;
+    if !args.out.quiet {
+        tell_map(&map);
+    }
+    let (all, done) = (map.cells.len(), map.cells.iter().flatten().count());
+    if done < all {
+        tell(&format!("interrupted; {done} of {all} runs were done"));
+    }
+    Ok(match (sent, done == all) {
+        (Sent::Well, true) => Exit::Good,
+        _ => Exit::Interrupted,
+    })
+}
+
+/// What is to be run.
+fn study(args: &Args) -> Result<Study, Error> {
+    let every = || builtin::list().iter().map(|scene| scene.name.to_owned());
+    let mut scenes: Vec<String> = Vec::new();
+    for name in &args.scenes {
+        match name.as_str() {
+            "all" => scenes.extend(every()),
+            name => scenes.push(name.to_owned()),
+        }
+    }
+    let mut vary = strategies(args)?;
+    for over in &args.over {
+        if vary.iter().any(|other| other.path == over.path) {
+            let path = &over.path;
+            return Err(Error::Usage(format!("--over {path}: it is varied twice")));
+        }
+        vary.push(over.clone());
+    }
+    Ok(Study {
+        name: scenes.join(", "),
+        scenes,
+        vary,
+        set: args.set.set.clone(),
+        ..Study::default()
+    })
+}
+
+/// The strategies that are asked for; all, where nothing is varied.
+fn strategies(args: &Args) -> Result<Vec<Vary>, Error> {
+    let values = match args.strategies.as_slice() {
+        [] if !args.over.is_empty() => return Ok(Vec::new()),
+        [] => STRATEGIES.map(str::to_owned).to_vec(),
+        [all] if all == "all" => STRATEGIES.map(str::to_owned).to_vec(),
+        some => some.to_vec(),
+    };
+    Ok(vec![Vary {
+        path: "settings.strategy".to_owned(),
+        values,
+    }])
+}
+
+/// The map as grids of glyphs.
+fn tell_map(map: &Map) {
+    tell(&map.title);
+    for panel in map.panels() {
+        if !panel.name.is_empty() {
+            tell(&format!("\n{}", panel.name));
+        }
+        let mut table = vec![vec![format!("{} \\ {}", panel.y, panel.x)]];
+        table[0].extend(panel.columns.iter().cloned());
+        for (name, cells) in panel.rows.iter().zip(&panel.cells) {
+            let mut row = vec![name.clone()];
+            let label = |k: &usize| map.cells[*k].as_ref().map_or("?".to_owned(), Cell::label);
+            row.extend(cells.iter().map(label));
+            // Scenes with settings of their own may have fewer.
+            row.resize(panel.columns.len() + 1, String::new());
+            table.push(row);
+        }
+        for line in aligned(&table, panel.columns.len() + 1) {
+            tell(&line);
+        }
+    }
+    tell(
+        "\n✓C converged   ≠W wrong branch   ↺ cycle and its period   ↗D diverged   ∅N said to have no answer\n\
+         ✗ failed: m minor limit, M major limit, s singular, j jammed",
+    );
+    for line in map.origin() {
+        tell(&line);
+    }
+}
+
+/// Tries all random problems with all variants.
+fn survey(args: &Args, population: Population) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
+    let outputs = Outputs::open(&args.out)?;
+    let progress = args.out.progress(population.count as u64, "problems");
+    let watch = Watch {
+        stop: &|| interrupt.came(),
+        done: &|problems| progress.inc(problems),
+    };
+    let survey = Survey::run(
+        population,
+        variants(args),
+        args.resume.as_deref(),
+        args.out.jobs(),
+        &watch,
+    );
+    progress.finish_and_clear();
+    let survey = survey.map_err(|e| Error::Usage(e.to_string()))?;
+    let sent = outputs.write(
+        &survey.csv(),
+        || verdict_figure::bars(&survey)?.svg(),
+        || verdict_figure::bars(&survey)?.png(),
+    )?;
+    if !args.out.quiet {
+        tell_survey(&survey);
+    }
+    let done = survey.done().count();
+    let left = survey.population.count - done;
+    if left > 0 {
+        let all = survey.population.count;
+        tell(&format!("interrupted; {done} of {all} problems were done"));
+    }
+    Ok(match (sent, left) {
+        (Sent::Well, 0) => Exit::Good,
+        _ => Exit::Interrupted,
+    })
+}
+
+/// What is varied, each combination named by its values.
+fn variants(args: &Args) -> Vec<Variant> {
+    let mut over = args.over.clone();
+    if over.is_empty() {
+        over.push(Vary {
+            path: "settings.t_max".to_owned(),
+            values: vec!["lagged".to_owned(), "consistent".to_owned()],
+        });
+    }
+    let named = |varied: Vec<(String, String)>| {
+        let values: Vec<&str> = varied.iter().map(|(_, value)| value.as_str()).collect();
+        Variant {
+            name: values.join(" "),
+            settings: [args.set.set.clone(), varied].concat(),
+        }
+    };
+    product(&over).into_iter().map(named).collect()
+}
+
+fn tell_survey(survey: &Survey) {
+    let all: Vec<&Judged> = survey.done().map(|(_, judged)| judged).collect();
+    let count = |is: &dyn Fn(&Judged) -> bool| all.iter().filter(|judged| is(judged)).count();
+    for line in survey.origin() {
+        tell(&line);
+    }
+    let unseen = count(&|j| j.answers == 0 && j.solvable());
+    let besides = match unseen {
+        0 => String::new(),
+        n => format!(
+            " (on {n} of these a strategy found one: of a continuum, which a census does not see)"
+        ),
+    };
+    tell(&format!(
+        "answers by census: one in {}, several in {}, none in {}{besides}",
+        count(&|j| j.answers == 1),
+        count(&|j| j.answers > 1),
+        count(&|j| j.answers == 0),
+    ));
+    let heads = [
+        "solved", "wrong", "cycle", "failed", "none?", "| none!", "wrong", "other",
+    ];
+    let mut table = vec![
+        ["strategy"]
+            .iter()
+            .chain(&heads)
+            .map(|h| h.to_string())
+            .collect(),
+    ];
+    for (v, variant) in survey.variants.iter().enumerate() {
+        let tally = survey.tally(v, |_| true);
+        let mut row = vec![variant.name.clone()];
+        for count in [
+            tally.solved,
+            tally.wrong,
+            tally.cycled,
+            tally.failed,
+            tally.denied,
+        ] {
+            row.push(format!("{:.1}", tally.per_thousand(count)));
+        }
+        row.push(format!("| {}", tally.admitted));
+        row.push(tally.invented.to_string());
+        row.push((tally.unsolvable - tally.admitted - tally.invented).to_string());
+        table.push(row);
+    }
+    for line in aligned(&table, 1) {
+        tell(&line);
+    }
+    let tally = survey.tally(0, |_| true);
+    tell(&format!(
+        "left: per 1,000 of the {} problems that have an answer (none?: said to have none; wrong: ended in no Coulomb \
+         state, off by more than {TOLERANCE:e}); right of the bar: numbers of the {} that have none",
+        tally.solvable, tally.unsolvable
+    ));
+}

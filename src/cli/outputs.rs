@@ -1,0 +1,143 @@
+//! What all sweeps share: where their tables and pictures go, their progress, and tables for people.
+
+use super::Error;
+use super::sink::{Sent, Sink};
+use crate::debug::files::Output;
+use crate::study::plot::PlotError;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal, Write};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use unicode_width::UnicodeWidthStr;
+
+/// What a sweep writes, and how it runs.
+#[derive(Debug, clap::Args)]
+pub struct OutputArgs {
+    /// Writes the results as a table; - is standard output
+    #[arg(long, value_name = "FILE|-")]
+    csv: Option<String>,
+    /// Draws the figure
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Draws the figure as a bitmap
+    #[arg(long, value_name = "FILE")]
+    png: Option<PathBuf>,
+    /// Runs at the same time [default: one per core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZeroUsize>,
+    /// Overwrites files that exist
+    #[arg(long)]
+    pub force: bool,
+    /// Prints nothing but warnings and errors
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl OutputArgs {
+    /// Runs at the same time.
+    pub fn jobs(&self) -> NonZeroUsize {
+        let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        self.jobs.unwrap_or_else(cores)
+    }
+
+    /// A bar on a terminal that says how far all runs together are, in units of that name.
+    pub fn progress(&self, length: u64, unit: &str) -> ProgressBar {
+        let target = match !self.quiet && io::stderr().is_terminal() {
+            true => ProgressDrawTarget::stderr(),
+            false => ProgressDrawTarget::hidden(),
+        };
+        let bar = ProgressBar::with_draw_target(Some(length), target);
+        let shape = format!("{{wide_bar}} {{pos}} of {{len}} {unit}, {{eta}} left");
+        match ProgressStyle::with_template(&shape) {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+}
+
+/// Files in the making: opened before anything runs, so that nobody waits for a result that then has no place to go.
+pub struct Outputs {
+    csv: Option<Sink>,
+    svg: Option<Output>,
+    png: Option<Output>,
+}
+
+impl Outputs {
+    /// Opens all that is wanted.
+    ///
+    /// # Errors
+    /// If one exists already and may not be overwritten, cannot be written, or is named twice.
+    pub fn open(args: &OutputArgs) -> Result<Outputs, Error> {
+        let named = [
+            args.csv.as_deref().filter(|to| *to != "-").map(Path::new),
+            args.svg.as_deref(),
+            args.png.as_deref(),
+        ];
+        let named: Vec<&Path> = named.into_iter().flatten().collect();
+        for (k, name) in named.iter().enumerate() {
+            if named[..k].contains(name) {
+                return Err(Error::Usage(format!(
+                    "{}: only one of --csv, --svg and --png can go there",
+                    name.display()
+                )));
+            }
+        }
+        let output = |path: &PathBuf| Output::create(path, args.force);
+        let csv = args.csv.as_deref().map(|to| Sink::open(to, args.force));
+        Ok(Outputs {
+            csv: csv.transpose()?,
+            svg: args.svg.as_ref().map(output).transpose()?,
+            png: args.png.as_ref().map(output).transpose()?,
+        })
+    }
+
+    /// Writes all that is wanted; a picture is drawn only then.
+    ///
+    /// # Errors
+    /// If it cannot be written or drawn.
+    pub fn write(
+        self,
+        table: &str,
+        svg: impl FnOnce() -> Result<String, PlotError>,
+        png: impl FnOnce() -> Result<Vec<u8>, PlotError>,
+    ) -> Result<Sent, Error> {
+        let mut sent = Sent::Well;
+        // The numbers first: they are kept even if a figure cannot be drawn.
+        if let Some(mut sink) = self.csv {
+            sent = sink.send(table)?;
+            sink.finish()?;
+        }
+        let undrawn = |e: PlotError| Error::Usage(e.to_string());
+        if let Some(output) = self.svg {
+            write(output, svg().map_err(undrawn)?.as_bytes())?;
+        }
+        if let Some(output) = self.png {
+            write(output, &png().map_err(undrawn)?)?;
+        }
+        Ok(sent)
+    }
+}
+
+fn write(mut output: Output, bytes: &[u8]) -> Result<(), Error> {
+    output.write_all(bytes).map_err(|e| output.failed(e))?;
+    Ok(output.finish()?)
+}
+
+/// Lines of a table: the first columns, so many, and the last one to the left, numbers to the right.
+pub fn aligned(table: &[Vec<String>], first: usize) -> Vec<String> {
+    let columns = table.first().map_or(0, Vec::len);
+    let width = |k: usize| table.iter().map(|row| row[k].width()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let cell = |k: usize, text: &String| {
+        let blanks = " ".repeat(widths[k] - text.width());
+        match k < first || k + 1 == columns {
+            true => format!("{text}{blanks}"),
+            false => format!("{blanks}{text}"),
+        }
+    };
+    let line = |row: &Vec<String>| {
+        let cells: Vec<String> = row.iter().enumerate().map(|(k, t)| cell(k, t)).collect();
+        cells.join("  ").trim_end().to_owned()
+    };
+    table.iter().map(line).collect()
+}

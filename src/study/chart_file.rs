@@ -1,0 +1,208 @@
+//! A work-precision chart as its author writes it, and those that the program carries.
+//!
+//! ```ron
+//! (
+//!     scene: "04-cantilever-rigid-circle",
+//!     set: [("history.increment", 0.25)],                     // for all runs
+//!     monitors: ["u_x"],                                      // whose error counts; default: all displacements
+//!     finest: [("refine", 8)],                                // the reference; default: the program's table, else the finest
+//!     series: [
+//!         (name: "mesh", vary: [("refine", [1, 2, 4])]),
+//!         (name: "mesh, 9-node elements", vary: [("refine", [1, 2])], set: [("nodes.beam.per_element", 9)]),
+//!     ],
+//! )
+//! ```
+
+use super::read::{Vary, Word, parse, vary};
+use super::reference::Reference;
+use crate::scene::error::SceneError;
+use crate::scene::{Scene, builtin};
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// A chart before anything is run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    pub title: String,
+    /// As `Scene::open` takes it.
+    pub scene: String,
+    /// What is set for all runs: path and value.
+    pub set: Vec<(String, String)>,
+    /// Monitors whose error counts; none: all displacements.
+    pub monitors: Vec<String>,
+    pub truth: Truth,
+    pub series: Vec<Series>,
+}
+
+/// What runs are measured against.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Truth {
+    /// The table that the program carries for the scene.
+    Builtin,
+    Table(PathBuf),
+    /// A run with these settings.
+    Run(Vec<(String, String)>),
+    /// The run with most unknowns, and of these with most increments.
+    Finest,
+}
+
+/// Runs that are drawn as one line: the product of what is varied.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    pub name: String,
+    pub vary: Vec<Vary>,
+    pub set: Vec<(String, String)>,
+}
+
+macro_rules! charts {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../problems/charts/", $name, ".ron")))),*]
+    };
+}
+
+/// Charts of built-in scenes, by the scene's name.
+const CHARTS: &[(&str, &str)] = charts![
+    "01-pinned-beam-rough-floor",
+    "02-two-cantilevers-smooth",
+    "02-two-cantilevers-rough",
+    "03-distant-cantilevers",
+    "04-cantilever-rigid-circle",
+    "05-cantilever-elastic-block",
+    "05-cantilever-elastic-block-swapped",
+    "osc-inclined-cantilever",
+];
+
+/// Names of the scenes that have a chart of their own.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    CHARTS.iter().map(|(name, _)| *name)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    scene: String,
+    #[serde(default)]
+    set: Vec<(String, Word)>,
+    #[serde(default)]
+    monitors: Vec<String>,
+    #[serde(default)]
+    finest: Vec<(String, Word)>,
+    series: Vec<FileSeries>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileSeries {
+    name: String,
+    #[serde(default)]
+    vary: Vec<(String, Vec<Word>)>,
+    #[serde(default)]
+    set: Vec<(String, Word)>,
+}
+
+fn pairs(words: Vec<(String, Word)>) -> Vec<(String, String)> {
+    words
+        .into_iter()
+        .map(|(path, word)| (path, word.0))
+        .collect()
+}
+
+impl Chart {
+    /// The chart of a scene: the one that the program carries for it, else of the increments and meshes that every scene
+    /// has; with `over`, of the product of that alone.
+    ///
+    /// # Errors
+    /// If there is no such scene.
+    pub fn open(name: &str, over: &[Vary]) -> Result<Chart, SceneError> {
+        let scene = Scene::open(name, &[])?;
+        let known = CHARTS.iter().find(|(own, _)| *own == scene.name);
+        let mut chart = match known {
+            Some((own, text)) => Chart::from_text(own, text)?,
+            None => Chart {
+                title: String::new(),
+                scene: name.to_owned(),
+                set: Vec::new(),
+                monitors: Vec::new(),
+                truth: truth(&scene.name),
+                series: any(),
+            },
+        };
+        chart.title.clone_from(&scene.spec.title);
+        if !over.is_empty() {
+            let paths: Vec<&str> = over.iter().map(|vary| vary.path.as_str()).collect();
+            chart.series = vec![Series {
+                name: paths.join(", "),
+                vary: over.to_vec(),
+                set: Vec::new(),
+            }];
+            chart.set.clear();
+            chart.truth = truth(&scene.name);
+        }
+        Ok(chart)
+    }
+
+    /// Reads a chart from a text; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// If it cannot be read, with line and column.
+    pub fn from_text(name: &str, text: &str) -> Result<Chart, SceneError> {
+        let file: File = parse(name, text)?;
+        let series = |series: FileSeries| Series {
+            name: series.name,
+            vary: vary(series.vary),
+            set: pairs(series.set),
+        };
+        Ok(Chart {
+            title: String::new(),
+            truth: match file.finest.is_empty() {
+                true => truth(&file.scene),
+                false => Truth::Run(pairs(file.finest)),
+            },
+            scene: file.scene,
+            set: pairs(file.set),
+            monitors: file.monitors,
+            series: file.series.into_iter().map(series).collect(),
+        })
+    }
+}
+
+/// The best truth there is about a scene. A file of one's own is not the built-in scene that it is called like.
+fn truth(scene: &str) -> Truth {
+    let builtin = builtin::find(scene).is_some() && !std::path::Path::new(scene).is_file();
+    match builtin && Reference::builtin(scene, &[]).is_some() {
+        true => Truth::Builtin,
+        false => Truth::Finest,
+    }
+}
+
+/// What can be varied in every scene.
+fn any() -> Vec<Series> {
+    let one = |name: &str, path: &str, values: &[&str]| Series {
+        name: name.to_owned(),
+        vary: vec![Vary {
+            path: path.to_owned(),
+            values: values.iter().map(|v| v.to_string()).collect(),
+        }],
+        set: Vec::new(),
+    };
+    vec![
+        one("mesh", "refine", &["1", "2", "4"]),
+        one("increment", "history.increment", &["1x", "0.5x", "0.25x"]),
+        one("T_max", "settings.t_max", &["lagged", "consistent"]),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_chart_is_sound() {
+        for name in names() {
+            let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
+            let plans = super::super::precision::plans(&chart).unwrap_or_else(|e| panic!("{e}"));
+            assert!(plans.iter().all(|plan| !plan.cases.is_empty()), "{name}");
+            assert!(!chart.title.is_empty());
+        }
+    }
+}

@@ -1,0 +1,423 @@
+//! A stability map of scenes: a cell for each combination of settings.
+//!
+//! A run that goes to its end may have gone there on a wrong branch. Its end is compared with that of a reference: of
+//! all runs that differ from it in nothing but how they are computed (`settings.…`, `history.increment`), the one with the
+//! smallest increment that went to the end with every loop settled; among equals the one whose strategy is the default, then
+//! the first. Where that is itself wrong, the map is; it names its references. Where there is nothing to compare with, a run
+//! that went to the end counts as converged, and the table says that it was not compared.
+
+use super::figure::{label, short_names};
+use super::log::{Log, key};
+use super::origin;
+use super::plan::{Case, Plan};
+use super::result::{End, Run};
+use super::run::{RunError, Watch, one, pool};
+use super::verdict::Verdict;
+use crate::scene::model::{Model, Watched};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+/// Ends of two runs that differ by more than this part of the largest value are on different branches, where nobody
+/// says otherwise.
+pub const TOLERANCE: f64 = 1e-2;
+
+/// The strategy of a scene that names none.
+const DEFAULT_STRATEGY: &str = "ladder";
+
+/// What a run came to, as far as a map needs it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Ended {
+    /// What it failed by, in which increment, at which load factor; none where it went to the end.
+    pub failed: Option<(Verdict, u32, f64)>,
+    pub increments: u64,
+    pub majors: u64,
+    pub minors: u64,
+    /// Increments that were accepted although a loop had not settled.
+    pub unsettled: u64,
+    /// What is compared, one a monitor.
+    pub monitors: Vec<Seen>,
+}
+
+/// A monitor of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Seen {
+    pub name: String,
+    pub kind: Kind,
+    /// Its value in the end, and the largest magnitude that it ever had.
+    pub end: f64,
+    pub largest: f64,
+}
+
+/// What a monitor is: those of one kind have one scale.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Kind {
+    Length,
+    Rotation,
+    Force,
+    /// A length that is a measure of error, and is not compared.
+    Drift,
+}
+
+/// A cell of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    pub ended: Ended,
+    pub verdict: Verdict,
+    /// The case that it was compared with (its own number: it is a reference), and the largest difference of a monitor
+    /// of its end, over the largest value of that kind.
+    pub reference: Option<(usize, f64)>,
+}
+
+/// A stability map.
+#[derive(Debug, Clone)]
+pub struct Map {
+    pub plan: Plan,
+    pub title: String,
+    /// Differences above it are wrong branches.
+    pub tolerance: f64,
+    /// One a case of the plan; none where it was stopped before.
+    pub cells: Vec<Option<Cell>>,
+}
+
+/// A grid of cells: the last column of the plan runs to the right, the one before it downwards.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Panel {
+    /// What all of its cells have in common; may be empty.
+    pub name: String,
+    /// Names of what runs to the right and downwards.
+    pub x: String,
+    pub y: String,
+    pub columns: Vec<String>,
+    pub rows: Vec<String>,
+    /// Numbers of cases, row by row.
+    pub cells: Vec<Vec<usize>>,
+}
+
+impl Ended {
+    /// What a run came to; none where it was stopped from outside.
+    pub fn of(run: &Run, model: &Model) -> Option<Ended> {
+        let failed = match &run.end {
+            End::Finished => None,
+            End::Failed(failed) => Some((failed.verdict, failed.increment, failed.load)),
+            End::Interrupted | End::NotRun => return None,
+        };
+        let monitor = |k: usize| {
+            let value = |row: &super::Row| row.monitors.get(k).copied().unwrap_or(0.0);
+            let all = std::iter::once(&run.start).chain(&run.rows);
+            Seen {
+                name: run.monitors[k].clone(),
+                kind: kind(model, &model.monitors[k].of),
+                end: value(run.last()),
+                largest: all.map(|row| value(row).abs()).fold(0.0, f64::max),
+            }
+        };
+        Some(Ended {
+            failed,
+            increments: run.rows.len() as u64,
+            majors: run.majors(),
+            minors: run.minors(),
+            unsettled: run.unsettled() as u64,
+            monitors: (0..run.monitors.len()).map(monitor).collect(),
+        })
+    }
+
+    /// Largest difference of a monitor's end to that of a reference, over the largest value of its kind in the
+    /// reference's run; infinite where something is no number.
+    pub fn difference(&self, reference: &Ended) -> f64 {
+        let scale = |kind: Kind| {
+            let of_kind = reference.monitors.iter().filter(|m| m.kind == kind);
+            of_kind.map(|m| m.largest).fold(f64::MIN_POSITIVE, f64::max)
+        };
+        let differences = reference
+            .monitors
+            .iter()
+            .filter(|m| m.kind != Kind::Drift)
+            .map(|theirs| {
+                let ours = self.monitors.iter().find(|m| m.name == theirs.name);
+                let difference = ours.map_or(f64::INFINITY, |ours| {
+                    (ours.end - theirs.end).abs() / scale(theirs.kind)
+                });
+                if difference.is_nan() {
+                    f64::INFINITY
+                } else {
+                    difference
+                }
+            });
+        differences.fold(0.0, f64::max)
+    }
+}
+
+/// What a monitor is.
+pub fn kind(model: &Model, watched: &Watched) -> Kind {
+    match watched {
+        Watched::Displacement { dof } => {
+            // The rotation is the third of a node.
+            let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
+            match (0..model.nodes.len()).any(turns) {
+                true => Kind::Rotation,
+                false => Kind::Length,
+            }
+        }
+        Watched::Contact { .. } | Watched::Reaction { .. } => Kind::Force,
+        Watched::Drift { .. } => Kind::Drift,
+    }
+}
+
+impl Cell {
+    /// Its glyph; for a cycle with the period, for a failure with the letter of its reason.
+    pub fn label(&self) -> String {
+        let glyph = self.verdict.glyph();
+        match self.verdict {
+            Verdict::Cycle { period, .. } => format!("{glyph}{period}"),
+            Verdict::Failed(reason) => format!("{glyph}{}", reason.letter()),
+            _ => format!("{glyph}{}", self.verdict.letter()),
+        }
+    }
+}
+
+/// Runs the cases of a plan. With a file, what is kept there is not run again, and what is run is kept there.
+///
+/// # Errors
+/// If there are no threads to be had, or the file will not do. What fails in a run is its result.
+pub fn run(
+    plan: Plan,
+    tolerance: f64,
+    kept: Option<&Path>,
+    jobs: NonZeroUsize,
+    watch: &Watch,
+) -> Result<Map, RunError> {
+    let opened = kept.map(Log::open::<Ended>).transpose()?;
+    let ended = |case: &Case| -> Result<Option<Ended>, RunError> {
+        let key = key(case.identity());
+        if let Some((_, found)) = &opened
+            && let Some(ended) = found.get(&key)
+        {
+            (watch.done)(case.increments);
+            return Ok(Some(ended.clone()));
+        }
+        let model = case.open()?.model;
+        let ended = Ended::of(&one(case, watch)?, &model);
+        if let (Some((log, _)), Some(ended)) = (&opened, &ended) {
+            log.keep(&key, ended)?;
+        }
+        Ok(ended)
+    };
+    let pool = pool(jobs, plan.cases.len())?;
+    let all: Result<Vec<Option<Ended>>, RunError> = pool.install(|| {
+        // One by one: cases differ much in what they cost, and the first ones are to be done first.
+        plan.cases.par_iter().with_max_len(1).map(ended).collect()
+    });
+    Ok(Map::judged(plan, tolerance, all?))
+}
+
+impl Map {
+    /// Compares ends.
+    pub fn judged(plan: Plan, tolerance: f64, ended: Vec<Option<Ended>>) -> Map {
+        let mut groups: HashMap<Vec<&str>, Vec<usize>> = HashMap::new();
+        for (k, case) in plan.cases.iter().enumerate() {
+            groups.entry(plan.posed(case)).or_default().push(k);
+        }
+        let mut references = vec![None; plan.cases.len()];
+        for members in groups.values() {
+            let reference = reference(&plan, members, &ended);
+            // A run alone has nothing to be compared with, not even itself.
+            if members.len() > 1 {
+                members.iter().for_each(|&k| references[k] = reference);
+            }
+        }
+        let cell = |k: usize| -> Option<Cell> {
+            let own = ended[k].as_ref()?;
+            let compared =
+                references[k].and_then(|r: usize| Some((r, own.difference(ended[r].as_ref()?))));
+            let verdict = match (own.failed, compared) {
+                (Some((verdict, ..)), _) => verdict,
+                (None, Some((_, difference))) if difference > tolerance => Verdict::Wrong,
+                (None, _) => Verdict::Right,
+            };
+            Some(Cell {
+                verdict,
+                reference: compared.filter(|_| own.failed.is_none()),
+                ended: own.clone(),
+            })
+        };
+        let cells = (0..plan.cases.len()).map(cell).collect();
+        Map {
+            title: title(&plan),
+            plan,
+            tolerance,
+            cells,
+        }
+    }
+
+    /// The map as grids.
+    pub fn panels(&self) -> Vec<Panel> {
+        let names = short_names(&self.plan.columns);
+        let count = names.len();
+        let mut panels: Vec<Panel> = Vec::new();
+        for (k, case) in self.plan.cases.iter().enumerate() {
+            let inner = count.min(2);
+            let (outer, inner) = case.values.split_at(count - inner);
+            let name = label(&names[..outer.len()], outer);
+            let (row, column) = match inner {
+                [] => (String::new(), String::new()),
+                [column] => (String::new(), column.clone()),
+                [row, column, ..] => (row.clone(), column.clone()),
+            };
+            if panels.last().is_none_or(|panel| panel.name != name) {
+                let axis = |back: usize| count.checked_sub(back).map(|k| names[k].clone());
+                panels.push(Panel {
+                    name,
+                    x: axis(1).unwrap_or_default(),
+                    y: axis(2).unwrap_or_default(),
+                    columns: Vec::new(),
+                    rows: Vec::new(),
+                    cells: Vec::new(),
+                });
+            }
+            let Some(panel) = panels.last_mut() else {
+                continue;
+            };
+            if panel.rows.last() != Some(&row) {
+                panel.rows.push(row);
+                panel.cells.push(Vec::new());
+            }
+            if !panel.columns.contains(&column) {
+                panel.columns.push(column);
+            }
+            if let Some(cells) = panel.cells.last_mut() {
+                cells.push(k);
+            }
+        }
+        panels
+    }
+
+    /// What it was made from, and by what.
+    pub fn origin(&self) -> Vec<String> {
+        let study = &self.plan.study;
+        let mut made = match study.scenes.len() {
+            0..=4 => format!("Scene: {}", study.scenes.join(", ")),
+            n => format!("{n} scenes"),
+        };
+        for (path, value) in &study.set {
+            made += &format!("; {path}={value}");
+        }
+        for vary in &study.vary {
+            made += &format!("; {} over {}", vary.path, vary.values.join(", "));
+        }
+        let mut named: Vec<usize> = self
+            .cells
+            .iter()
+            .flatten()
+            .filter_map(|c| Some(c.reference?.0))
+            .collect();
+        named.sort_unstable();
+        named.dedup();
+        const SHOWN: usize = 4;
+        let names: Vec<String> = named.iter().take(SHOWN).map(|&k| self.name(k)).collect();
+        let more = match named.len().saturating_sub(SHOWN) {
+            0 => String::new(),
+            n => format!(" and {n} more (the table has them)"),
+        };
+        let compared = match names.is_empty() {
+            true => "Nothing was compared: no two runs pose the same problem.".to_owned(),
+            false => format!(
+                "Ends are compared with those of {}{more}; wrong: a monitor differs by more than {} of the largest value \
+                 of its kind.",
+                names.join("; "),
+                self.tolerance
+            ),
+        };
+        vec![
+            made,
+            compared,
+            format!("{} on {}", origin::program(), origin::machine()),
+        ]
+    }
+
+    /// What tells a case from the others.
+    pub fn name(&self, case: usize) -> String {
+        let names = short_names(&self.plan.columns);
+        label(&names, &self.plan.cases[case].values)
+    }
+
+    /// A row for each cell, after lines that say what it is.
+    pub fn csv(&self) -> String {
+        let mut text: String = self
+            .origin()
+            .iter()
+            .map(|line| format!("# {line}\n"))
+            .collect();
+        let words = [
+            "verdict",
+            "detail",
+            "failed_increment",
+            "failed_load",
+            "increments",
+            "majors",
+            "minors",
+            "unsettled",
+            "difference",
+            "reference",
+        ];
+        let heads = self.plan.columns.iter().map(String::as_str).chain(words);
+        text += &(heads.collect::<Vec<_>>().join(",") + "\n");
+        for (case, cell) in self.plan.cases.iter().zip(&self.cells) {
+            let Some(cell) = cell else { continue };
+            let Ended {
+                failed,
+                increments,
+                majors,
+                minors,
+                unsettled,
+                ..
+            } = &cell.ended;
+            for value in &case.values {
+                text += &(super::csv::field(value) + ",");
+            }
+            let (increment, load) = match failed {
+                Some((_, increment, load)) => (increment.to_string(), format!("{load:?}")),
+                None => Default::default(),
+            };
+            let (difference, reference) = match cell.reference {
+                Some((k, difference)) => {
+                    (format!("{difference:?}"), super::csv::field(&self.name(k)))
+                }
+                None => Default::default(),
+            };
+            // Writing to a string does not fail.
+            let _ = writeln!(
+                text,
+                "{},{},{increment},{load},{increments},{majors},{minors},{unsettled},{difference},{reference}",
+                cell.verdict.word(),
+                cell.verdict.detail(),
+            );
+        }
+        text
+    }
+}
+
+/// The case among some that the others are compared with.
+fn reference(plan: &Plan, members: &[usize], ended: &[Option<Ended>]) -> Option<usize> {
+    let sound = |k: &usize| {
+        let ended = ended[*k].as_ref();
+        ended.is_some_and(|e| e.failed.is_none() && e.unsettled == 0)
+    };
+    let rank = |k: &usize| {
+        let case = &plan.cases[*k];
+        let strategy = case.value("settings.strategy");
+        let other = strategy.is_some_and(|strategy| strategy != DEFAULT_STRATEGY);
+        (std::cmp::Reverse(case.increments), other, *k)
+    };
+    members.iter().copied().filter(sound).min_by_key(rank)
+}
+
+fn title(plan: &Plan) -> String {
+    match plan.study.scenes.as_slice() {
+        [_] => format!("Stability of “{}”", plan.title),
+        scenes => format!("Stability of {} scenes", scenes.len()),
+    }
+}

@@ -1,0 +1,27 @@
+//! Where results come from: the program's revision, and the machine.
+
+/// The revision that the program was built from, as whoever built it said (`STICKSLIP_REVISION=$(git describe --always
+/// --dirty) cargo build`); a build cannot know it by itself without being tied to a work tree.
+pub const REVISION: &str = match option_env!("STICKSLIP_REVISION") {
+    Some(revision) => revision,
+    None => "revision unknown",
+};
+
+/// The program and its revision.
+pub fn program() -> String {
+    format!("stickslip {} ({REVISION})", env!("CARGO_PKG_VERSION"))
+}
+
+/// The processor's name, where the system tells it, else its kind; and the number of cores.
+pub fn machine() -> String {
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = told.lines().find_map(|line| {
+        let (field, value) = line.split_once(':')?;
+        (field.trim() == "model name").then(|| value.trim().to_owned())
+    });
+    let (system, kind) = (std::env::consts::OS, std::env::consts::ARCH);
+    let name = name.filter(|name| !name.is_empty());
+    let name = name.unwrap_or_else(|| kind.to_owned());
+    format!("{name}, {cores} cores, {system}/{kind}")
+}

@@ -1,0 +1,693 @@
+//! Work against precision: what a setting costs, and how far it is from the truth.
+//!
+//! A chart has series of runs of one scene. Each run's **error** is the largest difference of a monitor to the
+//! reference's, over the reference's largest value of that kind (length, rotation, force), at those loads that the reference
+//! and every run that went to its end have in common; a run that failed has none. Its **cost** is the processor time of its
+//! thread, from the made scene to the end of the history (the median of some repetitions), its factorizations (as the
+//! stepper makes them: one a major iteration where it condenses, else one a minor), and its minor iterations. Of the runs
+//! that went to the end, those that no other one beats in both are the **front**.
+
+use super::chart_file::{Chart, Truth};
+use super::figure::{label, short_names};
+use super::map::{Kind, kind};
+use super::origin;
+use super::plan::{Case, Plan};
+use super::read::Study;
+use super::reference::{self, Reference};
+use super::result::{End, Run};
+use super::run::{Watch, one};
+use crate::scene::SceneError;
+use crate::scene::model::Model;
+use crate::solve::system::condenses;
+use rustix::time::{ClockId, clock_gettime};
+use std::collections::HashMap;
+use std::fmt::Write;
+
+/// Runs that take this long altogether (seconds) are not repeated any more.
+const LONG: f64 = 20.0;
+
+/// A work-precision chart of one scene.
+#[derive(Debug, Clone)]
+pub struct Precision {
+    pub scene: String,
+    pub title: String,
+    /// The monitors whose errors count.
+    pub monitors: Vec<String>,
+    /// What it was made from, and by what.
+    pub about: Vec<String>,
+    /// Names of the series.
+    pub series: Vec<String>,
+    pub points: Vec<Point>,
+    pub cost: Cost,
+    /// The error that is wanted, if any.
+    pub target: Option<f64>,
+    /// Runs that were planned; more than `points` where it was stopped.
+    pub planned: usize,
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Number of its series.
+    pub series: usize,
+    /// What tells it from the others of its series.
+    pub name: String,
+    /// The same in full, as one would set it.
+    pub settings: Vec<(String, String)>,
+    /// Median processor time (seconds), of so many repetitions.
+    pub seconds: f64,
+    pub repeats: usize,
+    pub factorizations: u64,
+    pub majors: u64,
+    pub minors: u64,
+    pub increments: u64,
+    /// Number of equations of the bodies.
+    pub unknowns: usize,
+    /// Why it did not get to its end; none where it did.
+    pub failed: Option<String>,
+    /// Increments that were accepted although a loop had not settled.
+    pub unsettled: usize,
+    /// None where it failed, or where it is itself the reference.
+    pub error: Option<f64>,
+    /// Whether it is itself the reference.
+    pub reference: bool,
+    /// No other run is both cheaper and nearer.
+    pub front: bool,
+}
+
+/// What is counted as cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Cost {
+    #[default]
+    Time,
+    Factorizations,
+    Minors,
+}
+
+impl Cost {
+    /// The words of `--cost`.
+    pub const WORDS: [&'static str; 3] = ["time", "factorizations", "minors"];
+
+    /// The cost of that name.
+    pub fn named(word: &str) -> Option<Cost> {
+        let k = Cost::WORDS.iter().position(|own| *own == word)?;
+        Some([Cost::Time, Cost::Factorizations, Cost::Minors][k])
+    }
+
+    /// What an axis of it is called.
+    pub fn axis(self) -> &'static str {
+        match self {
+            Cost::Time => "processor time (s)",
+            Cost::Factorizations => "factorizations",
+            Cost::Minors => "minor iterations",
+        }
+    }
+
+    /// That of a run.
+    pub fn of(self, point: &Point) -> f64 {
+        match self {
+            Cost::Time => point.seconds,
+            Cost::Factorizations => point.factorizations as f64,
+            Cost::Minors => point.minors as f64,
+        }
+    }
+}
+
+/// How a chart is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measure {
+    pub cost: Cost,
+    pub target: Option<f64>,
+    /// Repetitions of every run, of which the median time counts.
+    pub repeats: usize,
+}
+
+/// Why a chart could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PrecisionError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error("{0}")]
+    Reference(String),
+}
+
+/// A run with what it is compared by.
+struct Measured {
+    point: Point,
+    run: Run,
+    kinds: Vec<Kind>,
+    path: Vec<f64>,
+}
+
+/// All series of a chart as plans.
+///
+/// # Errors
+/// If a path or a value will not do.
+pub fn plans(chart: &Chart) -> Result<Vec<Plan>, SceneError> {
+    let plan = |series: &super::chart_file::Series| {
+        Plan::new(Study {
+            name: chart.scene.clone(),
+            scenes: vec![chart.scene.clone()],
+            vary: series.vary.clone(),
+            set: [chart.set.clone(), series.set.clone()].concat(),
+            ..Study::default()
+        })
+    };
+    chart.series.iter().map(plan).collect()
+}
+
+/// Runs all of a chart, one run at a time.
+///
+/// # Errors
+/// If a scene will not open, or the reference will not do.
+pub fn run(
+    chart: &Chart,
+    plans: &[Plan],
+    measure: Measure,
+    watch: &Watch,
+) -> Result<Precision, PrecisionError> {
+    let mut all: Vec<Measured> = Vec::new();
+    let planned = plans.iter().map(|plan| plan.cases.len()).sum();
+    for (s, plan) in plans.iter().enumerate() {
+        for case in &plan.cases {
+            let names = short_names(&plan.columns);
+            let name = label(&names, &case.values);
+            let settings = plan
+                .columns
+                .iter()
+                .cloned()
+                .zip(case.values.iter().cloned());
+            let settings = [chart.series[s].set.clone(), settings.collect()].concat();
+            let measured = measured(case, s, name, settings, measure.repeats, watch)?;
+            all.extend(measured);
+        }
+    }
+    let (reference, own) = truth(chart, &all, watch)?;
+    let mut precision = Precision {
+        scene: chart.scene.clone(),
+        title: chart.title.clone(),
+        monitors: Vec::new(),
+        about: Vec::new(),
+        series: chart
+            .series
+            .iter()
+            .map(|series| series.name.clone())
+            .collect(),
+        points: Vec::new(),
+        cost: measure.cost,
+        target: measure.target,
+        planned,
+    };
+    if let Some(own) = own {
+        all[own].point.reference = true;
+    }
+    let loads = compare(&mut precision, &mut all, &reference, &chart.monitors)?;
+    precision.points = all.into_iter().map(|measured| measured.point).collect();
+    precision.about = origin(chart, &precision, loads, &reference);
+    mark_front(&mut precision.points, measure.cost);
+    Ok(precision)
+}
+
+/// Runs a case some times; none where it was stopped from outside.
+fn measured(
+    case: &Case,
+    series: usize,
+    name: String,
+    settings: Vec<(String, String)>,
+    repeats: usize,
+    watch: &Watch,
+) -> Result<Option<Measured>, PrecisionError> {
+    let model = case.open()?.model;
+    let quiet = Watch {
+        stop: watch.stop,
+        done: &|_| {},
+    };
+    let (mut times, mut last) = (Vec::new(), None);
+    while times.len() < repeats.max(1) {
+        let start = thread_seconds();
+        let run = one(case, &quiet)?;
+        times.push(thread_seconds() - start);
+        if matches!(run.end, End::Interrupted | End::NotRun) {
+            return Ok(None);
+        }
+        last = Some(run);
+        if times.iter().sum::<f64>() > LONG {
+            break;
+        }
+    }
+    (watch.done)(case.increments);
+    let Some(run) = last else { return Ok(None) };
+    times.sort_by(f64::total_cmp);
+    let failed = run.failed().map(|failed| {
+        let load = super::figure::short(failed.load);
+        format!("{} at load {load}", failed.verdict)
+    });
+    let factorizations = match condenses(&model, &model.settings) {
+        true => run.majors(),
+        false => run.minors(),
+    };
+    let point = Point {
+        series,
+        name,
+        settings,
+        seconds: times[times.len() / 2],
+        repeats: times.len(),
+        factorizations,
+        majors: run.majors(),
+        minors: run.minors(),
+        increments: run.rows.len() as u64,
+        unknowns: model.dofs.equations,
+        failed,
+        unsettled: run.unsettled(),
+        error: None,
+        reference: false,
+        front: false,
+    };
+    Ok(Some(Measured {
+        point,
+        kinds: kinds(&model),
+        path: model.path,
+        run,
+    }))
+}
+
+fn kinds(model: &Model) -> Vec<Kind> {
+    model.monitors.iter().map(|m| kind(model, &m.of)).collect()
+}
+
+/// Processor time of this thread, in seconds.
+fn thread_seconds() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// The reference of a chart; with the number of the run that it is, if it is one of them.
+fn truth(
+    chart: &Chart,
+    all: &[Measured],
+    watch: &Watch,
+) -> Result<(Reference, Option<usize>), PrecisionError> {
+    let path = all.first().map(|m| m.path.clone()).unwrap_or_default();
+    let wrong = PrecisionError::Reference;
+    match &chart.truth {
+        Truth::Table(file) => {
+            let table = Reference::open(file, &path).map_err(wrong)?;
+            Ok((table, None))
+        }
+        Truth::Builtin => {
+            let name = chart.scene.strip_suffix(".ron").unwrap_or(&chart.scene);
+            let known = Reference::builtin(name, &path);
+            let none = || wrong(format!("there is no reference for {name} in the program"));
+            Ok((known.ok_or_else(none)?.map_err(wrong)?, None))
+        }
+        Truth::Run(settings) => {
+            let plan = Plan::new(Study {
+                set: [chart.set.clone(), settings.clone()].concat(),
+                ..Study::of_scene(&chart.scene)
+            })?;
+            let case = plan
+                .cases
+                .first()
+                .ok_or_else(|| wrong("nothing was run".to_owned()))?;
+            let run = one(case, watch)?;
+            let names: Vec<String> = settings
+                .iter()
+                .map(|(path, value)| format!("{path}={value}"))
+                .collect();
+            let name = format!("a run with {}", names.join(", "));
+            match run.end {
+                End::Finished => Ok((Reference::of(&run, name, &path), None)),
+                End::Failed(failed) => Err(wrong(format!(
+                    "the reference, {name}, failed: {}",
+                    failed.verdict
+                ))),
+                _ => Err(wrong(
+                    "it was interrupted before its reference was there".to_owned(),
+                )),
+            }
+        }
+        Truth::Finest => {
+            let whole =
+                |m: &&(usize, &Measured)| m.1.point.failed.is_none() && m.1.point.unsettled == 0;
+            let rank = |m: &(usize, &Measured)| {
+                (m.1.point.unknowns, m.1.point.increments, usize::MAX - m.0)
+            };
+            let finest = all
+                .iter()
+                .enumerate()
+                .filter(|m| whole(&m))
+                .max_by_key(rank);
+            let (k, m) = finest.ok_or_else(|| {
+                wrong("no run went to its end, so that there is nothing to compare with".to_owned())
+            })?;
+            let series = &chart.series[m.point.series].name;
+            let name = format!("the finest run of the set ({series}, {})", m.point.name);
+            Ok((Reference::of(&m.run, name, &m.path), Some(k)))
+        }
+    }
+}
+
+/// Measures all errors; the number of loads at which.
+fn compare(
+    precision: &mut Precision,
+    all: &mut [Measured],
+    reference: &Reference,
+    wanted: &[String],
+) -> Result<usize, PrecisionError> {
+    let Some(first) = all.first() else {
+        return Ok(0);
+    };
+    let names = first.run.monitors.join(", ");
+    let kinds = first.run.monitors.iter().cloned().zip(first.kinds.clone());
+    let kinds: HashMap<String, Kind> = kinds.collect();
+    let kind = |name: &String| kinds.get(name).copied();
+    let counts = |name: &&String| match wanted {
+        [] => kind(name) == Some(Kind::Length),
+        some => some.contains(name) && kind(name).is_some(),
+    };
+    precision.monitors = reference.monitors.iter().filter(counts).cloned().collect();
+    if precision.monitors.is_empty() {
+        return Err(PrecisionError::Reference(format!(
+            "the reference has no monitor to measure by; the scene has {names}"
+        )));
+    }
+    let curve = |m: &Measured| Reference::of(&m.run, String::new(), &m.path);
+    let curves: Vec<Option<Reference>> = all
+        .iter()
+        .map(|m| m.point.failed.is_none().then(|| curve(m)))
+        .collect();
+    let common = |row: &&reference::Point| {
+        let mut whole = curves.iter().flatten();
+        whole.all(|curve| curve.at(row.leg, row.load).is_some())
+    };
+    let rows: Vec<_> = reference.rows.iter().filter(common).collect();
+    if rows.is_empty() {
+        return Err(PrecisionError::Reference(
+            "there is no load that the reference and all runs have in common".to_owned(),
+        ));
+    }
+    let columns: Vec<(usize, &String)> = precision
+        .monitors
+        .iter()
+        .filter_map(|name| Some((reference.monitors.iter().position(|own| own == name)?, name)))
+        .collect();
+    let scale = |wanted: Option<Kind>| {
+        let of_kind = columns.iter().filter(|(_, name)| kind(name) == wanted);
+        let values =
+            of_kind.flat_map(|(k, _)| reference.rows.iter().map(|row| row.values[*k].abs()));
+        values.fold(f64::MIN_POSITIVE, f64::max)
+    };
+    for (measured, curve) in all.iter_mut().zip(&curves) {
+        let Some(curve) = curve.as_ref().filter(|_| !measured.point.reference) else {
+            continue;
+        };
+        let mut error = 0.0_f64;
+        for row in &rows {
+            let Some(own) = curve.at(row.leg, row.load) else {
+                continue;
+            };
+            for (k, name) in &columns {
+                let place = curve.monitors.iter().position(|own| own == *name);
+                let value = place.map_or(f64::NAN, |place| own.values[place]);
+                let part = (value - row.values[*k]).abs() / scale(kind(name));
+                error = if part.is_nan() {
+                    f64::INFINITY
+                } else {
+                    error.max(part)
+                };
+            }
+        }
+        measured.point.error = Some(error);
+    }
+    Ok(rows.len())
+}
+
+/// Marks the runs that none beats in cost and error.
+fn mark_front(points: &mut [Point], cost: Cost) {
+    let measured: Vec<Option<(f64, f64)>> = points
+        .iter()
+        .map(|point| Some((cost.of(point), point.error?)))
+        .collect();
+    let beaten = |(x, y): (f64, f64)| {
+        let better = |&(a, b): &(f64, f64)| a <= x && b <= y && (a < x || b < y);
+        measured.iter().flatten().any(better)
+    };
+    for (point, own) in points.iter_mut().zip(&measured) {
+        point.front = own.is_some_and(|own| !beaten(own));
+    }
+}
+
+impl Precision {
+    /// The cheapest run that is as near as is wanted.
+    pub fn cheapest(&self) -> Option<&Point> {
+        let target = self.target?;
+        let near = self
+            .points
+            .iter()
+            .filter(|p| p.error.is_some_and(|error| error <= target));
+        near.min_by(|a, b| self.cost.of(a).total_cmp(&self.cost.of(b)))
+    }
+
+    /// What there is to say about the wanted error.
+    pub fn verdict(&self) -> Option<String> {
+        let target = self.target?;
+        let meets = |point: &Point| {
+            let series = &self.series[point.series];
+            let cost = super::figure::short(self.cost.of(point));
+            let error = point.error.map(super::figure::short).unwrap_or_default();
+            format!(
+                "The cheapest run with an error of at most {target:?}: {series}, {}: error {error}, {} {cost}.",
+                point.name,
+                self.cost.axis()
+            )
+        };
+        let none = || format!("No run has an error of at most {target:?}.");
+        Some(self.cheapest().map_or_else(none, meets))
+    }
+}
+
+/// What a chart was made from, and by what.
+fn origin(
+    chart: &Chart,
+    precision: &Precision,
+    loads: usize,
+    reference: &Reference,
+) -> Vec<String> {
+    let set: String = chart
+        .set
+        .iter()
+        .map(|(path, value)| format!("; {path}={value}"))
+        .collect();
+    let repeats = precision.points.iter().map(|point| point.repeats).max();
+    vec![
+        format!("Scene: {}{set}", chart.scene),
+        format!(
+            "Error: largest difference of {} over the largest value, at {loads} loads that all whole runs have, to {}",
+            precision.monitors.join(", "),
+            reference.source
+        ),
+        format!(
+            "Time: processor time of the solve, median of {}. {} on {}",
+            repeats.unwrap_or(0),
+            origin::program(),
+            origin::machine()
+        ),
+    ]
+}
+
+/// Charts from a table as [`csv`] writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
+/// missing, and the runs need not be of this program.
+///
+/// # Errors
+/// If it cannot be read: file, line, what is wrong.
+pub fn read(
+    name: &str,
+    text: &str,
+    cost: Cost,
+    target: Option<f64>,
+) -> Result<Vec<Precision>, String> {
+    let comments = text.lines().filter_map(|line| line.strip_prefix('#'));
+    let about: Vec<String> = comments.map(|line| line.trim().to_owned()).collect();
+    let lines = text
+        .lines()
+        .enumerate()
+        .map(|(k, line)| (k + 1, line.trim_end()));
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (_, header) = lines
+        .next()
+        .ok_or_else(|| format!("{name}: there is no header"))?;
+    let heads = super::csv::split(header);
+    for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
+        if !heads.iter().any(|head| head == wanted) {
+            return Err(format!(
+                "{name}: it is no table of a chart: it has no column {wanted}"
+            ));
+        }
+    }
+    let mut charts: Vec<Precision> = Vec::new();
+    for (line, text) in lines {
+        let fields = super::csv::split(text);
+        if fields.len() != heads.len() {
+            let (has, wants) = (fields.len(), heads.len());
+            return Err(format!(
+                "{name}:{line}: the row has {has} fields, the header {wants}"
+            ));
+        }
+        let word = |head: &str| {
+            let place = heads.iter().position(|own| own == head);
+            place.map_or("", |k| fields[k].as_str())
+        };
+        let number = |head: &str| match word(head) {
+            "" => Ok(None),
+            word => {
+                let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
+                let wrong = || {
+                    format!("{name}:{line}: {word:?} under {head} is no number that can be drawn")
+                };
+                value.map(Some).ok_or_else(wrong)
+            }
+        };
+        let count = |head: &str| number(head).map(|value| value.unwrap_or(0.0) as u64);
+        let (scene, own) = (word("scene"), word("series"));
+        if charts.last().is_none_or(|chart| chart.scene != scene) {
+            charts.push(Precision {
+                scene: scene.to_owned(),
+                title: scene.to_owned(),
+                monitors: Vec::new(),
+                about: Vec::new(),
+                series: Vec::new(),
+                points: Vec::new(),
+                cost,
+                target,
+                planned: 0,
+            });
+        }
+        let Some(chart) = charts.last_mut() else {
+            continue;
+        };
+        let series = chart.series.iter().position(|name| name == own);
+        let series = series.unwrap_or_else(|| {
+            chart.series.push(own.to_owned());
+            chart.series.len() - 1
+        });
+        let status = word("status");
+        chart.points.push(Point {
+            series,
+            name: word("run").to_owned(),
+            settings: Vec::new(),
+            seconds: number("seconds")?.unwrap_or(0.0),
+            repeats: count("repeats")? as usize,
+            factorizations: count("factorizations")?,
+            majors: count("majors")?,
+            minors: count("minors")?,
+            increments: count("increments")?,
+            unknowns: count("unknowns")? as usize,
+            failed: (!["whole", "reference"].contains(&status)).then(|| status.to_owned()),
+            unsettled: count("unsettled")? as usize,
+            error: number("error")?,
+            reference: status == "reference",
+            front: false,
+        });
+    }
+    for chart in &mut charts {
+        chart.planned = chart.points.len();
+        mark_front(&mut chart.points, cost);
+    }
+    let last = charts
+        .last_mut()
+        .ok_or_else(|| format!("{name}: it has no rows"))?;
+    last.about = about;
+    Ok(charts)
+}
+
+/// A row for each run of some charts, after lines that say what they are.
+pub fn csv(charts: &[Precision]) -> String {
+    let mut text = String::new();
+    for line in charts.iter().flat_map(|chart| &chart.about) {
+        text += &format!("# {line}\n");
+    }
+    text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\
+             unsettled,front\n";
+    for (chart, point) in charts
+        .iter()
+        .flat_map(|c| c.points.iter().map(move |p| (c, p)))
+    {
+        let settings: Vec<String> = point
+            .settings
+            .iter()
+            .map(|(p, v)| format!("{p}={v}"))
+            .collect();
+        let status = match (&point.failed, point.reference) {
+            (Some(why), _) => why.as_str(),
+            (None, true) => "reference",
+            (None, false) => "whole",
+        };
+        let words = [
+            &chart.scene,
+            &chart.series[point.series],
+            &point.name,
+            &settings.join(" "),
+            status,
+        ];
+        let words: Vec<String> = words.into_iter().map(super::csv::field).collect();
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{},{},{:?},{},{},{},{},{},{},{},{}",
+            words.join(","),
+            point
+                .error
+                .map_or_else(String::new, |error| format!("{error:?}")),
+            point.seconds,
+            point.repeats,
+            point.factorizations,
+            point.majors,
+            point.minors,
+            point.increments,
+            point.unknowns,
+            point.unsettled,
+            point.front
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(seconds: f64, error: Option<f64>) -> Point {
+        Point {
+            series: 0,
+            name: String::new(),
+            settings: Vec::new(),
+            seconds,
+            repeats: 1,
+            factorizations: 1,
+            majors: 1,
+            minors: 1,
+            increments: 1,
+            unknowns: 1,
+            failed: error.is_none().then(|| "failed".to_owned()),
+            unsettled: 0,
+            error,
+            reference: false,
+            front: false,
+        }
+    }
+
+    #[test]
+    fn the_front_is_what_nothing_beats_in_both() {
+        let mut points = vec![
+            point(1.0, Some(1e-2)),
+            point(2.0, Some(1e-3)),
+            point(3.0, Some(2e-3)), // beaten by the one before
+            point(4.0, Some(1e-4)),
+            point(0.1, None),       // failed
+            point(4.0, Some(1e-4)), // a tie beats nobody
+        ];
+        mark_front(&mut points, Cost::Time);
+        let front: Vec<bool> = points.iter().map(|p| p.front).collect();
+        assert_eq!(front, [true, true, false, true, false, true]);
+    }
+}

@@ -1,0 +1,271 @@
+//! Random interface problems: small, of every kind that Coulomb's law can make trouble with, and the same for ever.
+//!
+//! Problem k of a seed is drawn from a stream of its own of the PCG generator (XSL-RR 128/64), so that it depends on
+//! nothing but its seed, its number and the numbers of nodes to choose from; floats are made of whole numbers here. It
+//! has 1 to 4 nodes (or as asked), and with M = A Aᵀ/n + 0.02 I, A of n = 2 k columns, each entry uniform in −1 to 1
+//! (so that normal and tangential parts are coupled):
+//!
+//! - half of all have the stiffness M and loads, half the compliance M and a motion under no force; entries uniform
+//!   in −1 to 1. Of the compliances two fifths are singular: A lacks a column or two, and no I is added. Such a
+//!   problem may have no answer;
+//! - friction μ uniform in 0.2 to 1.2, the same for all nodes. In a sixth of all, each node has a cohesion uniform in
+//!   0 to 1, too, and the problem may have no answer;
+//! - gaps: half of the nodes touch (0), the others are uniform in −0.25 to 0.75: some penetrate. All nodes start free.
+
+use crate::scene::condensed::{Contact, HEAD, Matrix, Problem, at_once};
+use crate::scene::{Friction, Mode, Settings};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::Rng;
+use std::fmt::Write;
+use std::ops::RangeInclusive;
+
+/// The numbers of nodes that problems are drawn with where nobody says.
+pub const NODES: RangeInclusive<usize> = 1..=4;
+/// What is added to the diagonal of A Aᵀ/n.
+const RIDGE: f64 = 0.02;
+
+/// A set of random problems.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Population {
+    pub seed: u64,
+    /// How many.
+    pub count: usize,
+    /// Numbers of nodes that are equally likely.
+    pub nodes: RangeInclusive<usize>,
+}
+
+/// A random problem, and of what kind it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    pub problem: Problem,
+    pub form: Form,
+    pub cohesive: bool,
+}
+
+/// How the body behind the contacts is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    Stiffness,
+    Compliance,
+    /// A compliance that some force does not move at all.
+    Singular,
+}
+
+impl Form {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Stiffness => "stiffness",
+            Form::Compliance => "compliance",
+            Form::Singular => "singular",
+        }
+    }
+}
+
+/// Numbers of one stream.
+struct Draw(Pcg64);
+
+impl Draw {
+    /// Uniform in low to high, with 53 random bits.
+    fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        let part = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+        low + (high - low) * part
+    }
+
+    /// True in that part of all cases.
+    fn chance(&mut self, part: f64) -> bool {
+        self.uniform(0.0, 1.0) < part
+    }
+
+    /// A whole number of a range; its own tiny bias is far below what any count of problems shows.
+    fn whole(&mut self, range: &RangeInclusive<usize>) -> usize {
+        let count = (range.end() - range.start() + 1) as u64;
+        range.start() + (self.0.next_u64() % count) as usize
+    }
+}
+
+impl Population {
+    /// Problem k.
+    pub fn draw(&self, k: usize) -> Drawn {
+        let mut draw = Draw(Pcg64::new(u128::from(self.seed), k as u128));
+        let nodes = draw.whole(&self.nodes);
+        let size = 2 * nodes;
+        let form = match (draw.chance(0.5), draw.chance(0.4)) {
+            (true, _) => Form::Stiffness,
+            (false, false) => Form::Compliance,
+            (false, true) => Form::Singular,
+        };
+        let cohesive = draw.chance(1.0 / 6.0);
+        let mu = draw.uniform(0.2, 1.2);
+        let matrix = matrix(&mut draw, size, form);
+        let acts: Vec<f64> = (0..size).map(|_| draw.uniform(-1.0, 1.0)).collect();
+        let contact = |k: usize| Contact {
+            id: format!("n{}", k + 1),
+            gap: if draw.chance(0.5) {
+                0.0
+            } else {
+                draw.uniform(-0.25, 0.75)
+            },
+            friction: Friction {
+                angle: mu.atan().to_degrees(),
+                cohesion: if cohesive {
+                    draw.uniform(0.0, 1.0)
+                } else {
+                    0.0
+                },
+            },
+            load: match form {
+                Form::Stiffness => [acts[2 * k], acts[2 * k + 1]],
+                _ => [0.0; 2],
+            },
+            start: Mode::Free,
+            state: Default::default(),
+        };
+        let contacts = (0..nodes).map(contact).collect();
+        let (matrix, free) = match form {
+            Form::Stiffness => (Matrix::Stiffness(matrix), Vec::new()),
+            _ => (Matrix::Compliance(matrix), acts),
+        };
+        Drawn {
+            problem: Problem {
+                title: format!("Random interface problem {k} of seed {}", self.seed),
+                about: String::new(),
+                contacts,
+                matrix,
+                free,
+                spacing: None,
+                history: at_once(),
+                settings: Settings::default(),
+            },
+            form,
+            cohesive,
+        }
+    }
+
+    /// What tells this population from others but for its size: problem k is the same in all that agree in it.
+    pub fn name(&self) -> String {
+        let (least, most) = (self.nodes.start(), self.nodes.end());
+        format!("seed {}, {least} to {most} nodes", self.seed)
+    }
+}
+
+/// A Aᵀ/n, row by row.
+fn matrix(draw: &mut Draw, size: usize, form: Form) -> Vec<Vec<f64>> {
+    let columns = match form {
+        Form::Singular => size - draw.whole(&(1..=2.min(size - 1))),
+        _ => size,
+    };
+    let mut a = vec![vec![0.0; columns]; size];
+    for row in &mut a {
+        row.fill_with(|| draw.uniform(-1.0, 1.0));
+    }
+    let ridge = match form {
+        Form::Singular => 0.0,
+        _ => RIDGE,
+    };
+    let entry = |i: usize, j: usize| {
+        let product: f64 = a[i].iter().zip(&a[j]).map(|(x, y)| x * y).sum();
+        product / columns as f64 + if i == j { ridge } else { 0.0 }
+    };
+    (0..size)
+        .map(|i| (0..size).map(|j| entry(i, j)).collect())
+        .collect()
+}
+
+/// A problem as the text of a file; `head` is put before it as comments. All floats read back to the same bits.
+/// What the problem brings of states, histories and settings is not written: random ones bring none.
+pub fn text(problem: &Problem, head: &[String]) -> String {
+    let mut text: String = head.iter().map(|line| format!("// {line}\n")).collect();
+    // Writing to a string does not fail.
+    let _ = writeln!(text, "{HEAD}(\n    title: {:?},", problem.title);
+    text += "    contacts: [\n";
+    for contact in &problem.contacts {
+        let Friction { angle, cohesion } = contact.friction;
+        let _ = write!(
+            text,
+            "        (id: {:?}, gap: {:?}",
+            contact.id, contact.gap
+        );
+        let _ = write!(
+            text,
+            ", friction: (angle: {angle:?}, cohesion: {cohesion:?})"
+        );
+        if contact.load != [0.0; 2] {
+            let _ = write!(text, ", load: {:?}", (contact.load[0], contact.load[1]));
+        }
+        text += "),\n";
+    }
+    let (name, rows) = match &problem.matrix {
+        Matrix::Stiffness(rows) => ("Stiffness", rows),
+        Matrix::Compliance(rows) => ("Compliance", rows),
+    };
+    let _ = writeln!(text, "    ],\n    matrix: {name}([");
+    for row in rows {
+        let _ = writeln!(text, "        {row:?},");
+    }
+    text += "    ]),\n";
+    if !problem.free.is_empty() {
+        let _ = writeln!(text, "    free: {:?},", problem.free);
+    }
+    text + ")\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn population() -> Population {
+        Population {
+            seed: 7,
+            count: 100,
+            nodes: NODES,
+        }
+    }
+
+    #[test]
+    fn a_problem_depends_on_seed_and_number_alone() {
+        let all = population();
+        let fewer = Population {
+            count: 3,
+            ..population()
+        };
+        assert_eq!(all.draw(2), fewer.draw(2));
+        assert_ne!(all.draw(2).problem.matrix, all.draw(3).problem.matrix);
+        // Planted: whatever changes these numbers makes published counts void.
+        let first = all.draw(0);
+        assert_eq!((first.form, first.cohesive), (Form::Singular, false));
+        assert_eq!(first.problem.contacts.len(), 2);
+        let Matrix::Compliance(rows) = &first.problem.matrix else {
+            panic!("{:?}", first.problem.matrix)
+        };
+        assert_eq!(rows[3][0], -0.19578314055071966);
+        assert_eq!(first.problem.free[3], -0.823038607897369);
+        let angle = first.problem.contacts[1].friction.angle;
+        assert!((angle - 45.86293159508851).abs() < 1e-12, "{angle}");
+    }
+
+    #[test]
+    fn every_kind_is_drawn_and_is_a_sound_scene() {
+        let all = population();
+        let mut seen = std::collections::HashSet::new();
+        for k in 0..all.count {
+            let drawn = all.draw(k);
+            let nodes = drawn.problem.contacts.len();
+            seen.insert((drawn.form.name(), drawn.cohesive));
+            assert!(NODES.contains(&nodes));
+            Scene::from_spec("random", drawn.problem.spec()).unwrap();
+        }
+        assert_eq!(seen.len(), 6, "{seen:?}");
+    }
+
+    #[test]
+    fn a_written_problem_reads_back_to_the_same_bits() {
+        for k in 0..20 {
+            let problem = population().draw(k).problem;
+            let text = text(&problem, &["where it comes from".to_owned()]);
+            let read = Scene::from_text("x.ron", &text, &[]).unwrap();
+            assert_eq!(read.spec, problem.spec(), "{text}");
+        }
+    }
+}

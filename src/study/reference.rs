@@ -1,0 +1,240 @@
+//! What runs are measured against: a table of monitors over the load factor.
+//!
+//! A table is CSV: `#` lines are comments, then a header with `load` and monitors by name (others are not read), and if the
+//! path of the load factor turns round, `leg` (from 1; without it, a new leg begins after the load of each corner). What
+//! `stickslip run --csv` writes is one.
+
+use super::result::Run;
+use std::path::Path;
+
+/// Loads that differ by less than this part of the largest are the same.
+pub const SAME_LOAD: f64 = 1e-9;
+
+/// A reference curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// What it is: words for a footer.
+    pub source: String,
+    /// Names of its columns.
+    pub monitors: Vec<String>,
+    pub rows: Vec<Point>,
+}
+
+/// Values at one load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Leg of the path on which it lies, from 0.
+    pub leg: usize,
+    pub load: f64,
+    /// One a column.
+    pub values: Vec<f64>,
+}
+
+macro_rules! tables {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../problems/references/", $name, ".csv")))),*]
+    };
+}
+
+/// The references that the program carries, by their scene's name.
+const TABLES: &[(&str, &str)] = tables![
+    "01-pinned-beam-rough-floor",
+    "02-two-cantilevers-smooth",
+    "02-two-cantilevers-rough",
+    "03-distant-cantilevers",
+    "04-cantilever-rigid-circle",
+    "osc-inclined-cantilever",
+];
+
+impl Reference {
+    /// The reference that the program carries for a built-in scene; `path` is that of the scene's load factor.
+    ///
+    /// # Errors
+    /// None that the tests have not found.
+    pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, String>> {
+        let (name, text) = TABLES.iter().find(|(name, _)| *name == scene)?;
+        Some(Reference::read(&format!("{name}.csv"), text, path))
+    }
+
+    /// Opens a table.
+    ///
+    /// # Errors
+    /// If it cannot be read: file, line, what is wrong.
+    pub fn open(file: &Path, path: &[f64]) -> Result<Reference, String> {
+        let name = file.display().to_string();
+        let text = std::fs::read_to_string(file).map_err(|e| format!("{name}: {e}"))?;
+        Reference::read(&name, &text, path)
+    }
+
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// As [`Reference::open`].
+    pub fn read(name: &str, text: &str, path: &[f64]) -> Result<Reference, String> {
+        let lines = text
+            .lines()
+            .enumerate()
+            .map(|(k, line)| (k + 1, line.trim()));
+        let about: Vec<&str> = text
+            .lines()
+            .filter_map(|line| line.strip_prefix('#').map(str::trim))
+            .collect();
+        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let (first, header) = lines
+            .next()
+            .ok_or_else(|| format!("{name}: there is no header"))?;
+        let heads: Vec<&str> = header.split(',').map(str::trim).collect();
+        let place = |wanted: &str| heads.iter().position(|head| *head == wanted);
+        let load = place("load")
+            .ok_or_else(|| format!("{name}:{first}: the header has no column load: {header}"))?;
+        let leg = place("leg");
+        let words = ["load", "leg", "increment", "majors", "minors"];
+        let columns: Vec<usize> = (0..heads.len())
+            .filter(|&k| !words.contains(&heads[k]))
+            .collect();
+        let mut rows: Vec<Point> = Vec::new();
+        let mut legs = Legs::new(path);
+        for (line, text) in lines {
+            let fields: Vec<&str> = text.split(',').map(str::trim).collect();
+            if fields.len() != heads.len() {
+                let (has, wants) = (fields.len(), heads.len());
+                return Err(format!(
+                    "{name}:{line}: the row has {has} fields, the header {wants}"
+                ));
+            }
+            let number = |k: usize| {
+                let value = fields[k].parse::<f64>().ok();
+                let wrong = || {
+                    format!(
+                        "{name}:{line}: {:?} under {} is no number",
+                        fields[k], heads[k]
+                    )
+                };
+                value.filter(|v| v.is_finite()).ok_or_else(wrong)
+            };
+            let at = number(load)?;
+            let leg = match leg {
+                Some(k) => (number(k)? as usize).saturating_sub(1),
+                None => legs.of(at),
+            };
+            let values = columns
+                .iter()
+                .map(|&k| number(k))
+                .collect::<Result<_, _>>()?;
+            rows.push(Point {
+                leg,
+                load: at,
+                values,
+            });
+        }
+        if rows.is_empty() {
+            return Err(format!("{name}: it has no rows"));
+        }
+        Ok(Reference {
+            source: [&[name], &about[..]].concat().join(" "),
+            monitors: columns.iter().map(|&k| heads[k].to_owned()).collect(),
+            rows,
+        })
+    }
+
+    /// A run as a reference for others.
+    pub fn of(run: &Run, source: String, path: &[f64]) -> Reference {
+        let mut legs = Legs::new(path);
+        let row = |row: &super::Row| Point {
+            leg: legs.of(row.load),
+            load: row.load,
+            values: row.monitors.clone(),
+        };
+        Reference {
+            source,
+            monitors: run.monitors.clone(),
+            rows: run.rows.iter().map(row).collect(),
+        }
+    }
+
+    /// Its row at a load on a leg.
+    pub fn at(&self, leg: usize, load: f64) -> Option<&Point> {
+        let size = self
+            .rows
+            .iter()
+            .map(|row| row.load.abs())
+            .fold(0.0, f64::max);
+        let here = |row: &&Point| row.leg == leg && (row.load - load).abs() <= SAME_LOAD * size;
+        self.rows.iter().find(here)
+    }
+}
+
+/// Tells on which leg of a path loads lie that come in order.
+struct Legs<'a> {
+    path: &'a [f64],
+    leg: usize,
+}
+
+impl<'a> Legs<'a> {
+    fn new(path: &'a [f64]) -> Self {
+        Legs { path, leg: 0 }
+    }
+
+    fn of(&mut self, load: f64) -> usize {
+        let here = self.leg;
+        let size = self
+            .path
+            .iter()
+            .fold(0.0, |m: f64, corner| m.max(corner.abs()));
+        let ends = |corner: &f64| (load - corner).abs() <= SAME_LOAD * size;
+        if self.path.get(here + 1).is_some_and(ends) && here + 2 < self.path.len() {
+            self.leg += 1;
+        }
+        here
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_table_reads_and_ends_where_its_scene_does() {
+        for (name, _) in TABLES {
+            let scene = crate::scene::Scene::open(name, &[]).unwrap();
+            let path = &scene.model.path;
+            let table = Reference::builtin(name, path).unwrap().unwrap();
+            let known = |m: &String| scene.model.monitors.iter().any(|own| own.name == *m);
+            assert!(
+                table.monitors.iter().all(known),
+                "{name}: {:?}",
+                table.monitors
+            );
+            let last = table.rows.last().unwrap();
+            assert_eq!(
+                (last.leg, last.load),
+                (path.len() - 2, path[path.len() - 1]),
+                "{name}"
+            );
+        }
+    }
+
+    #[test]
+    fn legs_are_told_from_the_corners() {
+        let text = "increment,load,u_x\n1,1,0.1\n2,2,0.2\n3,1,0.3\n4,0,0.4\n";
+        let table = Reference::read("x", text, &[0.0, 2.0, 0.0]).unwrap();
+        let legs: Vec<usize> = table.rows.iter().map(|row| row.leg).collect();
+        assert_eq!(legs, [0, 0, 1, 1]);
+        assert_eq!(table.at(1, 1.0).unwrap().values, [0.3]);
+        assert_eq!(table.monitors, ["u_x"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_line() {
+        for (text, part) in [
+            ("", "no header"),
+            ("a,b\n", "x:1: the header has no column load"),
+            ("load,u\n", "no rows"),
+            ("# c\nload,u\n1\n", "x:3: the row has 1 fields"),
+            ("load,u\n1,a\n", "x:2: \"a\" under u"),
+        ] {
+            let error = Reference::read("x", text, &[0.0, 1.0]).unwrap_err();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! A drawing as plain data: texts, lines and filled shapes on a sheet; as SVG and PNG with the same bits everywhere.
+//!
+//! Lengths are those of an SVG; x to the right, y downwards.
+
+use super::plot::{FONT, PNG_SCALE, PlotError, broken, encode, load_font, width_of};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Red, green and blue.
+pub type Colour = (u8, u8, u8);
+
+pub const BLACK: Colour = (0, 0, 0);
+pub const GREY: Colour = (90, 90, 90);
+pub const PALE: Colour = (225, 225, 225);
+/// Colours that colour-blind readers can tell apart (Okabe and Ito), without the yellow that white paper swallows.
+pub const COLOURS: [Colour; 7] = [
+    (0, 114, 178),
+    (230, 159, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (60, 60, 60),
+    (86, 180, 233),
+    (213, 94, 0),
+];
+
+/// Sizes of letters.
+pub const TITLE: f64 = 22.0;
+pub const LABEL: f64 = 15.0;
+pub const SMALL: f64 = 13.0;
+/// Air around everything.
+pub const MARGIN: f64 = 16.0;
+
+/// Where a text stands about its point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anchor {
+    Left,
+    Middle,
+    Right,
+}
+
+/// Something drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    Text {
+        at: (f64, f64),
+        text: String,
+        size: f64,
+        colour: Colour,
+        anchor: Anchor,
+        /// Read from below upwards.
+        upright: bool,
+    },
+    Line {
+        points: Vec<(f64, f64)>,
+        width: f64,
+        colour: Colour,
+    },
+    Fill {
+        corners: Vec<(f64, f64)>,
+        colour: Colour,
+    },
+}
+
+/// A drawing; later shapes lie above earlier ones.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sheet {
+    pub width: f64,
+    pub height: f64,
+    pub shapes: Vec<Shape>,
+}
+
+impl Sheet {
+    /// A sheet of a width with a title; it grows downwards.
+    ///
+    /// # Errors
+    /// If the font cannot be read.
+    pub fn new(width: f64, title: &str) -> Result<Sheet, PlotError> {
+        let mut sheet = Sheet {
+            width,
+            height: MARGIN,
+            shapes: Vec::new(),
+        };
+        sheet.paragraph(&[title.to_owned()], TITLE, BLACK)?;
+        Ok(sheet)
+    }
+
+    /// Lines of text below all else, broken where they are too long.
+    ///
+    /// # Errors
+    /// If the font cannot be read.
+    pub fn paragraph(
+        &mut self,
+        lines: &[String],
+        size: f64,
+        colour: Colour,
+    ) -> Result<(), PlotError> {
+        load_font()?;
+        for line in broken(lines, size, self.width - 2.0 * MARGIN)? {
+            let at = (MARGIN, self.height + 0.7 * size);
+            self.text(at, &line, size, colour, Anchor::Left);
+            self.height += 1.4 * size;
+        }
+        self.height += 0.4 * size;
+        Ok(())
+    }
+
+    /// A text beside a point, at half its height.
+    pub fn text(&mut self, at: (f64, f64), text: &str, size: f64, colour: Colour, anchor: Anchor) {
+        self.shapes.push(Shape::Text {
+            at,
+            text: text.to_owned(),
+            size,
+            colour,
+            anchor,
+            upright: false,
+        });
+    }
+
+    /// A text about a point, from below upwards.
+    pub fn upright(&mut self, at: (f64, f64), text: &str, size: f64) {
+        self.shapes.push(Shape::Text {
+            at,
+            text: text.to_owned(),
+            size,
+            colour: BLACK,
+            anchor: Anchor::Middle,
+            upright: true,
+        });
+    }
+
+    /// A line through points.
+    pub fn line(&mut self, points: &[(f64, f64)], width: f64, colour: Colour) {
+        self.shapes.push(Shape::Line {
+            points: points.to_vec(),
+            width,
+            colour,
+        });
+    }
+
+    /// A filled shape.
+    pub fn fill(&mut self, corners: &[(f64, f64)], colour: Colour) {
+        self.shapes.push(Shape::Fill {
+            corners: corners.to_vec(),
+            colour,
+        });
+    }
+
+    /// A filled rectangle: its upper left corner, and its size.
+    pub fn bar(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: Colour) {
+        let (right, low) = (x + width, y + height);
+        self.fill(&[(x, y), (right, y), (right, low), (x, low)], colour);
+    }
+
+    /// A marker: one of five shapes, by number.
+    pub fn marker(&mut self, (x, y): (f64, f64), kind: usize, r: f64, colour: Colour) {
+        let far = 1.3 * r;
+        let corners: Vec<(f64, f64)> = match kind % 5 {
+            0 => (0..16)
+                .map(|k| f64::from(k) * std::f64::consts::TAU / 16.0)
+                .map(|a| (r * a.cos(), r * a.sin()))
+                .collect(),
+            1 => vec![(-r, -r), (r, -r), (r, r), (-r, r)],
+            2 => vec![(0.0, -far), (far, r), (-far, r)],
+            3 => vec![(0.0, -far), (far, 0.0), (0.0, far), (-far, 0.0)],
+            _ => vec![(0.0, far), (far, -r), (-far, -r)],
+        };
+        let corners: Vec<_> = corners.iter().map(|c| (x + c.0, y + c.1)).collect();
+        self.fill(&corners, colour);
+    }
+
+    /// The mark of a failure.
+    pub fn cross(&mut self, (x, y): (f64, f64), r: f64, colour: Colour) {
+        self.line(&[(x - r, y - r), (x + r, y + r)], 2.5, colour);
+        self.line(&[(x - r, y + r), (x + r, y - r)], 2.5, colour);
+    }
+
+    /// The drawing as SVG.
+    ///
+    /// # Errors
+    /// If it cannot be drawn.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        load_font()?;
+        let mut text = String::new();
+        let root = SVGBackend::with_string(&mut text, self.size(1.0)).into_drawing_area();
+        self.draw(&root, 1.0)
+            .map_err(|e| PlotError(e.to_string()))?;
+        drop(root);
+        Ok(text)
+    }
+
+    /// The drawing as PNG, with two pixels for a unit of length.
+    ///
+    /// # Errors
+    /// If it cannot be drawn.
+    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
+        load_font()?;
+        let (width, height) = self.size(PNG_SCALE);
+        let mut pixels = vec![255; width as usize * height as usize * 3];
+        let root = BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area();
+        self.draw(&root, PNG_SCALE)
+            .map_err(|e| PlotError(e.to_string()))?;
+        drop(root);
+        encode(&pixels, width, height).map_err(|e| PlotError(e.to_string()))
+    }
+
+    fn size(&self, scale: f64) -> (u32, u32) {
+        let pixels = |length: f64| (length * scale).ceil() as u32;
+        (pixels(self.width), pixels(self.height + MARGIN))
+    }
+
+    fn draw<DB: DrawingBackend>(
+        &self,
+        root: &DrawingArea<DB, Shift>,
+        scale: f64,
+    ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
+        root.fill(&WHITE)?;
+        let pixel = |at: (f64, f64)| {
+            let round = |x: f64| (x * scale).round() as i32;
+            (round(at.0), round(at.1))
+        };
+        let rgb = |(r, g, b): Colour| RGBColor(r, g, b);
+        for shape in &self.shapes {
+            match shape {
+                Shape::Text {
+                    at,
+                    text,
+                    size,
+                    colour,
+                    anchor,
+                    upright,
+                } => {
+                    let side = match anchor {
+                        Anchor::Left => HPos::Left,
+                        Anchor::Middle => HPos::Center,
+                        Anchor::Right => HPos::Right,
+                    };
+                    let font = (FONT, size * scale).into_font();
+                    let font = match upright {
+                        true => font.transform(FontTransform::Rotate270),
+                        false => font,
+                    };
+                    let colour = rgb(*colour);
+                    let style = TextStyle::from(font)
+                        .color(&colour)
+                        .pos(Pos::new(side, VPos::Center));
+                    root.draw(&Text::new(text.as_str(), pixel(*at), style))?;
+                }
+                Shape::Line {
+                    points,
+                    width,
+                    colour,
+                } => {
+                    let stroke = (width * scale).round().max(1.0) as u32;
+                    let points: Vec<_> = points.iter().map(|p| pixel(*p)).collect();
+                    root.draw(&PathElement::new(points, rgb(*colour).stroke_width(stroke)))?;
+                }
+                Shape::Fill { corners, colour } => {
+                    let corners: Vec<_> = corners.iter().map(|c| pixel(*c)).collect();
+                    root.draw(&Polygon::new(corners, rgb(*colour).filled()))?;
+                }
+            }
+        }
+        root.present()
+    }
+}
+
+/// The widest of some texts; a reader's own font may be a little wider than ours.
+///
+/// # Errors
+/// If the font cannot be read.
+pub fn widest<'a>(texts: impl IntoIterator<Item = &'a str>, size: f64) -> Result<f64, PlotError> {
+    load_font()?;
+    let mut widest: f64 = 0.0;
+    for text in texts {
+        widest = widest.max(1.06 * width_of(text, size)?);
+    }
+    Ok(widest)
+}

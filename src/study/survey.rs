@@ -1,0 +1,167 @@
+//! All random problems of a population with all variants: run, counted, and as a table.
+
+use super::log::{Log, key};
+use super::origin;
+use super::random::Population;
+use super::run::{RunError, Watch, pool};
+use super::trial::{Judged, Trial, Variant, judge};
+use super::verdict::Verdict;
+use rayon::prelude::*;
+use std::fmt::Write;
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+/// What is tried, and what came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Survey {
+    pub population: Population,
+    pub variants: Vec<Variant>,
+    /// One a problem, in order; none where it was stopped before.
+    pub judged: Vec<Option<Judged>>,
+}
+
+/// How a variant fared, in numbers of problems. Those that have an answer are told apart from those that have none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Tally {
+    /// Problems with an answer, and what the runs on them came to.
+    pub solvable: usize,
+    pub solved: usize,
+    pub wrong: usize,
+    pub cycled: usize,
+    pub failed: usize,
+    /// Said to have no answer, wrongly.
+    pub denied: usize,
+    /// Problems without an answer, and those of them that were said to have none.
+    pub unsolvable: usize,
+    pub admitted: usize,
+    /// Those that ended in a state, which is wrong.
+    pub invented: usize,
+}
+
+impl Survey {
+    /// Runs what has to be run. With a file, what is kept there is not run again, and what is run is kept there.
+    ///
+    /// # Errors
+    /// If there are no threads to be had, a variant will not do, or the file will not.
+    pub fn run(
+        population: Population,
+        variants: Vec<Variant>,
+        kept: Option<&Path>,
+        jobs: NonZeroUsize,
+        watch: &Watch,
+    ) -> Result<Survey, RunError> {
+        let opened = kept.map(Log::open::<Judged>).transpose()?;
+        let key = |k: usize| {
+            let (name, number) = (population.name(), k.to_string());
+            let settings = variants.iter().flat_map(|v| &v.settings);
+            let settings = settings.flat_map(|(path, value)| [path.as_str(), value]);
+            key([name.as_str(), &number].into_iter().chain(settings))
+        };
+        let one = |k: usize| -> Result<Option<Judged>, RunError> {
+            if let Some((_, found)) = &opened
+                && let Some(judged) = found.get(&key(k))
+            {
+                (watch.done)(1);
+                return Ok(Some(judged.clone()));
+            }
+            if (watch.stop)() {
+                return Ok(None);
+            }
+            let judged = judge(&population, k, &variants, watch.stop)?;
+            if let (Some((log, _)), Some(judged)) = (&opened, &judged) {
+                log.keep(&key(k), judged)?;
+            }
+            (watch.done)(u64::from(judged.is_some()));
+            Ok(judged)
+        };
+        let pool = pool(jobs, population.count)?;
+        let judged: Result<Vec<_>, RunError> =
+            pool.install(|| (0..population.count).into_par_iter().map(one).collect());
+        let judged = judged?;
+        Ok(Survey {
+            population,
+            variants,
+            judged,
+        })
+    }
+
+    /// The problems that were done, with their numbers.
+    pub fn done(&self) -> impl Iterator<Item = (usize, &Judged)> {
+        let all = self.judged.iter().enumerate();
+        all.filter_map(|(k, judged)| Some((k, judged.as_ref()?)))
+    }
+
+    /// How variant number `v` fared on the problems that are meant.
+    pub fn tally(&self, v: usize, meant: impl Fn(&Judged) -> bool) -> Tally {
+        let mut tally = Tally::default();
+        for (_, judged) in self.done().filter(|(_, judged)| meant(judged)) {
+            tally.count(judged.solvable(), &judged.trials[v]);
+        }
+        tally
+    }
+
+    /// A table with a row for each problem and variant, after lines that say what it is.
+    pub fn csv(&self) -> String {
+        let mut text = String::new();
+        for line in self.origin() {
+            text += &format!("# {line}\n");
+        }
+        text += "seed,problem,nodes,form,cohesion,answers,strategy,verdict,detail,majors,minors,violation\n";
+        for (k, judged) in self.done() {
+            for (variant, trial) in self.variants.iter().zip(&judged.trials) {
+                let Judged {
+                    nodes,
+                    form,
+                    cohesive,
+                    answers,
+                    ..
+                } = judged;
+                let (word, detail) = (trial.verdict.word(), trial.verdict.detail());
+                // Writing to a string does not fail.
+                let _ = writeln!(
+                    text,
+                    "{},{k},{nodes},{form},{cohesive},{answers},{},{word},{detail},{},{},{:?}",
+                    self.population.seed, variant.name, trial.majors, trial.minors, trial.violation
+                );
+            }
+        }
+        text
+    }
+
+    /// What it was made of, and by what.
+    pub fn origin(&self) -> Vec<String> {
+        let Population { count, .. } = self.population;
+        let made = format!(
+            "{count} random interface problems, {}",
+            self.population.name()
+        );
+        vec![
+            made,
+            format!("{} on {}", origin::program(), origin::machine()),
+        ]
+    }
+}
+
+impl Tally {
+    fn count(&mut self, solvable: bool, trial: &Trial) {
+        if !solvable {
+            self.unsolvable += 1;
+            self.admitted += usize::from(trial.verdict == Verdict::NoAnswer);
+            self.invented += usize::from(trial.verdict == Verdict::Wrong);
+            return;
+        }
+        self.solvable += 1;
+        *match trial.verdict {
+            Verdict::Right => &mut self.solved,
+            Verdict::Wrong => &mut self.wrong,
+            Verdict::Cycle { .. } => &mut self.cycled,
+            Verdict::NoAnswer => &mut self.denied,
+            Verdict::Diverged | Verdict::Failed(_) => &mut self.failed,
+        } += 1;
+    }
+
+    /// A number of problems that have an answer, per 1,000 of them.
+    pub fn per_thousand(&self, count: usize) -> f64 {
+        1000.0 * count as f64 / self.solvable.max(1) as f64
+    }
+}

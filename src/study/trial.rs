@@ -1,0 +1,256 @@
+//! One random interface problem, tried with every strategy, and judged by its census and by Coulomb's law itself.
+//!
+//! How many answers a problem has is counted by the census of its frozen interface problem, before the first step. What
+//! a run ends in is judged without any of the solver: from the problem as it was drawn, the displacements u and the
+//! forces f of the run's end (at load factor 1, in one increment) must satisfy
+//!
+//! ```text
+//! K (u − free) = load + f   or   u = free + W (load + f)
+//! g = gap + u_n >= 0,   f_n >= 0,   g f_n = 0
+//! |f_t| <= μ f_n + c where g = 0, else f_t = 0;   slip s = −u_t: f_t = sgn(s) (μ f_n + c) where s ≠ 0
+//! ```
+
+use super::random::{Drawn, Population};
+use super::result::Reason;
+use super::verdict::Verdict;
+use crate::scene::condensed::{Matrix, Problem};
+use crate::scene::{Scene, SceneError, paths};
+use crate::solve::census::census;
+use crate::solve::{Outcome, Stepper};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A run whose end breaks a condition by more than this, relatively, is no answer. It is far above what the solver leaves
+/// (its tolerance is 1e-11) and far below what a wrong state breaks.
+pub const TOLERANCE: f64 = 1e-6;
+/// No run of a small problem takes as many minor iterations and is worth waiting for.
+const MOST_MINORS: u64 = 20_000;
+
+/// Settings to try, path by path, and what they are called.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Variant {
+    pub name: String,
+    pub settings: Vec<(String, String)>,
+}
+
+/// What one random problem came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Judged {
+    pub nodes: usize,
+    /// Name of its form, and whether it has cohesion.
+    pub form: String,
+    pub cohesive: bool,
+    /// Number of its answers by census.
+    pub answers: usize,
+    /// One a variant.
+    pub trials: Vec<Trial>,
+}
+
+/// What one variant made of one problem.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    pub verdict: Verdict,
+    pub majors: u64,
+    pub minors: u64,
+    /// Largest violation of Coulomb's law and of equilibrium in the end, relatively; infinite where there is no end.
+    pub violation: f64,
+}
+
+impl Judged {
+    /// Whether the problem has an answer: by census, or since a run found one where the census has none (where assumptions
+    /// have a whole line of solutions, which it does not look into).
+    pub fn solvable(&self) -> bool {
+        self.answers > 0 || self.trials.iter().any(|t| t.verdict == Verdict::Right)
+    }
+}
+
+/// Tries one problem of a population with all variants; none where `stop` says so in between.
+///
+/// # Errors
+/// If a variant's settings will not do.
+pub fn judge(
+    population: &Population,
+    k: usize,
+    variants: &[Variant],
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Judged>, SceneError> {
+    let Drawn {
+        problem,
+        form,
+        cohesive,
+    } = population.draw(k);
+    let scene = Scene::from_spec(&problem.title, problem.spec())?;
+    let mut judged = Judged {
+        nodes: problem.contacts.len(),
+        form: form.name().to_owned(),
+        cohesive,
+        answers: answers(&scene),
+        trials: Vec::with_capacity(variants.len()),
+    };
+    for variant in variants {
+        if stop() {
+            return Ok(None);
+        }
+        let mut own = scene.clone();
+        for (path, value) in &variant.settings {
+            own = own.with(&paths::whole(&own.spec, path), value)?;
+        }
+        judged.trials.push(one(&problem, own));
+    }
+    Ok(Some(judged))
+}
+
+/// Number of answers by census; 0 where the problem cannot be condensed.
+fn answers(scene: &Scene) -> usize {
+    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    let frozen = stepper.frozen();
+    let found = frozen.and_then(|frozen| census(&frozen).ok());
+    found.map_or(0, |census| census.answers.len())
+}
+
+fn one(problem: &Problem, scene: Scene) -> Trial {
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut trial = Trial {
+        verdict: Verdict::Failed(Reason::MinorLimit),
+        majors: 0,
+        minors: 0,
+        violation: f64::INFINITY,
+    };
+    while trial.minors < MOST_MINORS {
+        let Some(event) = stepper.step() else {
+            trial.violation = violation(problem, &stepper);
+            trial.verdict = match trial.violation <= TOLERANCE {
+                true => Verdict::Right,
+                false => Verdict::Wrong,
+            };
+            break;
+        };
+        trial.minors += 1;
+        match &event.outcome {
+            Outcome::Failed(failure) => {
+                trial.majors += 1;
+                trial.verdict = Verdict::of(failure);
+                break;
+            }
+            Outcome::Major { .. } | Outcome::Increment { .. } => trial.majors += 1,
+            _ => {}
+        }
+    }
+    trial
+}
+
+/// By how much the present state breaks what it must satisfy, over the sizes of its own forces and lengths.
+fn violation(problem: &Problem, stepper: &Stepper) -> f64 {
+    let (model, state) = (stepper.model(), stepper.state());
+    // The contacts are the slaves, in order; n is y and t is −x (`scene::condensed`).
+    let place = |s: usize| model.dofs.first[model.slaves[s].node];
+    let slaves = 0..problem.contacts.len();
+    let u: Vec<f64> = slaves
+        .clone()
+        .flat_map(|s| [state.u[place(s) + 1], -state.u[place(s)]])
+        .collect();
+    let f: Vec<f64> = slaves
+        .flat_map(|s| [state.nodes[s].f_n, state.nodes[s].f_t])
+        .collect();
+    broken(problem, &u, &f)
+}
+
+/// The same of displacements and forces, n and t of each contact in turn.
+fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
+    let free = |i: usize| problem.free.get(i).copied().unwrap_or(0.0);
+    let acts = |i: usize| problem.contacts[i / 2].load[i % 2] + f[i];
+    let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| m.max(v.abs()));
+    let all = || 0..u.len();
+    let (rows, stiff) = match &problem.matrix {
+        Matrix::Stiffness(rows) => (rows, true),
+        Matrix::Compliance(rows) => (rows, false),
+    };
+    let product = |i: usize| -> f64 {
+        let of = |j: usize| if stiff { u[j] - free(j) } else { acts(j) };
+        rows[i]
+            .iter()
+            .enumerate()
+            .map(|(j, entry)| entry * of(j))
+            .sum()
+    };
+    let gaps = problem.contacts.iter().map(|contact| contact.gap);
+    let mut length = size(&mut gaps.chain(u.iter().copied()).chain(all().map(free)));
+    let mut force = size(&mut all().map(acts).chain(f.iter().copied()));
+    // What is nothing at all has no size to be compared with.
+    match stiff {
+        true => force = force.max(size(&mut all().map(product))),
+        false => length = length.max(size(&mut all().map(product))),
+    }
+    let (length, force) = (length.max(f64::MIN_POSITIVE), force.max(f64::MIN_POSITIVE));
+    let balance = all().map(|i| match stiff {
+        true => (product(i) - acts(i)).abs() / force,
+        false => (u[i] - free(i) - product(i)).abs() / length,
+    });
+    let balance = balance.fold(0.0, f64::max);
+    let contacts = problem.contacts.iter().enumerate().map(|(k, contact)| {
+        let (g, p) = ((contact.gap + u[2 * k]) / length, f[2 * k] / force);
+        let t = f[2 * k + 1] / force;
+        let normal = (-g).max(-p).max(g.min(p));
+        let limit = contact.friction.coefficient() * p.max(0.0) + contact.friction.cohesion / force;
+        let slip = -u[2 * k + 1] / length;
+        let tangential = match g > TOLERANCE {
+            true => t.abs(),
+            false => (t.abs() - limit).max(slip.abs().min((t - limit * slip.signum()).abs())),
+        };
+        normal.max(tangential)
+    });
+    let worst = contacts.fold(balance, f64::max);
+    // A NaN is no answer either, and a maximum hides it.
+    match u.iter().chain(f).all(|v| v.is_finite()) {
+        true => worst,
+        false => f64::INFINITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Friction;
+    use crate::scene::condensed::{Contact, at_once};
+
+    /// A node on two unit springs, a load (−1, 1) along n and t, friction μ = 0.5: it slides, u_t = 0.5.
+    fn slider() -> Problem {
+        Problem {
+            title: "slider".to_owned(),
+            about: String::new(),
+            contacts: vec![Contact {
+                id: "a".to_owned(),
+                gap: 0.0,
+                friction: Friction {
+                    angle: 0.5_f64.atan().to_degrees(),
+                    cohesion: 0.0,
+                },
+                load: [-1.0, 1.0],
+                start: Default::default(),
+                state: Default::default(),
+            }],
+            matrix: Matrix::Stiffness(vec![vec![1.0, 0.0], vec![0.0, 1.0]]),
+            free: Vec::new(),
+            spacing: None,
+            history: at_once(),
+            settings: Default::default(),
+        }
+    }
+
+    #[test]
+    fn coulombs_law_is_told_from_what_breaks_it() {
+        let problem = slider();
+        assert!(broken(&problem, &[0.0, 0.5], &[1.0, -0.5]) < 1e-15);
+        for (u, f) in [
+            ([0.0, 1.0], [1.0, 0.0]),    // no friction
+            ([0.0, 0.0], [1.0, -1.0]),   // more friction than there is
+            ([0.0, 1.5], [1.0, 0.5]),    // friction drives
+            ([-1.0, 1.0], [0.0, 0.0]),   // penetrates
+            ([0.5, 0.25], [1.5, -0.75]), // pressed and apart
+            ([0.0, 0.6], [1.0, -0.5]),   // no balance
+            ([0.0, f64::NAN], [1.0, -0.5]),
+        ] {
+            assert!(broken(&problem, &u, &f) > 1e-2, "{u:?} {f:?}");
+        }
+    }
+}
