@@ -82,6 +82,7 @@ impl Reason {
             Reason::Singular => 's',
             Reason::Diverged => 'd',
             Reason::Jammed => 'j',
+            Reason::NoAnswer => 'n',
         }
     }
 }

@@ -35,6 +35,7 @@ impl Verdict {
                 majors: true,
             },
             Failure::Diverged { .. } => Verdict::Diverged,
+            Failure::NoAnswer { .. } | Failure::Ray => Verdict::NoAnswer,
             other => Verdict::Failed(Reason::from(other)),
         }
     }
