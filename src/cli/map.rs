@@ -28,6 +28,9 @@ const STRATEGIES: [&str; 9] = [
     "census",
 ];
 
+/// Those that may have T_max lagged or in the matrix; all others need it there, or choose.
+const LAGGING: [&str; 5] = ["table2", "sliding", "least", "sliding_least", "block"];
+
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 A value of --over may be a range, 0.01..0.1/4 (evenly spaced) or 0.01..0.1/4log (even ratios), or a multiple
@@ -243,7 +246,7 @@ fn survey(args: &Args, population: Population) -> Result<Exit, Error> {
     };
     let survey = Survey::run(
         population,
-        variants(args),
+        variants(args)?,
         args.resume.as_deref(),
         args.out.jobs(),
         &watch,
@@ -270,15 +273,14 @@ fn survey(args: &Args, population: Population) -> Result<Exit, Error> {
     })
 }
 
-/// What is varied, each combination named by its values.
-fn variants(args: &Args) -> Vec<Variant> {
-    let mut over = args.over.clone();
-    if over.is_empty() {
-        over.push(Vary {
-            path: "settings.t_max".to_owned(),
-            values: vec!["lagged".to_owned(), "consistent".to_owned()],
-        });
-    }
+/// What random problems are tried with: each combination of what is varied, named by its values; where nothing is, all
+/// strategies, those that know both with T_max lagged and in the matrix.
+fn variants(args: &Args) -> Result<Vec<Variant>, Error> {
+    let mut vary = match (args.strategies.is_empty(), args.over.is_empty()) {
+        (true, true) => return Ok(every_variant(&args.set.set)),
+        _ => strategies(args)?,
+    };
+    vary.extend(args.over.iter().cloned());
     let named = |varied: Vec<(String, String)>| {
         let values: Vec<&str> = varied.iter().map(|(_, value)| value.as_str()).collect();
         Variant {
@@ -286,7 +288,37 @@ fn variants(args: &Args) -> Vec<Variant> {
             settings: [args.set.set.clone(), varied].concat(),
         }
     };
-    product(&over).into_iter().map(named).collect()
+    Ok(product(&vary).into_iter().map(named).collect())
+}
+
+/// All strategies on random problems.
+fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
+    let variant = |strategy: &str, t_max: &str, touch: &str| {
+        let own = [
+            ("settings.strategy", strategy),
+            ("settings.t_max", t_max),
+            ("settings.touch", touch),
+        ];
+        let own = own.map(|(path, value)| (path.to_owned(), value.to_owned()));
+        let mut name = strategy.to_owned();
+        if LAGGING.contains(&strategy) {
+            name += &format!(" {t_max}");
+        }
+        if touch == "ratio" {
+            name += ", as printed";
+        }
+        Variant {
+            name,
+            settings: [own.to_vec(), set.to_vec()].concat(),
+        }
+    };
+    let mut all = vec![variant("table2", "lagged", "ratio")];
+    for strategy in LAGGING {
+        all.extend(["lagged", "consistent"].map(|t_max| variant(strategy, t_max, "start")));
+    }
+    let others = ["newton", "lemke", "census", "ladder"];
+    all.extend(others.map(|strategy| variant(strategy, "lagged", "start")));
+    all
 }
 
 fn tell_survey(survey: &Survey) {

@@ -2,7 +2,7 @@
 //!
 //! How many answers a problem has is counted by the census of its frozen interface problem, before the first step. What
 //! a run ends in is judged without any of the solver: from the problem as it was drawn, the displacements u and the
-//! forces f of the run's end (at load factor 1, in one increment) must satisfy
+//! forces f of the run's end (at load factor 1, in one increment, which is not cut) must satisfy
 //!
 //! ```text
 //! K (u − free) = load + f   or   u = free + W (load + f)
@@ -14,7 +14,7 @@ use super::random::{Drawn, Population};
 use super::result::Reason;
 use super::verdict::Verdict;
 use crate::scene::condensed::{Matrix, Problem};
-use crate::scene::{Scene, SceneError, paths};
+use crate::scene::{Scene, SceneError, increments, paths};
 use crate::solve::census::census;
 use crate::solve::{Outcome, Stepper};
 use serde::{Deserialize, Serialize};
@@ -91,9 +91,13 @@ pub fn judge(
         if stop() {
             return Ok(None);
         }
-        let mut own = scene.clone();
+        let mut own = scene.with("history.least", "1")?;
         for (path, value) in &variant.settings {
             own = own.with(&paths::whole(&own.spec, path), value)?;
+        }
+        if increments(&own.model.path, own.model.increment) != 1.0 {
+            let message = "random problems are solved in one increment, since their answers are known for that alone";
+            return Err(SceneError::whole(&scene.name, message));
         }
         judged.trials.push(one(&problem, own));
     }
