@@ -162,7 +162,7 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
     assert_eq!(table[0]["status"], "whole");
     assert!(number(&table[0], "error") < 1e-8, "{table:?}");
     assert!(
-        table[1]["status"].starts_with("major-limit at load 0.01"),
+        table[1]["status"].starts_with("major-limit at load 0."),
         "{table:?}"
     );
     assert!(table[1]["error"].is_empty() && table[1]["front"] == "false");

@@ -200,7 +200,7 @@ fn bad_input_ends_with_2_and_one_line_before_anything_runs() {
         ),
         (&[ROUGH, "--vary", "friction.angle=30,30"], "twice"),
         (&[ROUGH, "--vary", "friction.angle="], "must be a number"),
-        (&[ROUGH, "--vary", "friction=1"], "no single value"),
+        (&[ROUGH, "--vary", "history=1"], "no single value"),
         (
             &[ROUGH, "--vary", "materials.*.update=a,b"],
             "materials.*.update",

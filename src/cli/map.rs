@@ -305,7 +305,7 @@ fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
             name += &format!(" {t_max}");
         }
         if touch == "ratio" {
-            name += ", as printed";
+            name += " as printed";
         }
         Variant {
             name,

@@ -1,6 +1,6 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
-use crate::contact::decision::{Decision, Rule};
+use crate::contact::decision::{Decision, Rule, Tested};
 use crate::scene::spec::Strategy;
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
@@ -118,10 +118,18 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
         }
         Rule::NewtonSlides => "Newton: slides, since force and slip exceed the friction.",
         Rule::Pivots => {
-            return format!(
+            let here = format!(
                 "Lemke: {} in this basis of the problem relaxed by z.",
                 mode(decision.next)
             );
+            let first = match decision.tests[1].map(|test| test.tested) {
+                Some(Tested::Gap) => " Its gap was the first to close.",
+                Some(Tested::NormalForce) => " Its F_n was the first to vanish.",
+                Some(Tested::ShearForce) => " It was the first to come to its friction limit.",
+                Some(Tested::Slip) => " Its slip was the first to come to an end.",
+                _ => "",
+            };
+            return here + first;
         }
         Rule::Found => {
             return format!(
@@ -163,6 +171,10 @@ pub fn position(at: Position) -> String {
 pub fn outcome(model: &Model, event: &Event) -> String {
     let at = position(event.position);
     match &event.outcome {
+        Outcome::Minor if together(event, Rule::Found) => {
+            format!("{at}: a consistent state is found; it is checked next")
+        }
+        Outcome::Minor if together(event, Rule::Pivots) => format!("{at}: {}", pivot(model, event)),
         Outcome::Minor => match changes(model, event).as_str() {
             "" => format!("{at}: modes settled, T_max still moves"),
             changes => format!("{at}: {changes}"),
@@ -203,6 +215,33 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             )
         }
         Outcome::Failed(failure) => format!("{at}: {}", describe_failure(model, failure)),
+    }
+}
+
+/// Whether all nodes were looked at together, by this rule.
+fn together(event: &Event, rule: Rule) -> bool {
+    event.nodes.iter().any(|node| node.decision.rule == rule)
+}
+
+/// A step of Lemke's: what reached its bound, and what is left to go.
+fn pivot(model: &Model, event: &Event) -> String {
+    let tests = |s: usize| event.nodes[s].decision.tests;
+    let mut nodes = 0..event.nodes.len();
+    let what = nodes.find_map(|s| {
+        let what = match tests(s)[1]?.tested {
+            Tested::Gap => "the gap closed",
+            Tested::NormalForce => "F_n vanished",
+            Tested::ShearForce => "the friction limit was reached",
+            Tested::Slip => "the slip ended",
+            _ => return None,
+        };
+        Some(format!("at {} {what}", slave(model, s)))
+    });
+    let cover = (0..event.nodes.len()).find_map(|s| Some(tests(s)[0]?.value));
+    let left = cover.map_or(String::new(), |z| format!("relaxed by z = {z:.3e}"));
+    match what {
+        Some(what) => format!("a pivot: {what}; {left}"),
+        None => format!("a pivot; {left}"),
     }
 }
 

@@ -14,6 +14,7 @@
 //! lexicographically, so that no basis comes twice. Cohesion counts for open nodes too here, which Coulomb's law does
 //! not say: what is found is checked afterwards.
 
+use crate::contact::decision::Tested;
 use crate::linalg::DenseFactors;
 use crate::solve::frozen::{Assumed, Frozen};
 
@@ -56,6 +57,8 @@ pub struct Lemke {
     first: Vec<usize>,
     /// The variable that enters next; none before the first pivot and after the last.
     entering: Option<usize>,
+    /// Node and kind of the variable that left last.
+    left: Option<(usize, Kind)>,
     ended: Option<End>,
     /// Which nodes are rough, with the friction coefficient and the cohesion.
     friction: Vec<Option<(f64, f64)>>,
@@ -109,6 +112,7 @@ impl Lemke {
             basis: Vec::new(),
             first: Vec::new(),
             entering: None,
+            left: None,
             ended: None,
             friction,
             force: positive(problem.force),
@@ -266,6 +270,7 @@ impl Lemke {
             },
         };
         let leaving = self.basis[row];
+        self.left = self.variables.get(leaving).copied();
         self.exchange(entering, row);
         if leaving == cover {
             (self.ended, self.entering) = (Some(End::Solved), None);
@@ -356,6 +361,19 @@ impl Lemke {
             Kind::Gap | Kind::Slip { .. } => variable - 1,
             Kind::Loose => variable,
         }
+    }
+
+    /// What reached its bound in the last pivot, and at which node; none where that was the covering variable.
+    pub fn bound(&self) -> Option<(usize, Tested)> {
+        let (place, kind) = self.left?;
+        let tested = match kind {
+            Kind::Force => Tested::NormalForce,
+            Kind::Gap => Tested::Gap,
+            Kind::Slack { .. } => Tested::ShearForce,
+            Kind::Slip { .. } => Tested::Slip,
+            Kind::Loose => return None,
+        };
+        Some((place, tested))
     }
 
     /// The covering variable: how far the problem is still relaxed, in units of its forces and lengths.

@@ -42,6 +42,8 @@ const SAME: f64 = 1e-14;
 const STILL: f64 = 1e-8;
 /// From this major iteration on nodes keep their master elements a little past the borders.
 const HOLD_FROM: u32 = 5;
+/// Forces this many times larger than the interface's stiffness over the scene's length are no forces.
+const UNBOUNDED: f64 = 1e10;
 /// Rounds that all changes at once may go on without getting fewer.
 const PATIENCE: u32 = 10;
 /// Sums of halves of an increment are this exact.
@@ -173,7 +175,7 @@ impl Stepper {
             Solved::Well => {}
             Solved::Suspicious => {
                 let singular = self.diagnose();
-                if matches!(singular, Singular::Rigid { .. }) {
+                if matches!(singular, Singular::Rigid { .. }) || self.is_unbounded() {
                     return self.stuck(Failure::Singular(singular));
                 }
             }
@@ -194,6 +196,15 @@ impl Stepper {
             };
         }
         self.go_on()
+    }
+
+    /// Whether the last solve gave forces out of all proportion: those of a singular system, kept finite by round-off.
+    fn is_unbounded(&self) -> bool {
+        let natural = self.system.spring(&self.model) * self.model.length;
+        (0..self.state.nodes.len()).any(|slave| {
+            let forces = self.system.force_increment(slave);
+            forces.iter().any(|f| f.abs() > UNBOUNDED * natural)
+        })
     }
 
     /// What failed before a ladder found a state in which nothing is pressed: where the equations were singular, such a
@@ -370,7 +381,9 @@ impl Stepper {
         let first = first.clone();
         self.state.search = Search::default();
         match (*first, why) {
-            (first @ (Failure::Singular(_) | Failure::Jammed { .. }), _) => self.fail(first),
+            (first @ (Failure::Singular(Singular::Rigid { .. }) | Failure::Jammed { .. }), _) => {
+                self.fail(first)
+            }
             (_, why @ Failure::NoAnswer { .. }) => self.fail(why),
             (first, _) => self.fail(Failure::NoAnswer {
                 first: Box::new(first),
@@ -422,7 +435,8 @@ impl Stepper {
         if lemke.pivot().is_some() {
             *pivot += 1;
         }
-        let (start, pivot, ended, cover) = (*start, *pivot, lemke.ended(), lemke.cover());
+        let (start, pivot, ended) = (*start, *pivot, lemke.ended());
+        let (cover, bound) = (lemke.cover(), lemke.bound());
         let told: Vec<(Assumed, [f64; 4])> = (0..self.state.nodes.len())
             .map(|place| (lemke.assumed(place), lemke.numbers(place)))
             .collect();
@@ -440,6 +454,15 @@ impl Stepper {
         };
         for (slave, (assumed, numbers)) in told.into_iter().enumerate() {
             self.assume(slave, assumed, numbers, rule, cover);
+        }
+        if let Some((slave, tested)) = bound {
+            self.event.nodes[slave].decision.tests[1] = Some(Test {
+                tested,
+                value: 0.0,
+                bound: 0.0,
+                margin: 0.0,
+                tie: false,
+            });
         }
         self.state.next.minor += 1;
         Outcome::Minor
