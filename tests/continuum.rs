@@ -549,7 +549,7 @@ fn strain_energy(run: &Run, u: &[f64]) -> f64 {
     let dofs = &model.dofs;
     let mut assembly = Assembly::new(model);
     let pattern = Pattern::new(dofs.equations, assembly.entries(dofs));
-    assembly.bind(dofs, &pattern);
+    assembly.bind(dofs, &pattern, false);
     let zero = vec![0.0; u.len()];
     let (mut force, mut size) = (zero.clone(), zero.clone());
     let (mut values, mut coupling) = (vec![0.0; pattern.entries()], vec![0.0; dofs.equations]);
@@ -693,7 +693,7 @@ fn time_of_an_assembly_of_50000_unknowns() {
     let pattern = Pattern::new(dofs.equations, entries);
     println!("pattern {:?}", started.elapsed());
     let started = Instant::now();
-    assembly.bind(dofs, &pattern);
+    assembly.bind(dofs, &pattern, false);
     println!("bind {:?}", started.elapsed());
     let u: Vec<f64> = (0..dofs.len()).map(|d| 1e-5 * (d % 7) as f64).collect();
     let (mut force, mut size) = (u.clone(), u.clone());

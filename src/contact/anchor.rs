@@ -101,7 +101,8 @@ fn length(nodes: &[usize], from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
         let d = shape(nodes.len(), xi).d;
         let sum =
             |k: usize| -> f64 { nodes.iter().zip(d).map(|(&n, d)| d * positions[n][k]).sum() };
-        sum(0).hypot(sum(1))
+        let (x, y) = (sum(0), sum(1));
+        (x * x + y * y).sqrt()
     };
     let sum: f64 = POINTS
         .iter()

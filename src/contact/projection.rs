@@ -6,7 +6,7 @@
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
 use crate::contact::turning::Curve;
-use crate::fem::lagrange::{MAX_NODES, node, shape};
+use crate::fem::lagrange::{MAX_NODES, samples, shape};
 use crate::scene::model::Surface;
 
 /// How far past an end of a chain a node still counts as over it, in lengths of the last element.
@@ -62,41 +62,66 @@ pub fn project(
     positions: &[[f64; 2]],
     previous: Option<Spot>,
 ) -> Option<Spot> {
-    let mut best: Option<(f64, Spot)> = None;
-    let consider = |surface: usize, element: usize, best: &mut Option<(f64, Spot)>| {
-        let nodes = &surfaces[surface].elements[element];
-        let endless = surfaces[surface].endless;
-        let beyond = |distance| !endless && box_distance(nodes, positions, slave) > distance;
-        if best.is_some_and(|(distance, _)| beyond(distance)) {
-            return;
-        }
-        let (distance, xi) = if endless {
-            closest_of_line(nodes, positions, slave)
-        } else {
-            closest(nodes, positions, slave)
-        };
-        let slack = STAY_TOLERANCE * chord(nodes, positions);
-        if best.is_none_or(|(least, _)| distance < least - slack) {
-            *best = Some((
-                distance,
-                Spot {
-                    surface,
-                    element,
-                    xi,
-                },
-            ));
-        }
-    };
+    let mut best: Option<Best> = None;
     if let Some(spot) = previous {
-        consider(spot.surface, spot.element, &mut best);
+        consider(slave, surfaces, positions, spot, true, &mut best);
     }
     for &surface in candidates {
         for element in 0..surfaces[surface].elements.len() {
-            consider(surface, element, &mut best);
+            let spot = Spot {
+                surface,
+                element,
+                xi: 0.0,
+            };
+            if previous.is_none_or(|p| (p.surface, p.element) != (surface, element)) {
+                consider(slave, surfaces, positions, spot, false, &mut best);
+            }
         }
     }
-    let (_, spot) = best?;
+    let Best { spot, .. } = best?;
     (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
+}
+
+/// The closest point so far.
+struct Best {
+    spot: Spot,
+    distance: f64,
+}
+
+/// Takes the closest point of the element of `spot` if it is truly closer than the best so far; `warm` where its ξ is a
+/// good guess.
+fn consider(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    positions: &[[f64; 2]],
+    spot: Spot,
+    warm: bool,
+    best: &mut Option<Best>,
+) {
+    let surface = &surfaces[spot.surface];
+    let nodes = &surface.elements[spot.element];
+    let own = Bounds::new(nodes, positions);
+    if let Some(best) = best
+        && !surface.endless
+        && own.lies_beyond(slave, best.distance)
+    {
+        return;
+    }
+    let (distance, xi) = if surface.endless {
+        closest_of_line(nodes, positions, slave)
+    } else {
+        closest(nodes, positions, slave, warm.then_some(spot.xi))
+    };
+    let slack = STAY_TOLERANCE * own.size();
+    if best
+        .as_ref()
+        .is_none_or(|best| distance < best.distance - slack)
+    {
+        *best = Some(Best {
+            spot: Spot { xi, ..spot },
+            distance,
+        });
+    }
 }
 
 /// The spot of a node that keeps the element it had, up to [`OVERHANG`] past a border to the next one; none where it has
@@ -133,7 +158,8 @@ pub fn footing(
     let nodes = &surface.elements[spot.element];
     let s = shape(nodes.len(), spot.xi);
     let foot = blend(nodes, positions, &s.n);
-    let normal = normal_at(surface, spot, positions);
+    let slope = blend(nodes, positions, &s.d);
+    let normal = normal_at(surface, spot, positions, slope);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
     let inside = spot.xi.abs() != 1.0 || surface.endless;
     Footing {
@@ -143,19 +169,20 @@ pub fn footing(
         shape: s.n,
         shape_slope: s.d,
         curve: inside.then(|| Curve {
-            slope: blend(nodes, positions, &s.d),
+            slope,
             bend: blend(nodes, positions, &s.dd),
         }),
     }
 }
 
-/// Outward normal at a spot: the mean of both sides' where two elements meet.
-fn normal_at(surface: &Surface, spot: Spot, positions: &[[f64; 2]]) -> [f64; 2] {
-    let own = element_normal(&surface.elements[spot.element], positions, spot.xi);
+/// Outward normal at a spot, dx/dξ of whose element is `slope`: the mean of both sides' where two elements meet.
+fn normal_at(surface: &Surface, spot: Spot, positions: &[[f64; 2]], slope: [f64; 2]) -> [f64; 2] {
+    let own = right_of(slope);
     let Some((other, xi)) = neighbour(surface, spot) else {
         return own;
     };
-    let across = element_normal(&surface.elements[other], positions, xi);
+    let nodes = &surface.elements[other];
+    let across = right_of(blend(nodes, positions, &shape(nodes.len(), xi).d));
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
 
@@ -183,7 +210,7 @@ fn past_end(surface: &Surface, spot: Spot, positions: &[[f64; 2]], slave: [f64; 
     let s = shape(nodes.len(), spot.xi);
     let (foot, slope) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
     let beyond = spot.xi * ((slave[0] - foot[0]) * slope[0] + (slave[1] - foot[1]) * slope[1]);
-    beyond > END_TOLERANCE * chord(nodes, positions) * slope[0].hypot(slope[1])
+    beyond > END_TOLERANCE * Bounds::new(nodes, positions).size() * length(slope)
 }
 
 /// Distance to the closest point of the endless straight line through an element of two nodes, and its coordinate,
@@ -198,26 +225,33 @@ fn closest_of_line(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> 
     let part = (to[0] * along[0] + to[1] * along[1])
         / (along[0] * along[0] + along[1] * along[1]).max(f64::MIN_POSITIVE);
     let xi = 2.0 * part - 1.0;
-    let foot = at(xi);
-    ((slave[0] - foot[0]).hypot(slave[1] - foot[1]), xi)
+    (length(away(slave, at(xi))), xi)
 }
 
-/// Distance to the closest point of an element, and its coordinate.
-fn closest(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
-    let samples = 2 * nodes.len() - 1;
-    let distance = |xi: f64| {
-        let x = blend(nodes, positions, &shape(nodes.len(), xi).n);
-        (slave[0] - x[0]).hypot(slave[1] - x[1])
+/// Distance to the closest point of an element, and its coordinate; `guess` is a coordinate that may be close.
+fn closest(
+    nodes: &[usize],
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+    guess: Option<f64>,
+) -> (f64, f64) {
+    let squared = |n: &[f64; MAX_NODES]| {
+        let to = away(slave, blend(nodes, positions, n));
+        to[0] * to[0] + to[1] * to[1]
     };
-    let start = (0..samples)
-        .map(|k| node(samples, k))
-        .map(|xi| (distance(xi), xi))
-        .fold((f64::INFINITY, 0.0), |best, now| {
+    let guess = guess.map(|xi| xi.clamp(-1.0, 1.0));
+    let guess = guess.map(|xi| (squared(&shape(nodes.len(), xi).n), xi));
+    let samples = samples(nodes.len()).iter();
+    let start = samples.map(|(xi, n)| (squared(n), *xi)).chain(guess).fold(
+        (f64::INFINITY, 0.0),
+        |best, now| {
             if now.0 < best.0 { now } else { best }
-        });
+        },
+    );
     let refined = descend(nodes, positions, slave, start.1, 1.0);
-    let ended = (distance(refined), refined);
-    if ended.0 <= start.0 { ended } else { start }
+    let ended = (squared(&shape(nodes.len(), refined).n), refined);
+    let (squared, xi) = if ended.0 <= start.0 { ended } else { start };
+    (squared.sqrt(), xi)
 }
 
 /// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ `bound`, falling back on Gauss-Newton where the curve bends
@@ -258,8 +292,8 @@ fn descend(
     xi
 }
 
-fn element_normal(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
-    let d = blend(nodes, positions, &shape(nodes.len(), xi).d);
+/// The unit vector to the right of a direction.
+fn right_of(d: [f64; 2]) -> [f64; 2] {
     unit([d[1], -d[0]]).unwrap_or([0.0, 1.0])
 }
 
@@ -269,39 +303,59 @@ fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) ->
     })
 }
 
+fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
+    [slave[0] - x[0], slave[1] - x[1]]
+}
+
+/// Not hypot, which costs ten times as much: lengths of a scene are far from the ends of the range of numbers.
+fn length(v: [f64; 2]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
 fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
-    let length = v[0].hypot(v[1]);
+    let length = length(v);
     (length > 0.0).then(|| [v[0] / length, v[1] / length])
 }
 
-/// Distance between an element's two ends (or, where they coincide, the size of its box).
-fn chord(nodes: &[usize], positions: &[[f64; 2]]) -> f64 {
-    let (low, high) = bounds(nodes, positions);
-    (high[0] - low[0]).hypot(high[1] - low[1])
+/// The box around the nodes of an element.
+struct Bounds {
+    low: [f64; 2],
+    high: [f64; 2],
 }
 
-fn bounds(nodes: &[usize], positions: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
-    nodes.iter().map(|&n| positions[n]).fold(
-        ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
-        |(low, high), x| {
-            (
-                [low[0].min(x[0]), low[1].min(x[1])],
-                [high[0].max(x[0]), high[1].max(x[1])],
-            )
-        },
-    )
-}
+impl Bounds {
+    fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for &n in nodes {
+            for k in 0..2 {
+                low[k] = low[k].min(positions[n][k]);
+                high[k] = high[k].max(positions[n][k]);
+            }
+        }
+        Bounds { low, high }
+    }
 
-/// A lower bound of the distance to an element.
-fn box_distance(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> f64 {
-    let (low, high) = bounds(nodes, positions);
-    let bulge = BULGE * (high[0] - low[0]).hypot(high[1] - low[1]);
-    let outside = |k: usize| {
-        (low[k] - bulge - slave[k])
-            .max(slave[k] - high[k] - bulge)
-            .max(0.0)
-    };
-    outside(0).hypot(outside(1))
+    fn sides(&self) -> [f64; 2] {
+        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+    }
+
+    /// Its diagonal.
+    fn size(&self) -> f64 {
+        length(self.sides())
+    }
+
+    /// Whether the whole element is further from a point than `distance`.
+    fn lies_beyond(&self, point: [f64; 2], distance: f64) -> bool {
+        let [width, height] = self.sides();
+        // More than the diagonal, without a root.
+        let bulge = BULGE * (width + height);
+        let outside = |k: usize| {
+            let out = (self.low[k] - point[k]).max(point[k] - self.high[k]) - bulge;
+            out.max(0.0)
+        };
+        let (x, y) = (outside(0), outside(1));
+        x * x + y * y > distance * distance
+    }
 }
 
 #[cfg(test)]

@@ -32,8 +32,9 @@ struct Placed {
     element: Element,
     /// Degrees of freedom of the scene, in the element's order.
     dofs: Vec<usize>,
-    /// Place in the array of values of each entry of the element's matrix, row by row.
-    slots: Vec<u32>,
+    /// Entries of the element's matrix that have a place, by number (row by row), and their places in the array of
+    /// values.
+    slots: Vec<(u32, u32)>,
     /// Whether any of its degrees of freedom has no equation.
     held: bool,
     /// What it remembers, in the scene's history.
@@ -45,6 +46,8 @@ pub struct Assembly {
     elements: Vec<Placed>,
     /// Bodies that are given by a matrix.
     matrices: Vec<matrix::Element>,
+    /// Whether only the upper half of the stiffness is wanted.
+    half: bool,
     /// Numbers that the elements placed so far remember.
     history_len: usize,
     force: [f64; MAX_DOFS],
@@ -85,6 +88,7 @@ impl Assembly {
         let mut assembly = Assembly {
             elements: Vec::new(),
             matrices: Vec::new(),
+            half: false,
             history_len: 0,
             force: [0.0; MAX_DOFS],
             tangent: vec![0.0; MAX_DOFS * MAX_DOFS],
@@ -158,24 +162,11 @@ impl Assembly {
         entries
     }
 
-    /// Finds the place of every entry in a pattern that has them all.
-    pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern) {
-        let slot = |i, j| {
-            let slot = pattern.slot(i, j)?;
-            u32::try_from(slot).ok()
-        };
+    /// Finds the place of every entry in a pattern that has them all, or, of a symmetric stiffness, the upper `half`.
+    pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
+        self.half = half;
         for placed in &mut self.elements {
-            let equation = |d: &usize| dofs.equation[*d];
-            placed.held = placed.dofs.iter().any(|d| equation(d).is_none());
-            placed.slots.clear();
-            let pairs = placed
-                .dofs
-                .iter()
-                .flat_map(|i| placed.dofs.iter().map(move |j| (equation(i), equation(j))));
-            placed.slots.extend(pairs.map(|pair| match pair {
-                (Some(i), Some(j)) => slot(i, j).unwrap_or(NOWHERE),
-                _ => NOWHERE,
-            }));
+            placed.bind(dofs, pattern, half);
         }
         for matrix in &mut self.matrices {
             matrix.bind(dofs, pattern);
@@ -206,6 +197,9 @@ impl Assembly {
                     if !element.add(&past, u, force, tangent) {
                         placed.give_up(&mut out);
                         continue;
+                    }
+                    if placed.held || !self.half {
+                        quad8::mirror(tangent);
                     }
                 }
             }
@@ -259,6 +253,30 @@ fn dofs_of(model: &Model, nodes: &[usize], count: usize) -> Vec<usize> {
 }
 
 impl Placed {
+    fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
+        let equation = |d: &usize| dofs.equation[*d];
+        let n = self.dofs.len();
+        self.held = self.dofs.iter().any(|d| equation(d).is_none());
+        self.slots.clear();
+        for (i, row) in self.dofs.iter().enumerate() {
+            // Of the upper half, each pair once, wherever the pattern has it.
+            let first = if half { i } else { 0 };
+            for (j, column) in self.dofs.iter().enumerate().skip(first) {
+                let (Some(row), Some(column)) = (equation(row), equation(column)) else {
+                    continue;
+                };
+                let slot = if half {
+                    pattern.slot(row.min(column), row.max(column))
+                } else {
+                    pattern.slot(row, column)
+                };
+                let pair = u32::try_from(i * n + j).ok();
+                let slot = slot.and_then(|slot| u32::try_from(slot).ok());
+                self.slots.extend(pair.zip(slot));
+            }
+        }
+    }
+
     fn gather(&self, from: &[f64], to: &mut [f64]) {
         for (to, &d) in to.iter_mut().zip(&self.dofs) {
             *to = from[d];
@@ -270,10 +288,8 @@ impl Placed {
             out.force[d] += force;
             out.size[d] += force.abs();
         }
-        for (value, &slot) in tangent.iter().zip(&self.slots) {
-            if slot != NOWHERE {
-                out.values[slot as usize] += value;
-            }
+        for &(entry, slot) in &self.slots {
+            out.values[slot as usize] += tangent[entry as usize];
         }
     }
 

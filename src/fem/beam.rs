@@ -15,7 +15,7 @@
 //! The degrees of freedom of an element are ordered x, y, θ of node 1, of node 2, …, then Q at the Gauss points.
 
 use crate::fem::lagrange::{MAX_NODES, gauss, shape};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// Most degrees of freedom of one element: 3 per node, and a shear force per Gauss point.
 pub const MAX_DOFS: usize = 3 * MAX_NODES + MAX_NODES - 1;
@@ -131,66 +131,126 @@ impl Element {
     /// [`Element::dofs`] squared entries), for displacements `u` of the element.
     pub fn add(&self, u: &[f64], force: &mut [f64], tangent: &mut [f64]) {
         let (m, size) = (self.nodes, self.dofs());
-        for p in 0..self.points.len() {
-            let point = &self.points[p];
+        for (p, point) in self.points.iter().enumerate() {
             let state = self.section_state(p, u);
             let theta: f64 = (0..m).map(|i| point.n[i] * u[3 * i + 2]).sum();
-            let (s, c) = (point.angle + theta).sin_cos();
-            let (w, stretch, shear) = (point.weight, 1.0 + state.strain.x, state.strain.y);
-            let b = |i: usize| {
-                let (n, d) = (point.n[i], point.d[i]);
-                Matrix3::new(
-                    c * d,
-                    s * d,
-                    shear * n,
-                    -s * d,
-                    c * d,
-                    -stretch * n,
-                    0.0,
-                    0.0,
-                    d,
-                )
-            };
-            let stiffness = Matrix3::from_diagonal(&Vector3::new(
-                self.section.ea,
-                self.section.ga.unwrap_or(0.0),
-                self.section.ei,
-            ));
-            let (normal, transverse) = (state.force.x, state.force.y);
+            let moduli = self.moduli(point, theta, &state);
+            let (n, d) = (&point.n[..m], &point.d[..m]);
             for i in 0..m {
-                let bi = b(i);
-                let f = bi.transpose() * state.force * w;
-                for a in 0..3 {
-                    force[3 * i + a] += f[a];
-                }
-                let left = bi.transpose() * stiffness * w;
-                for j in 0..m {
-                    let mut k = left * b(j);
-                    let (ni, nj, di, dj) = (point.n[i], point.n[j], point.d[i], point.d[j]);
-                    // Second variations of ε and γ: what turning the section does to a displaced axis.
-                    let turn = [-normal * s - transverse * c, normal * c - transverse * s];
-                    for a in 0..2 {
-                        k[(a, 2)] += w * turn[a] * di * nj;
-                        k[(2, a)] += w * turn[a] * ni * dj;
-                    }
-                    k[(2, 2)] -= w * (normal * stretch + transverse * shear) * ni * nj;
-                    for a in 0..3 {
-                        for e in 0..3 {
-                            tangent[(3 * i + a) * size + 3 * j + e] += k[(a, e)];
-                        }
-                    }
-                }
-                if self.section.ga.is_none() {
-                    let q = 3 * m + p;
-                    for a in 0..3 {
-                        tangent[(3 * i + a) * size + q] += w * bi[(1, a)];
-                        tangent[q * size + 3 * i + a] += w * bi[(1, a)];
-                    }
-                }
+                let (n_i, d_i) = (n[i], d[i]);
+                let [x, y, turn] = &mut force[3 * i..3 * i + 3] else {
+                    continue;
+                };
+                *x += d_i * moduli.resultant[0];
+                *y += d_i * moduli.resultant[1];
+                *turn += d_i * moduli.moment + n_i * moduli.couple;
+                let rows = &mut tangent[3 * i * size..(3 * i + 3) * size];
+                moduli.add_rows(n_i, d_i, (n, d), rows);
             }
             if self.section.ga.is_none() {
-                force[3 * m + p] += w * shear;
+                self.add_constraint(p, &moduli, state.strain.y, force, tangent);
             }
+        }
+    }
+
+    /// What the nodes' rows and columns at a Gauss point have in common. The strains' derivatives by the motion of node i
+    /// are d_i P + n_i Q with P = [t, n in the first two rows; κ in the third] and Q in its third column only.
+    fn moduli(&self, point: &GaussPoint, theta: f64, state: &SectionState) -> Moduli {
+        let (s, c) = (point.angle + theta).sin_cos();
+        let (w, stretch, shear) = (point.weight, 1.0 + state.strain.x, state.strain.y);
+        let (normal, transverse) = (state.force.x, state.force.y);
+        let (ea, ei) = (self.section.ea, self.section.ei);
+        let ga = self.section.ga.unwrap_or(0.0);
+        let resultant = [
+            w * (c * normal - s * transverse),
+            w * (s * normal + c * transverse),
+        ];
+        // EA ε' and GA γ' of a unit rotation, and, from the second variations of ε and γ, what turning the section does.
+        let (axial, sheared) = (w * ea * shear, -w * ga * stretch);
+        Moduli {
+            resultant,
+            moment: w * state.force.z,
+            couple: w * (shear * normal - stretch * transverse),
+            direct: [
+                w * (c * c * ea + s * s * ga),
+                w * c * s * (ea - ga),
+                w * (s * s * ea + c * c * ga),
+            ],
+            mixed: [
+                c * axial - s * sheared - resultant[1],
+                s * axial + c * sheared + resultant[0],
+            ],
+            bending: w * ei,
+            rotary: shear * axial - stretch * sheared - w * (normal * stretch + transverse * shear),
+            constraint: [-w * s, w * c, -w * stretch],
+        }
+    }
+
+    /// Q at Gauss point p as an unknown, and γ = 0 as its equation.
+    fn add_constraint(
+        &self,
+        p: usize,
+        moduli: &Moduli,
+        shear: f64,
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) {
+        let (m, size, point) = (self.nodes, self.dofs(), &self.points[p]);
+        let q = 3 * m + p;
+        let [x, y, turn] = moduli.constraint;
+        for i in 0..m {
+            let row = [point.d[i] * x, point.d[i] * y, point.n[i] * turn];
+            for (a, value) in row.into_iter().enumerate() {
+                tangent[(3 * i + a) * size + q] += value;
+                tangent[q * size + 3 * i + a] += value;
+            }
+        }
+        force[q] += point.weight * shear;
+    }
+}
+
+/// Force and tangent of a Gauss point but for the shape functions.
+struct Moduli {
+    /// N t + Q n (force).
+    resultant: [f64; 2],
+    moment: f64,
+    /// Of ε and γ by the rotation.
+    couple: f64,
+    /// xx, xy, yy of d_i d_j.
+    direct: [f64; 3],
+    /// Of d_i n_j between a displacement and a rotation.
+    mixed: [f64; 2],
+    /// Of d_i d_j and of n_i n_j between rotations.
+    bending: f64,
+    rotary: f64,
+    /// Derivative of γ: by displacements, times d_i, and by the rotation, times n_i.
+    constraint: [f64; 3],
+}
+
+impl Moduli {
+    /// Adds the three rows of a node with n_i, d_i.
+    fn add_rows(&self, n_i: f64, d_i: f64, (n, d): (&[f64], &[f64]), rows: &mut [f64]) {
+        let size = rows.len() / 3;
+        let (row_x, rest) = rows.split_at_mut(size);
+        let (row_y, row_turn) = rest.split_at_mut(size);
+        let [xx, xy, yy] = self.direct.map(|v| d_i * v);
+        let [x_turn, y_turn] = self.mixed.map(|v| d_i * v);
+        let [turn_x, turn_y] = self.mixed.map(|v| n_i * v);
+        let (bending, rotary) = (d_i * self.bending, n_i * self.rotary);
+        let columns = row_x
+            .chunks_exact_mut(3)
+            .zip(row_y.chunks_exact_mut(3))
+            .zip(row_turn.chunks_exact_mut(3));
+        for (((x, y), turn), (n_j, d_j)) in columns.zip(n.iter().zip(d)) {
+            x[0] += xx * d_j;
+            x[1] += xy * d_j;
+            x[2] += x_turn * n_j;
+            y[0] += xy * d_j;
+            y[1] += yy * d_j;
+            y[2] += y_turn * n_j;
+            turn[0] += turn_x * d_j;
+            turn[1] += turn_y * d_j;
+            turn[2] += bending * d_j + rotary * n_j;
         }
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! Beams and interface elements of the paper have 3 or 5 nodes; 2 to 9 are possible here.
 
+use std::sync::LazyLock;
+
 /// Most nodes that an element on a curve can have.
 pub const MAX_NODES: usize = 9;
 
@@ -17,32 +19,79 @@ pub struct Shape {
 }
 
 /// Position of node i of m on the reference element.
-pub fn node(m: usize, i: usize) -> f64 {
+pub const fn node(m: usize, i: usize) -> f64 {
     -1.0 + 2.0 * i as f64 / (m - 1) as f64
+}
+
+/// ξ_i of the m nodes, and 1 / Π (ξ_i − ξ_j) over the others; by m.
+const NODES: [[(f64, f64); MAX_NODES]; MAX_NODES + 1] = nodes();
+
+const fn nodes() -> [[(f64, f64); MAX_NODES]; MAX_NODES + 1] {
+    let mut table = [[(0.0, 0.0); MAX_NODES]; MAX_NODES + 1];
+    let mut m = 2;
+    while m <= MAX_NODES {
+        let mut i = 0;
+        while i < m {
+            let (mut product, mut j) = (1.0, 0);
+            while j < m {
+                if j != i {
+                    product *= node(m, i) - node(m, j);
+                }
+                j += 1;
+            }
+            table[m][i] = (node(m, i), 1.0 / product);
+            i += 1;
+        }
+        m += 1;
+    }
+    table
 }
 
 /// The m shape functions and their first two derivatives at ξ.
 ///
-/// Each N_i is a product of m − 1 linear factors; its derivatives leave out one and two of them.
+/// N_i is the product of the factors ξ − ξ_j before i with that of the factors behind i, over its value at ξ_i; each
+/// product is carried along with its derivatives.
 pub fn shape(m: usize, xi: f64) -> Shape {
+    let nodes = &NODES[m][..m];
     let mut s = Shape {
         n: [0.0; MAX_NODES],
         d: [0.0; MAX_NODES],
         dd: [0.0; MAX_NODES],
     };
-    for i in 0..m {
-        // Value, first and second derivative of the product so far: multiply by (ξ − ξ_j)/(ξ_i − ξ_j) in turn.
-        let (mut v, mut d, mut dd) = (1.0, 0.0, 0.0);
-        for j in (0..m).filter(|&j| j != i) {
-            let slope = 1.0 / (node(m, i) - node(m, j));
-            let factor = (xi - node(m, j)) * slope;
-            dd = dd * factor + 2.0 * d * slope;
-            d = d * factor + v * slope;
-            v *= factor;
-        }
-        (s.n[i], s.d[i], s.dd[i]) = (v, d, dd);
+    let mut before = (1.0, 0.0, 0.0);
+    for (i, &(at, _)) in nodes.iter().enumerate() {
+        (s.n[i], s.d[i], s.dd[i]) = before;
+        before = times(before, xi - at);
+    }
+    let mut behind = (1.0, 0.0, 0.0);
+    for (i, &(at, weight)) in nodes.iter().enumerate().rev() {
+        let (v, d, dd) = behind;
+        let (n, n_d, n_dd) = (s.n[i], s.d[i], s.dd[i]);
+        s.n[i] = weight * (n * v);
+        s.d[i] = weight * (n_d * v + n * d);
+        s.dd[i] = weight * (n_dd * v + 2.0 * n_d * d + n * dd);
+        behind = times(behind, xi - at);
     }
     s
+}
+
+/// A product with its first two derivatives, times one more factor of slope 1.
+fn times((v, d, dd): (f64, f64, f64), factor: f64) -> (f64, f64, f64) {
+    (v * factor, d * factor + v, dd * factor + 2.0 * d)
+}
+
+/// The m shape functions at 2m − 1 equally spaced ξ from −1 to 1, made once.
+pub fn samples(m: usize) -> &'static [(f64, [f64; MAX_NODES])] {
+    static TABLE: LazyLock<Vec<Vec<(f64, [f64; MAX_NODES])>>> = LazyLock::new(|| {
+        let of = |m: usize| {
+            let places = (0..2 * m - 1).map(|k| node(2 * m - 1, k));
+            places.map(|xi| (xi, shape(m, xi).n)).collect()
+        };
+        (0..=MAX_NODES)
+            .map(|m| if m < 2 { Vec::new() } else { of(m) })
+            .collect()
+    });
+    &TABLE[m]
 }
 
 /// Points and weights of the Gauss-Legendre rule of `count` points, by Newton's method on the Legendre polynomial.

@@ -78,8 +78,13 @@ impl Material {
         };
         let direct = lambda + 2.0 * mu;
         let tangent = Matrix3::new(direct, lambda, 0.0, lambda, direct, 0.0, 0.0, 0.0, mu);
+        let stress = Vector3::new(
+            direct * strain.x + lambda * strain.y,
+            lambda * strain.x + direct * strain.y,
+            mu * strain.z,
+        );
         Response {
-            stress: tangent * strain,
+            stress,
             tangent,
             thickening,
         }

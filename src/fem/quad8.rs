@@ -22,7 +22,7 @@
 use crate::fem::lagrange::gauss;
 use crate::fem::material::{Material, Response};
 use crate::scene::spec::{Law, Update};
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::{Matrix2, Vector3};
 use std::sync::LazyLock;
 
 /// Nodes of an element.
@@ -41,6 +41,15 @@ pub struct Element {
     at: [[f64; 2]; NODES],
     material: Material,
     update: Update,
+    /// Gradients and areas of the Gauss points in the undeformed shape.
+    points: Box<[Gradients; POINTS]>,
+}
+
+/// ∇N_i at a Gauss point in a shape, and the area that belongs to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gradients {
+    grad: [[f64; 2]; NODES],
+    area: f64,
 }
 
 /// What an element remembers of the last accepted increment. The total-Lagrangian update looks at none of it.
@@ -118,8 +127,8 @@ pub fn shape(xi: f64, eta: f64) -> ([f64; NODES], [[f64; 2]; NODES]) {
     (n, d)
 }
 
-/// Gradients ∇N_i in a shape, and the area that belongs to the Gauss point.
-fn gradients(parent: &Parent, at: &[[f64; 2]; NODES]) -> ([[f64; 2]; NODES], f64) {
+/// Those of a Gauss point in a shape.
+fn gradients(parent: &Parent, at: &[[f64; 2]; NODES]) -> Gradients {
     let mut j = [[0.0; 2]; 2];
     for (x, d) in at.iter().zip(&parent.d) {
         for a in 0..2 {
@@ -139,7 +148,10 @@ fn gradients(parent: &Parent, at: &[[f64; 2]; NODES]) -> ([[f64; 2]; NODES], f64
             inverse[1][0] * d[0] + inverse[1][1] * d[1],
         ]
     };
-    (parent.d.map(turned), det * parent.weight)
+    Gradients {
+        grad: parent.d.map(turned),
+        area: det * parent.weight,
+    }
 }
 
 /// H = ∂u/∂X.
@@ -187,6 +199,7 @@ impl Element {
     /// An element on these undeformed positions.
     pub fn new(at: [[f64; 2]; NODES], material: Material, update: Update) -> Self {
         Element {
+            points: Box::new(std::array::from_fn(|p| gradients(&RULE[p], &at))),
             at,
             material,
             update,
@@ -218,7 +231,10 @@ impl Element {
 
     /// Gauss point p; none where the material has no answer, or the reference shape is folded.
     fn point(&self, reference: &Reference, past: &Past<'_>, p: usize) -> Option<Point> {
-        let (grad, area) = gradients(&RULE[p], &reference.at);
+        let Gradients { grad, area } = match self.update {
+            Update::Total => self.points[p],
+            Update::Updated => gradients(&RULE[p], &reference.at),
+        };
         let h = slope(&grad, &reference.u);
         let strain = strain(&h);
         let (thickness, response) = match self.update {
@@ -245,16 +261,45 @@ impl Element {
     }
 
     /// Internal forces at displacements `u`, added to `force`, and their exact derivative, added to `tangent` (row by
-    /// row, [`DOFS`] squared entries). False, with parts of the sums missing, where there are none.
+    /// row, [`DOFS`] squared entries): in each row from the node's own block on, unless [`mirror`] fills in the others.
+    /// False, with parts of the sums missing, where there are none.
     pub fn add(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let reference = self.reference(past, u);
+        let mut terms = [Terms::default(); POINTS];
+        let mut grad = [[[0.0; 2]; NODES]; POINTS];
         for p in 0..POINTS {
             let Some(point) = self.point(&reference, past, p) else {
                 return false;
             };
-            point.add(force, tangent);
+            grad[p] = point.grad;
+            terms[p] = point.terms();
         }
-        mirror(tangent);
+        for i in 0..NODES {
+            let rows: [[[[f64; 2]; 2]; 2]; POINTS] =
+                std::array::from_fn(|p| terms[p].rows(grad[p][i]));
+            for p in 0..POINTS {
+                let [x, y] = grad[p][i];
+                for a in 0..2 {
+                    force[2 * i + a] += terms[p].stress[a][0] * x + terms[p].stress[a][1] * y;
+                }
+            }
+            for j in i..NODES {
+                let mut sum = [[0.0; 2]; 2];
+                for (row, grad) in rows.iter().zip(&grad) {
+                    let [x, y] = grad[j];
+                    for a in 0..2 {
+                        for c in 0..2 {
+                            sum[a][c] += row[a][0][c] * x + row[a][1][c] * y;
+                        }
+                    }
+                }
+                for a in 0..2 {
+                    let place = (2 * i + a) * DOFS + 2 * j;
+                    tangent[place] += sum[a][0];
+                    tangent[place + 1] += sum[a][1];
+                }
+            }
+        }
         true
     }
 
@@ -285,60 +330,66 @@ impl Element {
         for (n, x) in RULE[p].n.iter().zip(&self.at) {
             at = [at[0] + n * x[0], at[1] + n * x[1]];
         }
-        let (grad, _) = gradients(&RULE[p], &self.at);
         Some(PointState {
             at,
-            gradient: plus_identity(&slope(&grad, u)),
+            gradient: plus_identity(&slope(&self.points[p].grad, u)),
             cauchy: point.cauchy(),
         })
     }
 }
 
-impl Point {
-    fn add(&self, force: &mut [f64], tangent: &mut [f64]) {
-        let f = plus_identity(&self.h);
-        let s = self.response.stress * self.volume;
-        let d = self.response.tangent * self.volume;
-        let (s11, s22, s12) = (s.x, s.y, s.z);
-        for i in 0..NODES {
-            let [x, y] = self.grad[i];
-            // S ∇N_i, and B_i, whose columns belong to u and v.
-            let flow = [s11 * x + s12 * y, s12 * x + s22 * y];
-            let b = [
-                Vector3::new(f[(0, 0)] * x, f[(0, 1)] * y, f[(0, 0)] * y + f[(0, 1)] * x),
-                Vector3::new(f[(1, 0)] * x, f[(1, 1)] * y, f[(1, 0)] * y + f[(1, 1)] * x),
-            ];
-            for a in 0..2 {
-                force[2 * i + a] += f[(a, 0)] * flow[0] + f[(a, 1)] * flow[1];
-            }
-            self.add_rows(i, flow, &[product(&d, &b[0]), product(&d, &b[1])], tangent);
-        }
-    }
+/// P = F S, and its derivative by H, times the volume of a Gauss point.
+#[derive(Clone, Copy, Default)]
+struct Terms {
+    stress: [[f64; 2]; 2],
+    /// ∂P_aJ/∂H_cL at [a][J][L][c].
+    moduli: [[[[f64; 2]; 2]; 2]; 2],
+}
 
-    /// Entries of the two rows of node i from its own block on; [`mirror`] fills in the others.
-    fn add_rows(&self, i: usize, flow: [f64; 2], db: &[Vector3<f64>; 2], tangent: &mut [f64]) {
-        let h = &self.h;
+impl Terms {
+    /// Σ_J N_i,J ∂P_aJ/∂H_cL at [a][L][c].
+    fn rows(&self, [x, y]: [f64; 2]) -> [[[f64; 2]; 2]; 2] {
+        let m = &self.moduli;
+        let entry = |a: usize, l: usize, c: usize| m[a][0][l][c] * x + m[a][1][l][c] * y;
+        std::array::from_fn(|a| std::array::from_fn(|l| std::array::from_fn(|c| entry(a, l, c))))
+    }
+}
+
+impl Point {
+    fn terms(&self) -> Terms {
+        let (h, v, d) = (&self.h, self.volume, &self.response.tangent);
         let f = [[1.0 + h[0][0], h[0][1]], [h[1][0], 1.0 + h[1][1]]];
-        // B_iᵀ D B_j = G_i ∇N_j with these G_i, which do not know j.
-        let rows: [[[f64; 2]; 2]; 2] = std::array::from_fn(|a| {
-            std::array::from_fn(|c| {
-                [
-                    db[a].x * f[c][0] + db[a].z * f[c][1],
-                    db[a].y * f[c][1] + db[a].z * f[c][0],
-                ]
-            })
-        });
-        for j in i..NODES {
-            let [x, y] = self.grad[j];
-            let geometric = flow[0] * x + flow[1] * y;
-            for a in 0..2 {
-                let row = &mut tangent[(2 * i + a) * DOFS + 2 * j..][..2];
-                for c in 0..2 {
-                    row[c] += rows[a][c][0] * x + rows[a][c][1] * y;
+        let t = &self.response.stress;
+        let s = [[v * t.x, v * t.z], [v * t.z, v * t.y]];
+        // ∂E/∂H_cL, and D times it.
+        let strain = |c: usize, l: usize| {
+            let mut e = [0.0, 0.0, f[c][1 - l]];
+            e[l] = f[c][l];
+            e
+        };
+        let answer = |e: [f64; 3]| -> [f64; 3] {
+            std::array::from_fn(|k| v * (d[(k, 0)] * e[0] + d[(k, 1)] * e[1] + d[(k, 2)] * e[2]))
+        };
+        let mut terms = Terms::default();
+        for c in 0..2 {
+            for l in 0..2 {
+                let de = answer(strain(c, l));
+                for a in 0..2 {
+                    for j in 0..2 {
+                        let e = strain(a, j);
+                        let geometric = if a == c { s[j][l] } else { 0.0 };
+                        terms.moduli[a][j][l][c] =
+                            e[0] * de[0] + e[1] * de[1] + e[2] * de[2] + geometric;
+                    }
                 }
-                row[a] += geometric;
             }
         }
+        for a in 0..2 {
+            for j in 0..2 {
+                terms.stress[a][j] = f[a][0] * s[0][j] + f[a][1] * s[1][j];
+            }
+        }
+        terms
     }
 
     /// Stretch across the plane.
@@ -359,12 +410,8 @@ impl Point {
     }
 }
 
-fn product(d: &Matrix3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
-    d * b
-}
-
-/// Fills in the entries below the diagonal blocks: the tangent is symmetric.
-fn mirror(tangent: &mut [f64]) {
+/// Fills in the entries of a tangent below the diagonal blocks: it is symmetric.
+pub fn mirror(tangent: &mut [f64]) {
     for i in 2..DOFS {
         for j in 0..i & !1 {
             tangent[i * DOFS + j] = tangent[j * DOFS + i];
@@ -432,6 +479,7 @@ mod tests {
     fn evaluate(element: &Element, past: &Past<'_>, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut f, mut k) = (vec![0.0; DOFS], vec![0.0; DOFS * DOFS]);
         assert!(element.add(past, u, &mut f, &mut k));
+        mirror(&mut k);
         (f, k)
     }
 

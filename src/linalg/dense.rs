@@ -4,8 +4,9 @@ use super::{SolveError, fill_probe, largest};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
 use faer::linalg::lu::partial_pivoting::solve::{solve_in_place, solve_in_place_scratch};
+use faer::linalg::matmul::matmul;
 use faer::perm::PermRef;
-use faer::{MatMut, MatRef, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 
 /// Factors of a small dense matrix, with all that is needed to make them again without allocating.
 ///
@@ -39,6 +40,16 @@ impl DenseFactors {
             memory: MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?,
             probe: vec![0.0; n],
         })
+    }
+
+    /// Takes another size from now on, at most the one that there is room for.
+    pub fn resize(&mut self, n: usize) {
+        self.n = n;
+        self.values.resize(n * n, 0.0);
+        self.row_scale.resize(n, 1.0);
+        self.probe.resize(n, 0.0);
+        self.perm.resize(n, 0);
+        self.perm_inverse.resize(n, 0);
     }
 
     /// Factors the matrix with these values, column by column.
@@ -110,6 +121,27 @@ impl DenseFactors {
             MemStack::new(&mut self.memory),
         );
     }
+}
+
+/// C = C − A B, C of as many rows as A and as many columns as B; each stored column by column, the columns this far
+/// apart.
+pub fn subtract_product(
+    c: (&mut [f64], usize),
+    a: (&[f64], usize),
+    b: (&[f64], usize),
+    [rows, inner, columns]: [usize; 3],
+) {
+    if rows == 0 || inner == 0 || columns == 0 {
+        return;
+    }
+    matmul(
+        MatMut::from_column_major_slice_with_stride_mut(c.0, rows, columns, c.1),
+        Accum::Add,
+        MatRef::from_column_major_slice_with_stride(a.0, rows, inner, a.1),
+        MatRef::from_column_major_slice_with_stride(b.0, inner, columns, b.1),
+        -1.0,
+        Par::Seq,
+    );
 }
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
-//! Sparse LU with partial pivoting, scaled, refined and checked.
+//! LU of sparse systems, scaled, refined and checked.
 //!
 //! The augmented system of eqn (9) mixes stiffnesses of very different size with constraint rows of size one and,
-//! where friction stands in the matrix, is unsymmetric. So it is scaled row by row and column by column; the symbolic
+//! where friction stands in the matrix, is unsymmetric. So it is scaled row by row and column by column, by powers of
+//! two, which cost no digits and seldom change. Small systems whose groups of unknowns are known are factored front by
+//! front ([`super::fronts`]); others, and those that find no pivots there, by faer with partial pivoting. The symbolic
 //! part is kept as long as the pattern stands.
 
+use super::fronts::Fronts;
 use super::{Pattern, SolveError, fill_probe, largest, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SparseColMatRef;
@@ -12,17 +15,19 @@ use faer::{Conj, MatMut, Par};
 use std::sync::Arc;
 
 /// Number of equilibration sweeps; each takes the square root out of the spread of the rows' and columns' sizes.
-const SWEEPS: usize = 4;
+const SWEEPS: usize = 3;
 
-/// Backward error above which a solution is not believed.
+/// Backward error above which a solution is not believed, and above which it is refined.
 const BACKWARD_LIMIT: f64 = 1e-9;
+const REFINED: f64 = 4.0 * f64::EPSILON;
 
 /// Factors of a sparse matrix, with all that is needed to make them again without allocating.
 pub struct Factors {
     pattern: Arc<Pattern>,
-    symbolic: SymbolicLu<usize>,
-    numeric: NumericLu<usize, f64>,
-    memory: MemBuffer,
+    fronts: Option<Fronts>,
+    general: Option<General>,
+    /// Which of the two holds the factors.
+    used: Used,
     row_scale: Vec<f64>,
     col_scale: Vec<f64>,
     values: Vec<f64>,
@@ -30,7 +35,20 @@ pub struct Factors {
     residual: Vec<f64>,
     sizes: Vec<f64>,
     correction: Vec<f64>,
-    ready: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Used {
+    Neither,
+    Fronts,
+    General,
+}
+
+/// faer's factors.
+struct General {
+    symbolic: SymbolicLu<usize>,
+    numeric: NumericLu<usize, f64>,
+    memory: MemBuffer,
 }
 
 impl Factors {
@@ -42,19 +60,28 @@ impl Factors {
     /// # Errors
     /// [`SolveError`] if the pattern is structurally singular or memory runs out.
     pub fn new(pattern: Arc<Pattern>) -> Result<Self, SolveError> {
-        let n = pattern.n;
-        let symbolic = factorize_symbolic_lu(symbolic_view(&pattern), Default::default())
-            .map_err(|_| SolveError::OutOfMemory)?;
-        let request = symbolic
-            .factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default())
-            .or(symbolic.solve_in_place_scratch::<f64>(Self::BLOCK, Par::Seq));
-        let memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
-        let entries = pattern.entries();
-        Ok(Factors {
+        let general = General::new(&pattern)?;
+        Ok(Factors::with(pattern, None, Some(general)))
+    }
+
+    /// Analyses a pattern of symmetric structure whose unknowns are in these groups, within which saddle points are whole.
+    ///
+    /// # Errors
+    /// As [`Factors::new`].
+    pub fn in_groups(pattern: Arc<Pattern>, groups: &[usize]) -> Result<Self, SolveError> {
+        match Fronts::new(&pattern, groups) {
+            Some(fronts) => Ok(Factors::with(pattern, Some(fronts), None)),
+            None => Factors::new(pattern),
+        }
+    }
+
+    fn with(pattern: Arc<Pattern>, fronts: Option<Fronts>, general: Option<General>) -> Self {
+        let (n, entries) = (pattern.n, pattern.entries());
+        Factors {
             pattern,
-            symbolic,
-            numeric: NumericLu::new(),
-            memory,
+            fronts,
+            general,
+            used: Used::Neither,
             row_scale: vec![1.0; n],
             col_scale: vec![1.0; n],
             values: vec![0.0; entries],
@@ -62,8 +89,7 @@ impl Factors {
             residual: vec![0.0; n],
             sizes: vec![0.0; n],
             correction: vec![0.0; n],
-            ready: false,
-        })
+        }
     }
 
     /// The pattern that the factors belong to.
@@ -77,44 +103,62 @@ impl Factors {
     /// [`SolveError::Singular`] where a pivot column is empty; near-singularity shows in [`Factors::solve`] and
     /// [`Factors::inverse_norm`].
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
-        self.ready = false;
+        self.used = Used::Neither;
         self.values.copy_from_slice(values);
         self.equilibrate();
-        let matrix = SparseColMatRef::new(symbolic_view(&self.pattern), &self.scaled);
-        self.symbolic
-            .factorize_numeric_lu(
-                &mut self.numeric,
-                matrix,
-                Par::Seq,
-                MemStack::new(&mut self.memory),
-                Default::default(),
-            )
-            .map_err(|_| SolveError::Singular)?;
-        self.ready = true;
+        if let Some(fronts) = &mut self.fronts
+            && fronts.factor(&self.scaled).is_ok()
+        {
+            self.used = Used::Fronts;
+            return Ok(());
+        }
+        self.factor_generally()
+    }
+
+    fn factor_generally(&mut self) -> Result<(), SolveError> {
+        self.used = Used::Neither;
+        let general = match &mut self.general {
+            Some(general) => general,
+            none => none.insert(General::new(&self.pattern)?),
+        };
+        general.factor(&self.pattern, &self.scaled)?;
+        self.used = Used::General;
         Ok(())
     }
 
-    /// Solves A x = b with one step of iterative refinement and checks the answer.
+    /// Solves A x = b, refines where that helps, and checks the answer.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if x is not finite or leaves a residual beyond round-off.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
-        if !self.ready {
+        let solved = self.solve_as_factored(b, x);
+        if solved.is_err() && self.used == Used::Fronts {
+            self.factor_generally()?;
+            return self.solve_as_factored(b, x);
+        }
+        solved
+    }
+
+    fn solve_as_factored(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
+        if self.used == Used::Neither {
             return Err(SolveError::Singular);
         }
         x.copy_from_slice(b);
         self.apply_inverse(x);
-        self.pattern.multiply(&self.values, x, &mut self.residual);
-        let mut correction = std::mem::take(&mut self.correction);
-        for (c, (r, b)) in correction.iter_mut().zip(self.residual.iter().zip(b)) {
-            *c = b - r;
+        let mut error = self.backward_error(b, x);
+        if error > REFINED {
+            let mut correction = std::mem::take(&mut self.correction);
+            for (c, (r, b)) in correction.iter_mut().zip(self.residual.iter().zip(b)) {
+                *c = b - r;
+            }
+            self.apply_inverse(&mut correction);
+            for (x, c) in x.iter_mut().zip(&correction) {
+                *x += c;
+            }
+            self.correction = correction;
+            error = self.backward_error(b, x);
         }
-        self.apply_inverse(&mut correction);
-        for (x, c) in x.iter_mut().zip(&correction) {
-            *x += c;
-        }
-        self.correction = correction;
-        if x.iter().all(|v| v.is_finite()) && self.backward_error(b, x) <= BACKWARD_LIMIT {
+        if error <= BACKWARD_LIMIT && x.iter().all(|v| v.is_finite()) {
             Ok(())
         } else {
             Err(SolveError::Singular)
@@ -127,27 +171,10 @@ impl Factors {
     /// # Errors
     /// [`SolveError::Singular`] if X is not finite.
     pub fn solve_block(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
-        if !self.ready {
+        if self.used == Used::Neither {
             return Err(SolveError::Singular);
         }
-        let n = self.pattern.n;
-        for column in x.chunks_exact_mut(n) {
-            for (x, s) in column.iter_mut().zip(&self.row_scale) {
-                *x *= s;
-            }
-        }
-        let columns = x.len() / n;
-        LuRef::new_unchecked(&self.symbolic, &self.numeric).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, n, columns),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-        );
-        for column in x.chunks_exact_mut(n) {
-            for (x, s) in column.iter_mut().zip(&self.col_scale) {
-                *x *= s;
-            }
-        }
+        self.apply_inverse(x);
         if x.iter().all(|x| x.is_finite()) {
             Ok(())
         } else {
@@ -158,7 +185,7 @@ impl Factors {
     /// A lower bound of the norm of the inverse of the scaled matrix (whose entries are at most one), from one
     /// solve with a fixed vector of all frequencies; near 1e16 where the matrix is singular.
     pub fn inverse_norm(&mut self) -> f64 {
-        if !self.ready {
+        if self.used == Used::Neither {
             return f64::INFINITY;
         }
         let mut probe = std::mem::take(&mut self.correction);
@@ -169,77 +196,137 @@ impl Factors {
         size
     }
 
-    /// Backward error of x as a solution of A x = b, in the scaled system, where all entries are at most one.
+    /// Backward error of x as a solution of A x = b, in the scaled system, where all entries are at most one; leaves
+    /// A x in `residual`.
     fn backward_error(&mut self, b: &[f64], x: &[f64]) -> f64 {
         self.pattern.multiply(&self.values, x, &mut self.residual);
-        let largest =
-            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |m, v| m.max(v.abs()));
-        let scales = || b.iter().zip(&self.residual).zip(&self.row_scale);
-        let error = largest(&mut scales().map(|((b, product), scale)| (b - product) * scale));
-        let size = largest(&mut scales().map(|((b, _), scale)| b * scale)).max(largest(
-            &mut x.iter().zip(&self.col_scale).map(|(x, scale)| x / scale),
-        ));
-        if error > 0.0 { error / size } else { 0.0 }
+        let (mut error, mut size) = (0.0_f64, 0.0_f64);
+        for ((b, product), scale) in b.iter().zip(&self.residual).zip(&self.row_scale) {
+            let apart = ((b - product) * scale).abs();
+            // Not max, which takes no notice of what is no number.
+            error = if apart <= error { error } else { apart };
+            size = size.max((b * scale).abs());
+        }
+        for (x, scale) in x.iter().zip(&self.col_scale) {
+            size = size.max((x / scale).abs());
+        }
+        if error == 0.0 { 0.0 } else { error / size }
     }
 
     fn apply_inverse(&mut self, x: &mut [f64]) {
-        for (x, s) in x.iter_mut().zip(&self.row_scale) {
-            *x *= s;
+        let n = self.pattern.n.max(1);
+        for column in x.chunks_exact_mut(n) {
+            for (x, s) in column.iter_mut().zip(&self.row_scale) {
+                *x *= s;
+            }
         }
         self.apply_scaled_inverse(x);
-        for (x, s) in x.iter_mut().zip(&self.col_scale) {
-            *x *= s;
+        for column in x.chunks_exact_mut(n) {
+            for (x, s) in column.iter_mut().zip(&self.col_scale) {
+                *x *= s;
+            }
         }
     }
 
     fn apply_scaled_inverse(&mut self, x: &mut [f64]) {
         let n = self.pattern.n;
-        LuRef::new_unchecked(&self.symbolic, &self.numeric).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, n, 1),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-        );
+        match (self.used, &mut self.fronts, &mut self.general) {
+            (Used::Fronts, Some(fronts), _) => {
+                x.chunks_exact_mut(n.max(1)).for_each(|x| fronts.solve(x));
+            }
+            (_, _, Some(general)) => general.solve(n, x),
+            _ => {}
+        }
     }
 
-    /// Ruiz equilibration: rows and columns are divided by the square roots of their largest entries, some times.
+    /// Ruiz equilibration: rows and columns are divided by about the square roots of their largest entries, some times.
     fn equilibrate(&mut self) {
         let n = self.pattern.n;
         self.row_scale.fill(1.0);
         self.col_scale.fill(1.0);
-        self.scaled.copy_from_slice(&self.values);
         for _ in 0..SWEEPS {
             self.sizes.fill(0.0);
             self.residual.fill(0.0);
             for col in 0..n {
-                for k in self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1] {
-                    let size = self.scaled[k].abs();
-                    let row = self.pattern.row_idx[k];
+                let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
+                let rows = &self.pattern.row_idx[range.clone()];
+                let (own, mut most) = (self.col_scale[col], 0.0_f64);
+                for (value, &row) in self.values[range].iter().zip(rows) {
+                    let size = (value * own * self.row_scale[row]).abs();
                     self.sizes[row] = self.sizes[row].max(size);
-                    self.residual[col] = self.residual[col].max(size);
+                    most = most.max(size);
                 }
+                self.residual[col] = most;
             }
             for i in 0..n {
                 self.row_scale[i] *= inverse_root(self.sizes[i]);
                 self.col_scale[i] *= inverse_root(self.residual[i]);
             }
-            for col in 0..n {
-                for k in self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1] {
-                    self.scaled[k] = self.values[k]
-                        * self.row_scale[self.pattern.row_idx[k]]
-                        * self.col_scale[col];
-                }
+        }
+        for col in 0..n {
+            let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
+            let rows = &self.pattern.row_idx[range.clone()];
+            let own = self.col_scale[col];
+            let values = self.scaled[range.clone()].iter_mut();
+            for ((scaled, value), &row) in values.zip(&self.values[range]).zip(rows) {
+                *scaled = value * own * self.row_scale[row];
             }
         }
     }
 }
 
+impl General {
+    fn new(pattern: &Pattern) -> Result<Self, SolveError> {
+        let symbolic = factorize_symbolic_lu(symbolic_view(pattern), Default::default())
+            .map_err(|_| SolveError::OutOfMemory)?;
+        let request = symbolic
+            .factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default())
+            .or(symbolic.solve_in_place_scratch::<f64>(Factors::BLOCK, Par::Seq));
+        Ok(General {
+            memory: MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?,
+            numeric: NumericLu::new(),
+            symbolic,
+        })
+    }
+
+    fn factor(&mut self, pattern: &Pattern, values: &[f64]) -> Result<(), SolveError> {
+        let matrix = SparseColMatRef::new(symbolic_view(pattern), values);
+        self.symbolic
+            .factorize_numeric_lu(
+                &mut self.numeric,
+                matrix,
+                Par::Seq,
+                MemStack::new(&mut self.memory),
+                Default::default(),
+            )
+            .map_err(|_| SolveError::Singular)?;
+        Ok(())
+    }
+
+    fn solve(&mut self, n: usize, x: &mut [f64]) {
+        let columns = x.len().checked_div(n).unwrap_or(0);
+        LuRef::new_unchecked(&self.symbolic, &self.numeric).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(x, n, columns),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+    }
+}
+
+/// The power of two nearest below the inverse of a square root, up to its own square root.
 fn inverse_root(size: f64) -> f64 {
     if size > 0.0 && size.is_finite() {
-        1.0 / size.sqrt()
+        let exponent = i64::try_from(size.to_bits() >> 52).unwrap_or(1023) - 1023;
+        power_of_two(-(exponent.div_euclid(2)))
     } else {
         1.0
     }
+}
+
+fn power_of_two(exponent: i64) -> f64 {
+    let biased = u64::try_from(exponent.clamp(-1000, 1000) + 1023).unwrap_or(1023);
+    f64::from_bits(biased << 52)
 }
 
 #[cfg(test)]

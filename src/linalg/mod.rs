@@ -1,16 +1,17 @@
 //! Linear systems: patterns, factors, checked solves. The only files that name faer.
 //!
-//! - [`Factors`]: sparse LU of anything square, the augmented system of eqn (9) above all;
+//! - [`Factors`]: sparse LU of anything square, the augmented system of eqn (9) above all; `fronts`, small ones of it;
 //! - [`SymmetricFactors`]: sparse LDLᵀ of the bodies alone, condensed to their interface (eqn 6) on the way;
 //! - [`DenseFactors`]: LU of the interface's own small systems.
 //!
 //! faer reports a singular matrix as success and returns infinities, so every solve is checked here.
 
 mod dense;
+mod fronts;
 mod lu;
 mod symmetric;
 
-pub use dense::DenseFactors;
+pub use dense::{DenseFactors, subtract_product};
 pub use lu::Factors;
 pub use symmetric::SymmetricFactors;
 
@@ -81,13 +82,36 @@ impl Pattern {
         }
     }
 
-    /// y = |A| |x|: the size of the terms that [`Pattern::multiply`] adds up, the scale of its round-off.
-    pub fn multiply_abs(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+    /// y = A x for a symmetric A of which this is the upper half.
+    pub fn multiply_half(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        self.add_up(values, x, y, true, |value, x| value * x);
+    }
+
+    /// y = |A| |x|: the size of the terms that a product adds up, the scale of its round-off. Where this is the upper
+    /// `half` of a symmetric A, that of the whole.
+    pub fn multiply_abs(&self, values: &[f64], x: &[f64], y: &mut [f64], half: bool) {
+        self.add_up(values, x, y, half, |value, x| (value * x).abs());
+    }
+
+    fn add_up(
+        &self,
+        values: &[f64],
+        x: &[f64],
+        y: &mut [f64],
+        half: bool,
+        term: impl Fn(f64, f64) -> f64,
+    ) {
         y.fill(0.0);
         for (col, &xc) in x.iter().enumerate() {
-            for k in self.col_ptr[col]..self.col_ptr[col + 1] {
-                y[self.row_idx[k]] += (values[k] * xc).abs();
+            let range = self.col_ptr[col]..self.col_ptr[col + 1];
+            let mut own = 0.0;
+            for (&value, &row) in values[range.clone()].iter().zip(&self.row_idx[range]) {
+                y[row] += term(value, xc);
+                if half && row != col {
+                    own += term(value, x[row]);
+                }
             }
+            y[col] += own;
         }
     }
 }

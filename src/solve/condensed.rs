@@ -2,7 +2,8 @@
 //!
 //! For springs of stiffness k between every slave node and its S*, the interface forces answer gaps z that the springs
 //! are given by `ΔF = start + response z`, and the relative motion is `v = z + ΔF / k`. Table 1's equations in v and
-//! ΔF are then a dense system for z, of two unknowns a slave node, whatever the size of the bodies.
+//! ΔF are then a dense system for z, of two unknowns a slave node, whatever the size of the bodies. Where k is infinite,
+//! z is the motion itself: what Table 1 prescribes is known, and only the other motions are unknowns.
 
 use crate::contact::table1::{Equation, Motion};
 use crate::linalg::{DenseFactors, SolveError};
@@ -11,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// How the interface of the condensed bodies answers; normal and tangential components of each slave node in turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Relation {
-    /// Stiffness k of the springs.
+    /// Stiffness k of the springs; may be infinite.
     pub stiffness: f64,
     /// ΔF at z = 0.
     pub start: Vec<f64>,
@@ -95,6 +96,11 @@ pub struct Condensed {
     matrix: Vec<f64>,
     /// Their right-hand sides.
     rhs: Vec<f64>,
+    /// For rigid springs, the equations of forces, each with its slave node, and the numbers of the unknown motions.
+    rows: Vec<(usize, Equation)>,
+    unknown: Vec<usize>,
+    /// ΔF of the last minor iteration.
+    answer: Vec<f64>,
     /// z of the last minor iteration.
     pub gaps: Vec<f64>,
     dense: Option<DenseFactors>,
@@ -117,6 +123,9 @@ impl Condensed {
             },
             matrix: Vec::new(),
             rhs: Vec::new(),
+            rows: Vec::new(),
+            unknown: Vec::new(),
+            answer: Vec::new(),
             gaps: Vec::new(),
             dense: None,
             forces: vec![[0.0; 2]; slaves],
@@ -133,9 +142,12 @@ impl Condensed {
         if self.dense.is_some() {
             return Ok(());
         }
-        for vector in [&mut self.relation.start, &mut self.rhs, &mut self.gaps] {
+        let vectors = [&mut self.relation.start, &mut self.rhs, &mut self.gaps];
+        for vector in vectors.into_iter().chain([&mut self.answer]) {
             vector.resize(count, 0.0);
         }
+        self.rows.reserve(count);
+        self.unknown.reserve(count);
         for matrix in [&mut self.relation.response, &mut self.matrix] {
             matrix.resize(count * count, 0.0);
         }
@@ -143,10 +155,32 @@ impl Condensed {
         Ok(())
     }
 
+    /// Whether z is the motion itself.
+    fn is_rigid(&self) -> bool {
+        self.relation.stiffness.is_infinite()
+    }
+
+    /// Forgets the equations that were entered.
+    pub fn clear(&mut self) {
+        self.rows.clear();
+        self.unknown.clear();
+    }
+
     /// Enters equation k (0 normal, 1 tangential) of a slave node; see [`Relation::place_row`].
     pub fn place_row(&mut self, slave: usize, k: usize, row: &Equation, prescribed: [f64; 2]) {
-        let relation = &self.relation;
-        self.rhs[2 * slave + k] = relation.place_row(slave, k, row, prescribed, &mut self.matrix);
+        if !self.is_rigid() {
+            let (relation, matrix) = (&self.relation, &mut self.matrix);
+            self.rhs[2 * slave + k] = relation.place_row(slave, k, row, prescribed, matrix);
+            return;
+        }
+        // An equation of motion is that of its own component.
+        if row.motion == Motion::None {
+            self.rows.push((slave, *row));
+            self.unknown.push(2 * slave + k);
+            self.gaps[2 * slave + k] = 0.0;
+        } else {
+            self.gaps[2 * slave + k] = row.value - prescribed[k];
+        }
     }
 
     /// Solves the entered equations for z; returns an estimate of the norm of their matrix' inverse.
@@ -154,17 +188,70 @@ impl Condensed {
     /// # Errors
     /// [`SolveError::Singular`] where they have no solution.
     pub fn solve(&mut self) -> Result<f64, SolveError> {
+        if self.is_rigid() {
+            return self.solve_motions();
+        }
         self.gaps.copy_from_slice(&self.rhs);
         let Some(dense) = &mut self.dense else {
             return Err(SolveError::Singular);
         };
+        dense.resize(self.rhs.len());
         dense.factor(&self.matrix);
         dense.solve(&mut self.gaps)?;
         Ok(dense.inverse_norm())
     }
 
+    /// The same where z is the motion itself.
+    fn solve_motions(&mut self) -> Result<f64, SolveError> {
+        let (count, size) = (self.gaps.len(), self.unknown.len());
+        self.answer.copy_from_slice(&self.relation.start);
+        self.add_response(|_| true);
+        for (rhs, (slave, row)) in self.rhs.iter_mut().zip(&self.rows) {
+            let [normal, tangential] = [self.answer[2 * slave], self.answer[2 * slave + 1]];
+            *rhs = row.value - row.d_n * normal - row.d_t * tangential;
+        }
+        for (column, &j) in self.matrix.chunks_exact_mut(size.max(1)).zip(&self.unknown) {
+            let response = &self.relation.response[j * count..(j + 1) * count];
+            for (entry, (slave, row)) in column.iter_mut().zip(&self.rows) {
+                *entry = row.d_n * response[2 * slave] + row.d_t * response[2 * slave + 1];
+            }
+        }
+        let Some(dense) = self.dense.as_mut().filter(|_| size > 0) else {
+            return Ok(1.0);
+        };
+        dense.resize(size);
+        dense.factor(&self.matrix[..size * size]);
+        dense.solve(&mut self.rhs[..size])?;
+        let norm = dense.inverse_norm();
+        for (&j, &z) in self.unknown.iter().zip(&self.rhs) {
+            self.gaps[j] = z;
+        }
+        let unknown = std::mem::take(&mut self.unknown);
+        self.add_response(|j| unknown.binary_search(&j).is_ok());
+        self.unknown = unknown;
+        Ok(norm)
+    }
+
+    /// Adds what the motions with these numbers do to the forces.
+    fn add_response(&mut self, wanted: impl Fn(usize) -> bool) {
+        let columns = self.relation.response.chunks_exact(self.gaps.len().max(1));
+        for (j, (column, &z)) in columns.zip(&self.gaps).enumerate() {
+            if z != 0.0 && wanted(j) {
+                for (answer, response) in self.answer.iter_mut().zip(column) {
+                    *answer += response * z;
+                }
+            }
+        }
+    }
+
     /// Reads a slave node's force and motion off the solution z.
     pub fn read(&mut self, slave: usize, prescribed: [f64; 2]) {
+        if self.is_rigid() {
+            let here = [2 * slave, 2 * slave + 1];
+            self.forces[slave] = here.map(|k| self.answer[k]);
+            self.motions[slave] = [0, 1].map(|k| self.gaps[here[k]] + prescribed[k]);
+            return;
+        }
         [self.forces[slave], self.motions[slave]] =
             self.relation.answer(&self.gaps, slave, prescribed);
     }

@@ -28,6 +28,10 @@ pub struct Link {
 pub struct Interface {
     pub footing: Option<Footing>,
     pub links: Vec<Link>,
+    /// The element that `links` reach into, once they are listed.
+    linked: Option<Option<(usize, usize)>>,
+    /// Whether their places are those of the present matrices.
+    pub placed: bool,
     /// Place of (link i, link j), row by row, for the geometric tangent: in the whole system's values, or in the
     /// condensed matrix, as [`Interface::find_slots`] or [`Interface::find_unknowns`] was last; none where either
     /// has no equation.
@@ -47,33 +51,51 @@ impl Interface {
         [normal, tangent(normal)]
     }
 
-    /// Lists the displacements of S and S*.
+    /// Lists the displacements of S and S*; on the element of before, only their shares are renewed.
     pub fn link(&mut self, model: &Model, node: &NodeState, slave: usize) {
-        self.links.clear();
-        let mut add = |n: usize, weight: f64, slope: f64| {
-            let first = model.dofs.first[n];
-            self.links.extend((0..2).map(|axis| Link {
-                dof: first + axis,
-                axis,
-                weight,
-                slope,
-                variation: Variation::default(),
-                slots: None,
-                unknown: None,
-            }));
-        };
-        add(slave, -1.0, 0.0);
-        if let (Some(spot), Some(footing)) = (node.spot, &self.footing) {
-            let nodes = &model.surfaces[spot.surface].elements[spot.element];
+        let on = node.spot.zip(self.footing);
+        let element = on.map(|(spot, _)| (spot.surface, spot.element));
+        if self.linked != Some(element) {
+            (self.linked, self.placed) = (Some(element), false);
+            self.links.clear();
+            self.list(model, slave);
+            if let Some((surface, element)) = element {
+                for &n in &model.surfaces[surface].elements[element] {
+                    self.list(model, n);
+                }
+            }
+        }
+        self.links[..2]
+            .iter_mut()
+            .for_each(|link| link.weight = -1.0);
+        if let Some((_, footing)) = on {
             let shares = footing.shape.iter().zip(&footing.shape_slope);
-            for (&n, (&weight, &slope)) in nodes.iter().zip(shares) {
-                add(n, weight, slope);
+            for (pair, (&weight, &slope)) in self.links[2..].chunks_exact_mut(2).zip(shares) {
+                for link in pair {
+                    (link.weight, link.slope) = (weight, slope);
+                }
             }
         }
     }
 
-    /// Finds its places in the whole system, where its two equations are from row `row` on.
+    fn list(&mut self, model: &Model, node: usize) {
+        let first = model.dofs.first[node];
+        self.links.extend((0..2).map(|axis| Link {
+            dof: first + axis,
+            axis,
+            weight: 0.0,
+            slope: 0.0,
+            variation: Variation::default(),
+            slots: None,
+            unknown: None,
+        }));
+    }
+
+    /// Finds its places, unless it has them, in the whole system, where its two equations are from row `row` on.
     pub fn find_slots(&mut self, model: &Model, pattern: &Pattern, row: usize) {
+        if std::mem::replace(&mut self.placed, true) {
+            return;
+        }
         let slot = |i, j| pattern.slot(i, j);
         for link in &mut self.links {
             link.slots = model.dofs.equation[link.dof].and_then(|e| {
@@ -103,8 +125,11 @@ impl Interface {
         }
     }
 
-    /// Finds its places in the condensed bodies.
+    /// Finds its places, unless it has them, in the condensed bodies.
     pub fn find_unknowns(&mut self, model: &Model, bodies: &Bodies) {
+        if std::mem::replace(&mut self.placed, true) {
+            return;
+        }
         for link in &mut self.links {
             link.unknown = model.dofs.equation[link.dof].and_then(|e| bodies.number(e));
         }

@@ -9,14 +9,14 @@ use crate::contact::table1::{Equation, Motion};
 use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
-use crate::scene::model::{Body, BodyKind, Form, Model};
+use crate::scene::model::{Beam, Body, BodyKind, Form, Model};
 use crate::scene::spec::{Component, Geometry, Solver, Sticking};
 use crate::scene::{Mode, Settings};
 use crate::solve::bodies::{Bodies, condensable};
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
 use crate::solve::frozen::{Frozen, FrozenNode};
-use crate::solve::interface::Interface;
+use crate::solve::interface::{Interface, Link};
 use crate::solve::minor::{self, Given, Site};
 use crate::solve::state::{NodeState, State};
 use std::sync::Arc;
@@ -239,13 +239,14 @@ impl System {
         };
         if changed || self.layout != Some(Layout::Whole) {
             let size = factors.pattern().size();
-            self.assembly.bind(&model.dofs, factors.pattern());
+            self.assembly.bind(&model.dofs, factors.pattern(), false);
             self.stiffness.resize(factors.pattern().entries(), 0.0);
             self.values.resize(factors.pattern().entries(), 0.0);
             for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
                 buffer.resize(size, 0.0);
             }
             self.layout = Some(Layout::Whole);
+            self.interfaces.iter_mut().for_each(|i| i.placed = false);
         }
         for (s, interface) in self.interfaces.iter_mut().enumerate() {
             interface.find_slots(model, factors.pattern(), model.dofs.equations + 2 * s);
@@ -263,12 +264,13 @@ impl System {
             return Ok(());
         };
         if self.layout != Some(Layout::Bodies) {
-            self.assembly.bind(&model.dofs, bodies.pattern());
+            self.assembly.bind(&model.dofs, bodies.pattern(), true);
             self.stiffness.resize(bodies.pattern().entries(), 0.0);
             for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
                 buffer.resize(model.dofs.equations, 0.0);
             }
             self.layout = Some(Layout::Bodies);
+            self.interfaces.iter_mut().for_each(|i| i.placed = false);
         }
         for interface in &mut self.interfaces {
             interface.find_unknowns(model, bodies);
@@ -311,8 +313,45 @@ impl System {
             }
         }
         let size = equations + 2 * self.interfaces.len();
-        self.whole = Some(Factors::new(Arc::new(Pattern::new(size, entries)))?);
+        let pattern = Arc::new(Pattern::new(size, entries));
+        self.whole = Some(Factors::in_groups(pattern, &self.groups(model))?);
         Ok(())
+    }
+
+    /// Groups of unknowns, for the elimination: a node's displacements, with the forces of its interface equations; each
+    /// of the bodies' own unknowns. Where a slave node has no displacement, its forces go with a master node's. An
+    /// element of a shear-rigid beam has one shear force more than nodes inside, which all may be held by their contacts:
+    /// the last of these forces goes with a node at its end.
+    fn groups(&self, model: &Model) -> Vec<usize> {
+        let dofs = &model.dofs;
+        let mut groups = vec![0; dofs.equations + 2 * self.interfaces.len()];
+        let mut node_of = vec![None; dofs.len()];
+        for (node, (&first, &count)) in dofs.first.iter().zip(&dofs.count).enumerate() {
+            node_of[first..first + count as usize].fill(Some(node));
+        }
+        for body in &model.bodies {
+            if let BodyKind::Beam(beam) = &body.kind {
+                give_shears(model, beam, &mut node_of);
+            }
+        }
+        let mut more = dofs.first.len()..;
+        for (dof, equation) in dofs.equation.iter().enumerate() {
+            if let Some(equation) = equation {
+                groups[*equation] = node_of[dof].or_else(|| more.next()).unwrap_or(0);
+            }
+        }
+        for (s, interface) in self.interfaces.iter().enumerate() {
+            let free = |link: &&Link| dofs.equation[link.dof].is_some();
+            let home = interface
+                .links
+                .iter()
+                .find(free)
+                .and_then(|l| node_of[l.dof]);
+            let home = home.or_else(|| more.next()).unwrap_or(0);
+            let row = dofs.equations + 2 * s;
+            groups[row..row + 2].fill(home);
+        }
+        groups
     }
 
     fn measure_interfaces(&mut self, model: &Model) {
@@ -431,7 +470,8 @@ impl System {
                 self.x[*e] = u[d];
             }
         }
-        pattern.multiply_abs(&self.stiffness, &self.x, &mut self.work);
+        let half = self.layout == Some(Layout::Bodies);
+        pattern.multiply_abs(&self.stiffness, &self.x, &mut self.work, half);
         let mut worst = [0.0_f64; 2];
         for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
             match (kind, equation) {
@@ -587,6 +627,7 @@ impl System {
             };
             self.condensed.fresh = true;
         }
+        self.condensed.clear();
         for s in 0..self.interfaces.len() {
             let rows = self.rows(s, state);
             let frame = self.frames[s];
@@ -743,7 +784,8 @@ impl System {
         }
         let done = match (self.layout, &mut self.bodies, &mut self.whole) {
             (Some(Layout::Bodies), Some(bodies), _) => {
-                bodies.recover(&self.condensed.gaps, &mut self.x)
+                let (interfaces, frames) = (&self.interfaces, &self.frames);
+                bodies.recover(&self.condensed.gaps, interfaces, frames, &mut self.x)
             }
             (_, _, Some(factors)) => {
                 self.rhs[model.dofs.equations..].copy_from_slice(&self.condensed.gaps);
@@ -807,6 +849,23 @@ impl System {
     /// Increment of a degree of freedom in the last solve.
     pub fn increment(&self, model: &Model, dof: usize) -> f64 {
         model.dofs.equation[dof].map_or(self.step[dof], |e| self.x[e])
+    }
+}
+
+/// Says of every element's last shear force that it goes with the node at the element's end, or, where the beam's own end
+/// does not turn freely, at its start.
+fn give_shears(model: &Model, beam: &Beam, node_of: &mut [Option<usize>]) {
+    let turns = |node: &usize| {
+        let dof = model.dofs.dof(*node, Component::Rotation);
+        dof.is_some_and(|dof| model.dofs.equation[dof].is_some())
+    };
+    let last = beam.elements.last().and_then(|nodes| nodes.last());
+    let at_end = last.is_some_and(turns);
+    for (e, nodes) in beam.elements.iter().enumerate() {
+        let end = if at_end { nodes.last() } else { nodes.first() };
+        if let (Some(first), Some(node)) = (beam.first_shear, end.filter(|n| turns(n))) {
+            node_of[first + (e + 1) * (nodes.len() - 1) - 1] = Some(*node);
+        }
     }
 }
 

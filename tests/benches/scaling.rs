@@ -1,0 +1,123 @@
+//! What a major and a minor iteration cost beside one sparse factorization, by size: `cargo bench --bench scaling`.
+//!
+//! The scene is `two-blocks-pressed-sheared`. Each figure is the least of its kind in one run, so that what else the machine
+//! does counts little; all of a row are measured in the same process. A table, not a statistic: hence no harness.
+
+use std::fs;
+use std::sync::Arc;
+use std::time::Instant;
+use stickslip::fem::assembly::{Assembled, Assembly, Moved};
+use stickslip::linalg::{Pattern, SymmetricFactors};
+use stickslip::scene::{Model, Scene};
+use stickslip::solve::{Outcome, Stepper};
+
+const BLOCKS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/benches/two-blocks-pressed-sheared.ron"
+);
+
+fn main() {
+    println!(
+        "| unknowns | slaves | factorization ms | assembly ms | major ms | (major − assembly) / factorization | minor / major | run s | peak MB |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for refine in ["2", "6", "13", "18"] {
+        let set = [("refine".to_string(), refine.to_string())];
+        let scene = Scene::open(BLOCKS, &set).unwrap_or_else(|e| panic!("{e}"));
+        row(&Arc::new(scene.model));
+    }
+}
+
+fn row(model: &Arc<Model>) {
+    let (assembly, factorization) = parts(model);
+    let mut stepper = Stepper::new(model.clone());
+    let began = Instant::now();
+    let (mut major, mut minor) = (f64::INFINITY, f64::INFINITY);
+    // Since the last major iteration ended; and whether minor iterations beyond the first were in it.
+    let (mut spent, mut count) = (0.0, 0);
+    loop {
+        let step = Instant::now();
+        let Some(event) = stepper.step() else { break };
+        let seconds = step.elapsed().as_secs_f64();
+        (spent, count) = (spent + seconds, count + 1);
+        match event.outcome {
+            Outcome::Failed(_) => panic!("{:?}", event.outcome),
+            Outcome::Minor if count > 1 => minor = minor.min(seconds),
+            Outcome::Major { .. } => {
+                if count == 1 {
+                    major = major.min(spent);
+                }
+                (spent, count) = (0.0, 0);
+            }
+            Outcome::Increment { .. } => (spent, count) = (0.0, 0),
+            _ => {}
+        }
+    }
+    println!(
+        "| {} | {} | {:.1} | {:.1} | {:.1} | {:.2} | {:.3} | {:.2} | {} |",
+        model.dofs.equations,
+        model.slaves.len(),
+        1e3 * factorization,
+        1e3 * assembly,
+        1e3 * major,
+        (major - assembly) / factorization,
+        minor / major,
+        began.elapsed().as_secs_f64(),
+        peak(),
+    );
+}
+
+/// Seconds of one assembly and of one factorization of the bodies, the interface last, as the solver does it.
+fn parts(model: &Model) -> (f64, f64) {
+    let (dofs, equations) = (&model.dofs, model.dofs.equations);
+    let mut assembly = Assembly::new(model);
+    let mut entries = assembly.entries(dofs);
+    entries.retain(|(row, column)| row <= column);
+    let pattern = Arc::new(Pattern::new(equations, entries));
+    assembly.bind(dofs, &pattern, true);
+    let masters = model
+        .surfaces
+        .iter()
+        .flat_map(|s| s.elements.iter().flatten().copied());
+    let mut last: Vec<usize> = masters
+        .chain(model.slaves.iter().map(|s| s.node))
+        .flat_map(|node| [0, 1].map(|k| dofs.equation[dofs.first[node] + k]))
+        .flatten()
+        .collect();
+    last.sort_unstable();
+    last.dedup();
+    let mut factors = SymmetricFactors::new(pattern.clone(), &last).expect("a pattern to factor");
+    let zeros = vec![0.0; dofs.len()];
+    let (mut force, mut size) = (zeros.clone(), zeros.clone());
+    let (mut values, mut coupling) = (vec![0.0; pattern.entries()], vec![0.0; equations]);
+    let (mut assembled, mut factored) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..5 {
+        let began = Instant::now();
+        let moved = Moved {
+            u: &zeros,
+            step: &zeros,
+            before: &zeros,
+            history: &[],
+        };
+        let out = Assembled {
+            force: &mut force,
+            size: &mut size,
+            values: &mut values,
+            coupling: &mut coupling,
+        };
+        assembly.assemble(dofs, moved, out);
+        assembled = assembled.min(began.elapsed().as_secs_f64());
+        let began = Instant::now();
+        factors.factor(&values, 1.0).expect("a stiffness");
+        factored = factored.min(began.elapsed().as_secs_f64());
+    }
+    (assembled, factored)
+}
+
+/// Most memory that the process has had, in MB; of the rows so far, that of the largest.
+fn peak() -> String {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<u64>().ok());
+    kilobytes.map_or("?".into(), |k| (k / 1024).to_string())
+}
