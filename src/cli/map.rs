@@ -228,7 +228,7 @@ fn tell_map(map: &Map) {
     }
     tell(
         "\n✓C converged   ≠W wrong branch   ↺ cycle and its period   ↗D diverged   ∅N said to have no answer\n\
-         ✗ failed: m minor limit, M major limit, s singular, j jammed",
+         ✗ failed: m minor limit, M major limit, s singular, j jammed, n found nothing and could not try all",
     );
     for line in map.origin() {
         tell(&line);

@@ -16,7 +16,7 @@ pub enum Verdict {
     Cycle { period: u32, majors: bool },
     /// It grew out of all bounds.
     Diverged,
-    /// It said that there is no answer.
+    /// It said that there is no answer: all assumptions were tried, or Lemke's pivoting ended on a ray.
     NoAnswer,
     /// It failed in another way.
     Failed(Reason),
@@ -35,6 +35,8 @@ impl Verdict {
                 majors: true,
             },
             Failure::Diverged { .. } => Verdict::Diverged,
+            // That nothing was found where not all could be tried says nothing about the problem.
+            Failure::NoAnswer { tried: 0, .. } => Verdict::Failed(Reason::NoAnswer),
             Failure::NoAnswer { .. } | Failure::Ray => Verdict::NoAnswer,
             other => Verdict::Failed(Reason::from(other)),
         }

@@ -85,7 +85,7 @@ def scene_a(tools):
 
     cases = []
     for refine in (1, 2, 4, 8):
-        for increment in (0.25, 0.5):
+        for increment in (0.5, 1.75):
             command = [tools["stickslip"], "run", CIRCLE, "--quiet", "--csv", "-", "--set", "refine=%d" % refine,
                        "--set", "history.increment=%g" % increment]
 
@@ -195,7 +195,7 @@ def write(path, scene, about, cases, errors):
         table.writerow(COLUMNS)
         for case, error in zip(cases, errors):
             status = "reference" if case.status == "whole" and error is None else case.status
-            unknowns = unknowns_d(int(case.name[2:])) if scene == "D" else ""
+            unknowns = unknowns_d(int(case.name[2:])) if case.name.startswith("n=") else ""
             iterations = case.result[2] if case.result else ""
             table.writerow([scene, case.series, case.name, status, "" if error is None else repr(error),
                             "%.4f" % statistics.median(case.times), len(case.times), "%.0f" % max(case.memory), unknowns,
@@ -293,7 +293,7 @@ def main():
             errors = [math.hypot(c.result[0][0] - x, c.result[0][1] - y) / math.hypot(x, y)
                       if c.result and c is not finest[-1] else None for c in cases]
             ratios_d(cases, sizes)
-        write(table, scene.upper(), about + [made], cases, errors)
+        write(table, about[0].removeprefix("Scene: "), about + [made], cases, errors)
         draw(found, table, os.path.join(arguments.out, scene + ".svg"))
         print("\n%s, %s" % (table, scene + ".svg"), file=sys.stderr)
 
