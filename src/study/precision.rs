@@ -243,7 +243,7 @@ fn measured(
         format!("{} at load {load}", failed.verdict)
     });
     let factorizations = match condenses(&model, &model.settings) {
-        true => run.majors(),
+        true => run.begun,
         false => run.minors(),
     };
     let point = Point {
@@ -253,7 +253,7 @@ fn measured(
         seconds: times[times.len() / 2],
         repeats: times.len(),
         factorizations,
-        majors: run.majors(),
+        majors: run.begun,
         minors: run.minors(),
         increments: run.rows.len() as u64,
         unknowns: model.dofs.equations,

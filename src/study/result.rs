@@ -15,6 +15,8 @@ pub struct Run {
     pub start: Row,
     /// One row per accepted increment.
     pub rows: Vec<Row>,
+    /// Major iterations that were begun in all, those of attempts that were cut or damped included.
+    pub begun: u64,
     pub end: End,
 }
 

@@ -69,6 +69,7 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
         monitors,
         start: row(&mut stepper, 0, 0, 0),
         rows: Vec::new(),
+        begun: 0,
         end: End::NotRun,
     };
     let mut minors = 0;
@@ -84,6 +85,7 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
         };
         minors += 1;
         let (at, outcome) = (event.position, &event.outcome);
+        run.begun += u64::from(!matches!(outcome, Outcome::Minor | Outcome::Climbed { .. }));
         match outcome {
             Outcome::Failed(failure) => {
                 break End::Failed(Failed {
