@@ -80,9 +80,12 @@ fn times((v, d, dd): (f64, f64, f64), factor: f64) -> (f64, f64, f64) {
     (v * factor, d * factor + v, dd * factor + 2.0 * d)
 }
 
+/// ξ, and N_i there.
+type Sample = (f64, [f64; MAX_NODES]);
+
 /// The m shape functions at 2m − 1 equally spaced ξ from −1 to 1, made once.
-pub fn samples(m: usize) -> &'static [(f64, [f64; MAX_NODES])] {
-    static TABLE: LazyLock<Vec<Vec<(f64, [f64; MAX_NODES])>>> = LazyLock::new(|| {
+pub fn samples(m: usize) -> &'static [Sample] {
+    static TABLE: LazyLock<Vec<Vec<Sample>>> = LazyLock::new(|| {
         let of = |m: usize| {
             let places = (0..2 * m - 1).map(|k| node(2 * m - 1, k));
             places.map(|xi| (xi, shape(m, xi).n)).collect()

@@ -287,16 +287,16 @@ impl Element {
                 let mut sum = [[0.0; 2]; 2];
                 for (row, grad) in rows.iter().zip(&grad) {
                     let [x, y] = grad[j];
-                    for a in 0..2 {
-                        for c in 0..2 {
-                            sum[a][c] += row[a][0][c] * x + row[a][1][c] * y;
+                    for (sum, row) in sum.iter_mut().zip(row) {
+                        for (c, sum) in sum.iter_mut().enumerate() {
+                            *sum += row[0][c] * x + row[1][c] * y;
                         }
                     }
                 }
-                for a in 0..2 {
+                for (a, [x, y]) in sum.into_iter().enumerate() {
                     let place = (2 * i + a) * DOFS + 2 * j;
-                    tangent[place] += sum[a][0];
-                    tangent[place + 1] += sum[a][1];
+                    tangent[place] += x;
+                    tangent[place + 1] += y;
                 }
             }
         }
@@ -370,26 +370,18 @@ impl Point {
         let answer = |e: [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|k| v * (d[(k, 0)] * e[0] + d[(k, 1)] * e[1] + d[(k, 2)] * e[2]))
         };
-        let mut terms = Terms::default();
-        for c in 0..2 {
-            for l in 0..2 {
-                let de = answer(strain(c, l));
-                for a in 0..2 {
-                    for j in 0..2 {
-                        let e = strain(a, j);
-                        let geometric = if a == c { s[j][l] } else { 0.0 };
-                        terms.moduli[a][j][l][c] =
-                            e[0] * de[0] + e[1] * de[1] + e[2] * de[2] + geometric;
-                    }
-                }
-            }
+        let answers = [0, 1].map(|l| [0, 1].map(|c| answer(strain(c, l))));
+        let modulus = |a: usize, j: usize, l: usize, c: usize| {
+            let (e, de) = (strain(a, j), answers[l][c]);
+            let geometric = if a == c { s[j][l] } else { 0.0 };
+            e[0] * de[0] + e[1] * de[1] + e[2] * de[2] + geometric
+        };
+        let stress = |a: usize, j: usize| f[a][0] * s[0][j] + f[a][1] * s[1][j];
+        let both = [0, 1];
+        Terms {
+            stress: both.map(|a| both.map(|j| stress(a, j))),
+            moduli: both.map(|a| both.map(|j| both.map(|l| both.map(|c| modulus(a, j, l, c))))),
         }
-        for a in 0..2 {
-            for j in 0..2 {
-                terms.stress[a][j] = f[a][0] * s[0][j] + f[a][1] * s[1][j];
-            }
-        }
-        terms
     }
 
     /// Stretch across the plane.

@@ -17,9 +17,8 @@ use std::sync::Arc;
 /// Number of equilibration sweeps; each takes the square root out of the spread of the rows' and columns' sizes.
 const SWEEPS: usize = 3;
 
-/// Backward error above which a solution is not believed, and above which it is refined.
+/// Backward error above which a solution is not believed.
 const BACKWARD_LIMIT: f64 = 1e-9;
-const REFINED: f64 = 4.0 * f64::EPSILON;
 
 /// Factors of a sparse matrix, with all that is needed to make them again without allocating.
 pub struct Factors {
@@ -126,7 +125,7 @@ impl Factors {
         Ok(())
     }
 
-    /// Solves A x = b, refines where that helps, and checks the answer.
+    /// Solves A x = b with one step of iterative refinement and checks the answer.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if x is not finite or leaves a residual beyond round-off.
@@ -146,7 +145,7 @@ impl Factors {
         x.copy_from_slice(b);
         self.apply_inverse(x);
         let mut error = self.backward_error(b, x);
-        if error > REFINED {
+        if error > 0.0 {
             let mut correction = std::mem::take(&mut self.correction);
             for (c, (r, b)) in correction.iter_mut().zip(self.residual.iter().zip(b)) {
                 *c = b - r;
