@@ -171,11 +171,12 @@ impl Stepper {
             };
         }
         Arc::make_mut(&mut self.state.trail).push(&self.state.nodes);
-        match self.system.solve(&self.model, &self.state) {
+        let solved = self.system.solve(&self.model, &self.state);
+        match solved {
             Solved::Well => {}
             Solved::Suspicious => {
                 let singular = self.diagnose();
-                if matches!(singular, Singular::Rigid { .. }) || self.is_unbounded() {
+                if matches!(singular, Singular::Rigid { .. }) {
                     return self.stuck(Failure::Singular(singular));
                 }
             }
@@ -189,6 +190,9 @@ impl Stepper {
         }
         self.state.minors += 1;
         let settled = self.judge();
+        if settled && solved == Solved::Suspicious && self.is_unbounded() {
+            return self.stuck(Failure::Singular(Singular::Unexplained));
+        }
         if settled {
             return match self.unsupported() {
                 Some(first) => self.fail(first),
