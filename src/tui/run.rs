@@ -342,6 +342,9 @@ impl Debugger {
 
     /// Says what a command led to, unless the status at the top says the same.
     fn tell(&mut self, Reply(text): Reply) {
+        // However soon the remedies are all tried, that they are being tried is not said any longer then.
+        let looks = self.session.as_ref().map(|session| session.looks());
+        self.trying |= looks.is_some_and(|looks| looks.is_trying());
         let known = self.session.as_ref().and_then(|session| {
             match (session.is_running(), &session.frame().event) {
                 (true, _) => Some(text.clone()),

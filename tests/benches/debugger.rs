@@ -74,9 +74,14 @@ fn run_recorded(bencher: Bencher) {
 /// A debugger of 1,000 slave nodes, some minor iterations on its way.
 fn long() -> Debugger {
     let scene = Scene::from_text("long", LONG, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), Some(Session::new(scene)));
-    debugger.type_keys("s s s s s s");
-    debugger
+    let mut session = Session::new(scene);
+    let six = Command::Forward {
+        unit: Unit::Minor,
+        count: 6,
+    };
+    session.submit(six).unwrap_or_else(|e| panic!("{e}"));
+    session.wait();
+    Debugger::new(Theme::mono(), Vec::new(), Some(session))
 }
 
 fn draws(bencher: Bencher, debugger: &Debugger) {
@@ -96,7 +101,9 @@ fn frame(bencher: Bencher) {
 #[divan::bench]
 fn frame_of_the_timeline(bencher: Bencher) {
     let mut debugger = long();
-    debugger.type_keys("t");
+    if let Some(press) = keys::press("t") {
+        debugger.key(&press);
+    }
     draws(bencher, &debugger);
 }
 

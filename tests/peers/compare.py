@@ -29,8 +29,8 @@ from runlib import dat, run1, sta  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(HERE))
 CIRCLE = "04-cantilever-rigid-circle"
-# About what the peers stop at; the errors that are measured are far above it.
-TOLERANCE = "settings.tolerance=1e-8"
+# What GetFEM stops at on scene D (1e-4 on A); the errors that are measured are above it.
+TOLERANCE = "settings.tolerance=1e-6"
 COLUMNS = ["scene", "series", "run", "status", "error", "seconds", "repeats", "megabytes", "unknowns", "iterations"]
 
 
