@@ -1,5 +1,9 @@
 //! The program from outside: exit codes, what goes to which stream, and what happens to files.
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{code, err, interrupted, names, out, program};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -10,41 +14,13 @@ const OSC: &str = "osc-inclined-cantilever";
 /// Makes a run so long that it cannot end before it is stopped.
 const LONG: [&str; 2] = ["--set", "history.increment=5e-6"];
 
-fn program(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
-    command.args(arguments).stdin(Stdio::null());
-    command
-}
-
 /// Runs in a directory of its own.
 fn ran_in(directory: &Path, arguments: &[&str]) -> Output {
-    program(arguments).current_dir(directory).output().unwrap()
+    program(directory, arguments).output().unwrap()
 }
 
 fn ran(arguments: &[&str]) -> Output {
-    ran_in(&std::env::temp_dir(), arguments)
-}
-
-fn code(output: &Output) -> i32 {
-    let code = output.status.code();
-    code.unwrap_or_else(|| panic!("ended by a signal: {output:?}"))
-}
-
-fn out(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn err(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn names(directory: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(directory).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
+    ran_in(&std::env::current_dir().unwrap(), arguments)
 }
 
 /// A table is whole if it ends with a line end and all its rows have as many fields as its header.
@@ -422,7 +398,7 @@ fn a_reader_that_closes_the_pipe_is_no_panic() {
         vec!["run", ROUGH, "--trace", "-"],
     ] {
         arguments.extend(LONG);
-        let mut child = program(&arguments)
+        let mut child = program(Path::new("."), &arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -437,7 +413,7 @@ fn a_reader_that_closes_the_pipe_is_no_panic() {
     for arguments in [&["check", BEAM, "--paths"][..], &["list"], &["--help"]] {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
-        let output = program(arguments)
+        let output = program(Path::new("."), arguments)
             .stdout(writer)
             .stderr(Stdio::piped())
             .spawn()
@@ -455,7 +431,7 @@ fn ctrl_c_while_recording_leaves_nothing_behind() {
     let directory = tempfile::tempdir().unwrap();
     let mut arguments = vec!["record", ROUGH, "--at", "400000", "-o", "a.ron"];
     arguments.extend(LONG);
-    let child = program(&arguments)
+    let child = program(Path::new("."), &arguments)
         .current_dir(directory.path())
         .stderr(Stdio::piped())
         .spawn()
@@ -464,12 +440,7 @@ fn ctrl_c_while_recording_leaves_nothing_behind() {
     while names(directory.path()).is_empty() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(killed.unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(code(&output), 130, "{}", err(&output));
+    interrupted(child);
     assert!(names(directory.path()).is_empty());
 }
 
@@ -479,7 +450,7 @@ fn ctrl_c_ends_a_run_with_130_and_whole_files() {
     let directory = tempfile::tempdir().unwrap();
     let mut arguments = vec!["run", ROUGH, "--trace", "-", "--csv", "a.csv"];
     arguments.extend(LONG);
-    let mut child = program(&arguments)
+    let mut child = program(Path::new("."), &arguments)
         .current_dir(directory.path())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

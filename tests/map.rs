@@ -1,5 +1,9 @@
 //! Stability maps: what they count, how they are judged, and that a kill loses nothing.
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{code, err, interrupted, program, rows, well};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -8,44 +12,15 @@ use stickslip::study::verdict::Verdict;
 use stickslip::study::{Plan, Study, Vary};
 
 fn command(directory: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
-    command.arg("map").args(arguments).stdin(Stdio::null());
-    command.current_dir(directory);
-    command
+    program(directory, &[&["map"], arguments].concat())
 }
 
 fn ran(directory: &Path, arguments: &[&str]) -> Output {
     command(directory, arguments).output().unwrap()
 }
 
-fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn err(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn out(output: &Output) -> String {
-    assert_eq!(code(output), 0, "{}", err(output));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
 fn read(directory: &Path, name: &str) -> String {
     std::fs::read_to_string(directory.join(name)).unwrap()
-}
-
-/// The rows of a table without its comments, by column.
-fn rows(table: &str) -> Vec<HashMap<String, String>> {
-    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
-    let heads: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let row = |line: &str| {
-        let fields: Vec<&str> = line.split(',').collect();
-        assert_eq!(fields.len(), heads.len(), "{line}");
-        let pairs = heads.iter().zip(fields);
-        pairs.map(|(h, f)| (h.to_string(), f.to_string())).collect()
-    };
-    lines.map(row).collect()
 }
 
 const T_MAX: &str = "t_max=lagged,consistent";
@@ -57,7 +32,7 @@ fn random_problems_are_the_same_every_time_and_however_many_run_at_once() {
         let arguments = [
             "--random", count, "--seed", "3", "--over", T_MAX, "--csv", "-", "--jobs", jobs,
         ];
-        out(&ran(directory.path(), &arguments))
+        well(&ran(directory.path(), &arguments))
     };
     let one = run("1", "60");
     assert_eq!(one, run("2", "60"));
@@ -85,7 +60,7 @@ fn what_table_2_makes_of_random_problems_is_counted_honestly() {
         "a.svg",
     ];
     let output = ran(directory.path(), &arguments);
-    let table = rows(&out(&output));
+    let table = rows(&well(&output));
     let count = |verdict: &str| table.iter().filter(|r| r["verdict"] == verdict).count();
     // All of them occur, and nothing is left out.
     let words = ["converged", "wrong", "cycle", "failed"];
@@ -125,16 +100,17 @@ fn a_random_problem_written_out_ends_as_it_did_on_the_map() {
         "a.csv",
         "--quiet",
     ];
-    out(&ran(directory.path(), &arguments));
+    well(&ran(directory.path(), &arguments));
     for row in rows(&read(directory.path(), "a.csv")) {
         let file = format!("{}.ron", row["problem"]);
         let write = ["--write", &row["problem"], "-o", &file];
-        out(&ran(directory.path(), &write));
-        let run = Command::new(env!("CARGO_BIN_EXE_stickslip"))
-            .args(["run", &file, "--set", "settings.t_max=lagged", "--csv", "-"])
-            .current_dir(directory.path())
-            .output()
-            .unwrap();
+        well(&ran(directory.path(), &write));
+        let run = program(
+            directory.path(),
+            &["run", &file, "--set", "settings.t_max=lagged", "--csv", "-"],
+        )
+        .output()
+        .unwrap();
         let ends = ["converged", "wrong"].contains(&row["verdict"].as_str());
         assert_eq!(
             code(&run),
@@ -149,7 +125,7 @@ fn a_random_problem_written_out_ends_as_it_did_on_the_map() {
 fn the_default_strategy_solves_every_random_problem_that_has_an_answer_and_invents_none() {
     let directory = tempfile::tempdir().unwrap();
     let arguments = ["--random", "200", "--seed", "11", "--csv", "-"];
-    let table = rows(&out(&ran(directory.path(), &arguments)));
+    let table = rows(&well(&ran(directory.path(), &arguments)));
     let mut names: Vec<&str> = table.iter().map(|r| r["strategy"].as_str()).collect();
     names.dedup();
     assert_eq!(names.len(), 200 * 15);
@@ -246,12 +222,7 @@ fn ctrl_c_ends_a_map_with_130_and_a_whole_table_of_what_is_done() {
     while kept().lines().count() < 3 {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(killed.unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(code(&output), 130, "{}", err(&output));
+    let output = interrupted(child);
     assert!(
         err(&output).contains("interrupted; 2 of 4 runs were done"),
         "{}",
@@ -379,7 +350,7 @@ fn a_scene_that_cycles_is_a_cycle_on_the_map_and_in_the_picture() {
         "a.png",
     ];
     let output = ran(directory.path(), &arguments);
-    let table = rows(&out(&output));
+    let table = rows(&well(&output));
     let found: Vec<_> = table
         .iter()
         .map(|r| (r["verdict"].as_str(), r["detail"].as_str()))

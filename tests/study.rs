@@ -1,5 +1,9 @@
 //! Studies: what is run, in which order, and what becomes of it.
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{code, err, interrupted, names, out, program};
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -16,35 +20,11 @@ fn ran_in(directory: &Path, arguments: &[&str]) -> Output {
 }
 
 fn command(directory: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
-    command.arg("study").args(arguments).stdin(Stdio::null());
-    command.current_dir(directory);
-    command
+    program(directory, &[&["study"], arguments].concat())
 }
 
 fn ran(arguments: &[&str]) -> Output {
     ran_in(&std::env::temp_dir(), arguments)
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
-
-fn out(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn err(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn names(directory: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(directory).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
 }
 
 /// The rows of a table as fields; each must have as many as the header.
@@ -436,12 +416,7 @@ fn ctrl_c_ends_a_study_with_130_and_whole_files_of_what_is_done() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     std::thread::sleep(std::time::Duration::from_secs(2));
-    let killed = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(killed.unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(code(&output), 130, "{}", err(&output));
+    let output = interrupted(child);
     assert!(err(&output).contains("interrupted; 1 of 3 runs were done"));
     assert_eq!(names(directory.path()), ["a.csv", "a.svg"]);
     let table = rows(&std::fs::read_to_string(directory.path().join("a.csv")).unwrap());

@@ -1,0 +1,79 @@
+//! What the tests of the built program share: running it, and reading what it says.
+#![allow(dead_code)]
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+/// The program with these arguments, in a directory, without input.
+pub fn program(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
+    command.args(arguments).stdin(Stdio::null());
+    command.current_dir(directory);
+    command
+}
+
+pub fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+/// What it wrote to standard output, having ended well.
+pub fn well(output: &Output) -> String {
+    assert_eq!(code(output), 0, "{}", err(output));
+    out(output)
+}
+
+pub fn out(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+pub fn err(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Ends it as Ctrl-C does; the output is that of a program that was interrupted.
+pub fn interrupted(child: Child) -> Output {
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(killed.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(code(&output), 130, "{}", err(&output));
+    output
+}
+
+/// Names of what is in a directory, sorted.
+pub fn names(directory: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(directory).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// The rows of a whole table without its comments, by column.
+pub fn rows(table: &str) -> Vec<HashMap<String, String>> {
+    assert!(table.ends_with('\n'), "cut off: {table:?}");
+    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
+    let heads = fields(lines.next().unwrap());
+    let row = |line: &str| {
+        let fields = fields(line);
+        assert_eq!(fields.len(), heads.len(), "{line}");
+        heads.iter().cloned().zip(fields).collect()
+    };
+    lines.map(row).collect()
+}
+
+/// The fields of a line; a comma between quotation marks separates none.
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut quoted) = (vec![String::new()], false);
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            other => fields.last_mut().unwrap().push(other),
+        }
+    }
+    fields
+}
