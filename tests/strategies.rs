@@ -7,23 +7,12 @@ use common::{run, scene};
 use std::sync::Arc;
 use stickslip::contact::decision::Rule;
 use stickslip::scene::condensed::{Contact, Matrix, Problem};
-use stickslip::scene::spec::{History, InitialState};
+use stickslip::scene::spec::{History, InitialState, Strategy};
 use stickslip::scene::{Friction, Mode, Model, Scene, Settings};
 use stickslip::solve::census::{Census, census};
 use stickslip::solve::event::Singular;
-use stickslip::solve::{Failure, Intervention, Outcome, Stepper};
-
-const STRATEGIES: [&str; 9] = [
-    "ladder",
-    "table2",
-    "sliding",
-    "least",
-    "sliding_least",
-    "block",
-    "newton",
-    "lemke",
-    "census",
-];
+use stickslip::solve::frozen::Trials;
+use stickslip::solve::{Failure, Intervention, NotFound, Outcome, Stepper};
 
 /// Numbers from 0 to 1, the same every time (Knuth's MMIX generator).
 struct Numbers(u64);
@@ -135,7 +124,7 @@ fn is_answer(stepper: &Stepper, truth: &Census) -> bool {
 
 #[test]
 fn no_strategy_accepts_what_is_no_coulomb_state_and_the_ladder_solves_all_that_have_one() {
-    let mut solved = [0; STRATEGIES.len()];
+    let mut solved = [0; Strategy::ALL.len()];
     let (mut with_answer, mut without) = (0, 0);
     for seed in 0..250 {
         let problem = problem(seed);
@@ -144,7 +133,7 @@ fn no_strategy_accepts_what_is_no_coulomb_state_and_the_ladder_solves_all_that_h
             0 => without += 1,
             _ => with_answer += 1,
         }
-        for (k, strategy) in STRATEGIES.into_iter().enumerate() {
+        for (k, strategy) in Strategy::NAMES.into_iter().enumerate() {
             let mut stepper = Stepper::new(model(&problem, strategy));
             match end(&mut stepper) {
                 Ok(()) => {
@@ -163,8 +152,8 @@ fn no_strategy_accepts_what_is_no_coulomb_state_and_the_ladder_solves_all_that_h
         }
     }
     assert!(with_answer > 200 && without > 5, "{with_answer} {without}");
-    let of = |name: &str| solved[STRATEGIES.iter().position(|s| *s == name).unwrap()];
-    println!("{STRATEGIES:?} {solved:?} of {with_answer}");
+    let of = |name: &str| solved[Strategy::NAMES.iter().position(|s| *s == name).unwrap()];
+    println!("{:?} {solved:?} of {with_answer}", Strategy::NAMES);
     assert_eq!(of("ladder"), with_answer);
     assert_eq!(of("census"), with_answer);
     assert!(of("table2") < of("sliding") && of("sliding") <= of("lemke"));
@@ -172,11 +161,8 @@ fn no_strategy_accepts_what_is_no_coulomb_state_and_the_ladder_solves_all_that_h
 
 #[test]
 fn pivoting_goes_on_with_the_same_bits_after_a_restore_at_any_pivot() {
-    let problem = problem(17);
-    let problem = (17..)
-        .map(self::problem)
-        .find(|p| p.contacts.len() == 4)
-        .unwrap_or(problem);
+    let mut problems = (17..).map(problem);
+    let problem = problems.find(|p| p.contacts.len() == 4).unwrap();
     let model = model(&problem, "lemke");
     let mut stepper = Stepper::new(model.clone());
     let (mut states, mut events) = (vec![stepper.state().clone()], Vec::new());
@@ -198,6 +184,32 @@ fn pivoting_goes_on_with_the_same_bits_after_a_restore_at_any_pivot() {
         let mut other = Stepper::new(model.clone());
         other.restore(state);
         assert_eq!(other.step().unwrap(), event);
+    }
+}
+
+#[test]
+fn newtons_verdicts_on_the_frozen_problem_are_the_steppers_where_the_bodies_are_all_solids() {
+    let set = [
+        ("settings.strategy", "newton"),
+        ("settings.solver", "condensed"),
+    ];
+    let blocks = include_str!("benches/two-blocks-pressed-sheared.ron");
+    let blocks = Scene::from_text("blocks", blocks, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let blocks = set.iter().fold(blocks, |scene, (path, value)| {
+        scene.with(path, value).unwrap()
+    });
+    let mut stepper = Stepper::new(Arc::new(blocks.model));
+    for _ in 0..6 {
+        let problem = stepper.frozen().unwrap();
+        assert!(problem.relation.stiffness.is_infinite());
+        let mut trials = Trials::new(&problem).unwrap();
+        let (records, _) = trials.minor(&mut problem.states()).unwrap();
+        let event = stepper.step().unwrap();
+        for (own, other) in records.iter().zip(&event.nodes) {
+            assert_eq!(own.decision.next, other.decision.next);
+            let [a, b] = [own, other].map(|r| r.decision.tests[0].map_or(0.0, |t| t.value));
+            assert!((a - b).abs() <= 1e-9 * problem.force, "{a} {b}");
+        }
     }
 }
 
@@ -239,6 +251,17 @@ fn where_there_is_no_answer_the_ladder_says_so_and_cuts_the_increment_down_to_th
     assert_eq!(sizes, [0.5, 0.25]);
     assert!(matches!(failure, Failure::NoAnswer { .. }));
     assert_eq!(stepper.state().next.attempt, 3);
+}
+
+#[test]
+fn a_census_over_too_many_nodes_says_that_and_not_that_there_is_no_answer() {
+    let set = [("settings.strategy", "census"), ("friction.angle", "30")];
+    let run = run(&scene("hertz-cylinder-on-block", &set));
+    let (_, failure) = run.failure.unwrap();
+    assert!(
+        matches!(failure, Failure::NotFound(NotFound::TooMany { nodes }) if nodes > 8),
+        "{failure:?}"
+    );
 }
 
 #[test]

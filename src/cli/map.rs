@@ -4,8 +4,10 @@ use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
 use super::{Error, Exit, SetArgs, say, tell};
+use crate::contact::strategy::limit;
 use crate::debug::files;
 use crate::scene::builtin;
+use crate::scene::spec::{FrictionLimit, Strategy};
 use crate::study::map::{self, Cell, Map};
 use crate::study::plan::product;
 use crate::study::random::{self, NODES, Population};
@@ -14,22 +16,6 @@ use crate::study::trial::{Judged, TOLERANCE, Variant};
 use crate::study::{Plan, Study, Vary, Watch, verdict_figure};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
-
-/// All strategies, the default first.
-const STRATEGIES: [&str; 9] = [
-    "ladder",
-    "table2",
-    "sliding",
-    "least",
-    "sliding_least",
-    "block",
-    "newton",
-    "lemke",
-    "census",
-];
-
-/// Those that may have T_max lagged or in the matrix; all others need it there, or choose.
-const LAGGING: [&str; 5] = ["table2", "sliding", "least", "sliding_least", "block"];
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -195,8 +181,8 @@ fn study(args: &Args) -> Result<Study, Error> {
 fn strategies(args: &Args) -> Result<Vec<Vary>, Error> {
     let values = match args.strategies.as_slice() {
         [] if !args.over.is_empty() => return Ok(Vec::new()),
-        [] => STRATEGIES.map(str::to_owned).to_vec(),
-        [all] if all == "all" => STRATEGIES.map(str::to_owned).to_vec(),
+        [] => Strategy::NAMES.map(str::to_owned).to_vec(),
+        [all] if all == "all" => Strategy::NAMES.map(str::to_owned).to_vec(),
         some => some.to_vec(),
     };
     Ok(vec![Vary {
@@ -293,15 +279,15 @@ fn variants(args: &Args) -> Result<Vec<Variant>, Error> {
 
 /// All strategies on random problems.
 fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
-    let variant = |strategy: &str, t_max: &str, touch: &str| {
+    let variant = |strategy: Strategy, t_max: &str, touch: &str| {
         let own = [
-            ("settings.strategy", strategy),
+            ("settings.strategy", strategy.name()),
             ("settings.t_max", t_max),
             ("settings.touch", touch),
         ];
         let own = own.map(|(path, value)| (path.to_owned(), value.to_owned()));
-        let mut name = strategy.to_owned();
-        if LAGGING.contains(&strategy) {
+        let mut name = strategy.name().to_owned();
+        if lags(strategy) {
             name += &format!(" {t_max}");
         }
         if touch == "ratio" {
@@ -312,13 +298,21 @@ fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
             settings: [own.to_vec(), set.to_vec()].concat(),
         }
     };
-    let mut all = vec![variant("table2", "lagged", "ratio")];
-    for strategy in LAGGING {
+    let mut all = vec![variant(Strategy::Table2, "lagged", "ratio")];
+    for strategy in Strategy::ALL.into_iter().filter(|&s| lags(s)) {
         all.extend(["lagged", "consistent"].map(|t_max| variant(strategy, t_max, "start")));
     }
-    let others = ["newton", "lemke", "census", "ladder"];
+    let others = Strategy::ALL
+        .into_iter()
+        .filter(|&s| !lags(s) && s != Strategy::Ladder);
+    let others = others.chain([Strategy::Ladder]);
     all.extend(others.map(|strategy| variant(strategy, "lagged", "start")));
     all
+}
+
+/// Whether T_max may lag or stand in the matrix: other strategies need it there, or choose.
+fn lags(strategy: Strategy) -> bool {
+    strategy != Strategy::Ladder && limit(strategy, FrictionLimit::Lagged) == FrictionLimit::Lagged
 }
 
 fn tell_survey(survey: &Survey) {

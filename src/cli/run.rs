@@ -279,7 +279,10 @@ impl<'a> Run<'a> {
                 );
                 tell(&format!("{name}: {told}"));
                 let cycle = match failure {
-                    Failure::NoAnswer { first, .. } => first,
+                    Failure::NoAnswer {
+                        first: Some(first), ..
+                    }
+                    | Failure::LadderEnded { first, .. } => first,
                     failure => failure,
                 };
                 if let Failure::Cycle(cycle) = cycle {

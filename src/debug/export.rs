@@ -315,7 +315,7 @@ fn stiffness(problem: &Frozen) -> Option<Parts> {
     (0..n).for_each(|i| matrix[i * n + i] += 1.0);
     let solved = solved(&matrix, start.iter().chain(response).copied().collect())?;
     let (c, k_columns) = solved.split_at(n);
-    // (1 + R/k)⁻¹ = 1 + K/k.
+    // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing is taken out.
     let largest = k_columns.iter().fold(0.0_f64, |m, x| m.max(x.abs())) / k;
     if largest > SINGULAR {
         return None;
@@ -351,7 +351,7 @@ fn compliance(problem: &Frozen) -> Option<Parts> {
     right.extend((0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }));
     let solved = solved(response, right)?;
     let (still, inverse) = solved.split_at(n);
-    let largest = inverse.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * k;
+    let largest = inverse.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * problem.spring;
     if largest > SINGULAR {
         return None;
     }

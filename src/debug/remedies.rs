@@ -12,7 +12,8 @@ use crate::scene::spec::{AtCycle, FrictionLimit, ResidualMethod, Sticking, Strat
 use crate::scene::{Mode, Settings};
 use crate::solve::system::condenses;
 use crate::solve::{
-    Event, Failure, Forced, Intervention, NodeRecord, Norms, Outcome, State, Status, Stepper,
+    Event, Failure, Forced, Intervention, NodeRecord, Norms, NotFound, Outcome, State, Status,
+    Stepper,
 };
 use std::cmp::Ordering;
 use std::time::Instant;
@@ -330,7 +331,8 @@ pub fn end_words(end: &End) -> String {
         End::Failed(Failure::Diverged { .. }) => "diverged".into(),
         End::Failed(Failure::Jammed { .. }) => "jammed".into(),
         End::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
-        End::Failed(Failure::Ray) => "ray".into(),
+        End::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
+        End::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),
     }
 }
 

@@ -1,11 +1,10 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
 use crate::contact::decision::{Decision, Rule, Tested};
-use crate::scene::spec::Strategy;
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
 use crate::solve::rounds::{Round, Stop};
-use crate::solve::{Event, Failure, Intervention, Outcome, Position};
+use crate::solve::{Event, Failure, Intervention, NotFound, Outcome, Position, census};
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -186,7 +185,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
         Outcome::Climbed { why, to } => format!(
             "{at}: {}; goes on with strategy {}",
             describe_failure(model, why),
-            strategy(*to)
+            to.name()
         ),
         Outcome::Cut { why, size } => format!(
             "{at}: {}; the increment is cut to {size}",
@@ -242,21 +241,6 @@ fn pivot(model: &Model, event: &Event) -> String {
     match what {
         Some(what) => format!("a pivot: {what}; {left}"),
         None => format!("a pivot; {left}"),
-    }
-}
-
-/// A strategy's name, as settings have it.
-pub fn strategy(strategy: Strategy) -> &'static str {
-    match strategy {
-        Strategy::Ladder => "ladder",
-        Strategy::Table2 => "table2",
-        Strategy::Sliding => "sliding",
-        Strategy::Least => "least",
-        Strategy::SlidingLeast => "sliding_least",
-        Strategy::Block => "block",
-        Strategy::Newton => "newton",
-        Strategy::Lemke => "lemke",
-        Strategy::Census => "census",
     }
 }
 
@@ -370,7 +354,10 @@ pub fn advice(failure: &Failure) -> &'static str {
         Failure::NoAnswer { .. } => {
             "a smaller history.least, other loads or friction, or a prescribed displacement instead of a load"
         }
-        Failure::Ray => "settings.strategy=ladder, or a smaller history.increment",
+        Failure::LadderEnded { .. } => {
+            "a smaller history.least, another history.increment, or the debugger, to see where it stands"
+        }
+        Failure::NotFound(_) => "settings.strategy=ladder, or a smaller history.increment",
         Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
         Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
         Failure::MajorCycle(_) => {
@@ -409,18 +396,19 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         ),
         Failure::MajorCycle(round) => major_cycle(model, round),
         Failure::NoAnswer { first, tried } => {
-            let none = match tried {
-                0 => "no strategy of the ladder found a consistent state".to_owned(),
-                n => format!("no consistent state at this increment: all {n} assignments were tried"),
-            };
-            match **first {
-                Failure::Ray => none,
-                ref first => format!("{none} (table2: {})", describe_failure(model, first)),
+            let none =
+                format!("no consistent state at this increment: all {tried} assignments were tried");
+            match first {
+                None => none,
+                Some(first) => format!("{none} (table2: {})", describe_failure(model, first)),
             }
         }
-        Failure::Ray => {
-            "pivoting ended on a ray from every start, so it found no consistent state".into()
-        }
+        Failure::LadderEnded { first, last } => format!(
+            "no strategy of the ladder found a consistent state (table2: {}; at last: {})",
+            describe_failure(model, first),
+            describe_failure(model, last)
+        ),
+        Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {
             let motions = motions.iter().map(motion).collect();
             format!("nothing holds a rigid motion: {}", some(motions, "; "))
@@ -435,6 +423,33 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
             slave(model, *s),
             -gap
+        ),
+    }
+}
+
+/// Why pivoting, or the census, found nothing.
+fn not_found(why: NotFound) -> String {
+    match why {
+        NotFound::Ray => {
+            "pivoting ended on a ray from every start, so it found no consistent state".into()
+        }
+        NotFound::NoStart => {
+            "pivoting has no start: the equations of every one that it knows are singular".into()
+        }
+        NotFound::TooMany { nodes } => format!(
+            "{nodes} nodes can touch, too many to try what each does: a census is held over at most {}",
+            census::MOST
+        ),
+        NotFound::Loose => {
+            "no census can be held: the equations of the nodes that cannot touch are singular".into()
+        }
+        NotFound::NotCondensed => {
+            "the bodies cannot be condensed to the interface, so pivoting and census have nothing to work on".into()
+        }
+        NotFound::Unconfirmed { states } => format!(
+            "{states} state{} found consistent, and no minor iteration that checked {} agreed",
+            if states == 1 { " was" } else { "s were" },
+            if states == 1 { "it" } else { "one" }
         ),
     }
 }

@@ -300,15 +300,23 @@ choices! {
     Law { "svk" => Law::Svk, "neohookean" => Law::NeoHookean }
     Plane { "strain" => Plane::Strain, "stress" => Plane::Stress }
     Update { "total" => Update::Total, "updated" => Update::Updated }
-    Strategy {
-        "ladder" => Strategy::Ladder, "table2" => Strategy::Table2, "sliding" => Strategy::Sliding,
-        "least" => Strategy::Least, "sliding_least" => Strategy::SlidingLeast, "block" => Strategy::Block,
-        "newton" => Strategy::Newton, "lemke" => Strategy::Lemke, "census" => Strategy::Census,
-    }
     Touch { "auto" => Touch::Auto, "ratio" => Touch::Ratio, "start" => Touch::Start }
     Ties { "keep" => Ties::Keep, "printed" => Ties::Printed }
     AtCycle { "stop" => AtCycle::Stop, "damp" => AtCycle::Damp }
     AtLimit { "stop" => AtLimit::Stop, "accept" => AtLimit::Accept }
+}
+
+impl Choice for Strategy {
+    fn names(&self) -> &'static [&'static str] {
+        &Strategy::NAMES
+    }
+    fn name(&self) -> &'static str {
+        Strategy::name(*self)
+    }
+    fn choose(&mut self, name: &str) -> bool {
+        let found = Strategy::ALL.into_iter().find(|s| s.name() == name);
+        found.inspect(|&found| *self = found).is_some()
+    }
 }
 
 type Visit<'v> = dyn FnMut(&Place, Scalar<'_>) + 'v;

@@ -645,6 +645,46 @@ pub enum Strategy {
     Census,
 }
 
+impl Strategy {
+    /// All of them.
+    pub const ALL: [Strategy; 9] = [
+        Strategy::Ladder,
+        Strategy::Table2,
+        Strategy::Sliding,
+        Strategy::Least,
+        Strategy::SlidingLeast,
+        Strategy::Block,
+        Strategy::Newton,
+        Strategy::Lemke,
+        Strategy::Census,
+    ];
+
+    /// Their names, in the same order.
+    pub const NAMES: [&str; 9] = {
+        let (mut names, mut k) = ([""; 9], 0);
+        while k < names.len() {
+            names[k] = Strategy::ALL[k].name();
+            k += 1;
+        }
+        names
+    };
+
+    /// Its name in scene files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Strategy::Ladder => "ladder",
+            Strategy::Table2 => "table2",
+            Strategy::Sliding => "sliding",
+            Strategy::Least => "least",
+            Strategy::SlidingLeast => "sliding_least",
+            Strategy::Block => "block",
+            Strategy::Newton => "newton",
+            Strategy::Lemke => "lemke",
+            Strategy::Census => "census",
+        }
+    }
+}
+
 /// Where a node is held that touches within an increment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

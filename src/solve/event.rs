@@ -140,13 +140,39 @@ pub enum Failure {
     Singular(Singular),
     /// The residual or the displacements grew out of all bounds.
     Diverged { relative: f64 },
-    /// Nothing on the ladder found a consistent state. `first` is what Table 2 failed of; `tried` is the number of
-    /// assumptions that were tried, which is all of them, or 0 where they are too many.
-    NoAnswer { first: Box<Failure>, tried: usize },
-    /// Lemke's pivoting ended on a ray, from every start.
-    Ray,
+    /// No assumption of what the nodes do is consistent: all were tried. `first` is what Table 2 failed of before, where it
+    /// led.
+    NoAnswer {
+        first: Option<Box<Failure>>,
+        tried: usize,
+    },
+    /// Nothing on the ladder found a consistent state, though not everything could be tried: what Table 2 failed of, and
+    /// the last rung.
+    LadderEnded {
+        first: Box<Failure>,
+        last: Box<Failure>,
+    },
+    /// Pivoting, or the census, found no consistent state, which does not prove that there is none.
+    NotFound(NotFound),
     /// A touching node and its master can neither of them move to close the gap (slave number).
     Jammed { slave: usize, gap: f64 },
+}
+
+/// Why pivoting, or the census, found nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum NotFound {
+    /// Pivoting ended on a ray, from every start.
+    Ray,
+    /// The equations of every start of pivoting are singular.
+    NoStart,
+    /// So many nodes can touch that their assumptions are too many to try.
+    TooMany { nodes: usize },
+    /// The equations of the nodes that cannot touch are singular.
+    Loose,
+    /// The bodies cannot be condensed to the interface.
+    NotCondensed,
+    /// So many states were found, and the minor iteration that checked each did not confirm it.
+    Unconfirmed { states: usize },
 }
 
 /// A true cycle of minor iterations: same modes, same numbers.

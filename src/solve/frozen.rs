@@ -29,6 +29,8 @@ pub struct Frozen {
     /// Sizes of forces and lengths, to compare margins of either.
     pub force: f64,
     pub length: f64,
+    /// Stiffness that compares lengths with forces, finite also where the relation has no springs.
+    pub spring: f64,
     pub settings: Settings,
 }
 
@@ -233,7 +235,7 @@ impl<'a> Trials<'a> {
         let check = Check {
             settings: problem.settings,
             ties,
-            stiffness: problem.relation.stiffness,
+            stiffness: problem.spring,
         };
         let mut settled = true;
         let before = nodes.to_vec();

@@ -23,7 +23,7 @@ pub mod state;
 pub mod stepper;
 pub mod system;
 
-pub use event::{Event, Failure, Forced, NodeRecord, Norms, Outcome, Position};
+pub use event::{Event, Failure, Forced, NodeRecord, Norms, NotFound, Outcome, Position};
 pub use intervene::{Intervention, Start};
 pub use state::{State, Status};
 pub use stepper::Stepper;

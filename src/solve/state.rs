@@ -31,17 +31,14 @@ pub struct State {
     /// What went into the minor iterations of the present major one so far, to recognise a cycle.
     pub trail: Arc<Trail>,
     /// What went into the major iterations of the present increment so far, to recognise a cycle of theirs.
-    #[serde(default)]
     pub rounds: Arc<Rounds>,
     /// Load factor that the present major iteration aims at: `load_factor`, unless it was damped.
     pub aim: f64,
     /// Load factor that the last major iteration aimed at; at first the one at the start of the increment.
     pub reached: f64,
     /// How far the strategy has come in the present increment.
-    #[serde(default)]
     pub search: Search,
     /// The part of an increment that is aimed at.
-    #[serde(default)]
     pub piece: Piece,
     /// Minor iterations done in the present increment attempt.
     pub minors: u32,
@@ -82,10 +79,8 @@ pub struct NodeState {
     pub slip: f64,
     /// Where on the master it stuck, or last was when an increment was accepted; none while it is free
     /// ([`crate::contact::anchor`]).
-    #[serde(default)]
     pub anchor: Option<Spot>,
     /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t.
-    #[serde(default)]
     pub drift: f64,
     /// Ratio ρ of tangential to normal travel where the node touched in the present major iteration; else 0.
     pub ratio: f64,
@@ -107,7 +102,6 @@ pub struct IncrementStart {
     pub u: Arc<Vec<f64>>,
     pub nodes: Vec<NodeState>,
     /// What the elements remember of it ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub history: Vec<f64>,
 }
 
@@ -121,8 +115,9 @@ pub struct Search {
     /// Fewest nodes that changed at once in the present major iteration, and the rounds since then.
     pub fewest: Option<usize>,
     pub rounds: u32,
-    /// How far pivoting has come in the present major iteration.
+    /// How far pivoting has come in the present major iteration, and how many states that it found were not confirmed.
     pub pivoting: Pivoting,
+    pub unconfirmed: usize,
 }
 
 /// How far pivoting, or the census, has come in a major iteration.
@@ -198,7 +193,6 @@ pub struct Controls {
     /// Increment of the load factor.
     pub increment: f64,
     /// Size below which an increment that fails is not cut.
-    #[serde(default)]
     pub least: f64,
     /// Friction of each slave node.
     pub friction: Vec<Friction>,

@@ -16,9 +16,9 @@ use crate::contact::table1::t_max;
 use crate::scene::model::{Surface, Watched};
 use crate::scene::spec::{AtCycle, AtLimit, Axis, ResidualMethod, SlipCount, Sticking, Strategy};
 use crate::scene::{Mode, Model, spec};
-use crate::solve::census::census;
+use crate::solve::census::{Census, census};
 use crate::solve::event::{
-    Cycle, Event, Failure, Forced, NodeRecord, Norms, Outcome, Position, Singular,
+    Cycle, Event, Failure, Forced, NodeRecord, Norms, NotFound, Outcome, Position, Singular,
 };
 use crate::solve::frozen::{Assumed, Frozen, NodeAnswer};
 use crate::solve::intervene::Intervention;
@@ -369,7 +369,8 @@ impl Stepper {
         let strategy = self.state.controls.settings.strategy;
         let held = |node: &NodeState| matches!(node.forced, Forced::Held(_));
         if strategy != Strategy::Ladder || self.state.nodes.iter().any(held) {
-            self.state.next.minor += u32::from(!matches!(why, Failure::Singular(_)));
+            let unsolved = matches!(why, Failure::Singular(_) | Failure::Jammed { .. });
+            self.state.next.minor += u32::from(!unsolved);
             self.state.forget_trail();
             return self.fail(why);
         }
@@ -389,9 +390,9 @@ impl Stepper {
                 self.fail(first)
             }
             (_, why @ Failure::NoAnswer { .. }) => self.fail(why),
-            (first, _) => self.fail(Failure::NoAnswer {
+            (first, last) => self.fail(Failure::LadderEnded {
                 first: Box::new(first),
-                tried: 0,
+                last: Box::new(last),
             }),
         }
     }
@@ -414,12 +415,20 @@ impl Stepper {
 
     /// The modes that were tried do not hold: the next start of pivoting, or the next answer of the census.
     fn begin_pivoting(&mut self) -> Outcome {
-        let start = match self.state.search.pivoting {
-            Pivoting::Not => 0,
-            Pivoting::At { start, .. } | Pivoting::Found { start } => start + 1,
+        let search = &mut self.state.search;
+        let start = match search.pivoting {
+            Pivoting::Not => {
+                search.unconfirmed = 0;
+                0
+            }
+            Pivoting::At { start, .. } => start + 1,
+            Pivoting::Found { start } => {
+                search.unconfirmed += 1;
+                start + 1
+            }
         };
+        search.pivoting = Pivoting::At { start, pivot: 0 };
         self.take_back();
-        self.state.search.pivoting = Pivoting::At { start, pivot: 0 };
         self.state.next.minor += 1;
         Outcome::Minor
     }
@@ -428,12 +437,12 @@ impl Stepper {
     fn pivot(&mut self, start: usize, pivot: usize) -> Outcome {
         if !matches!(self.lemke, Some((_, s, p)) if (s, p) == (start, pivot)) {
             match self.path(start, pivot) {
-                Some(path) => self.lemke = Some(path),
-                None => return self.stuck(Failure::Ray),
+                Ok(path) => self.lemke = Some(path),
+                Err(why) => return self.stuck(Failure::NotFound(why)),
             }
         }
         let Some((lemke, start, pivot)) = &mut self.lemke else {
-            return self.stuck(Failure::Ray);
+            return self.stuck(Failure::NotFound(NotFound::NoStart));
         };
         // It has ended already where its start is the answer.
         if lemke.pivot().is_some() {
@@ -473,17 +482,24 @@ impl Stepper {
     }
 
     /// The tableau after this many pivots from a start, or from the first one behind it whose basis is regular.
-    fn path(&mut self, start: usize, pivot: usize) -> Option<(Lemke, usize, usize)> {
-        let problem = self.system.frozen(&self.model, &self.state).ok()?;
+    fn path(&mut self, start: usize, pivot: usize) -> Result<(Lemke, usize, usize), NotFound> {
+        let problem = self.system.frozen(&self.model, &self.state);
+        let problem = problem.map_err(|_| NotFound::NotCondensed)?;
         let brought = self.brought();
         let mut starts = (start..STARTS)
             .filter_map(|number| Some((Lemke::new(&problem, &brought, number)?, number)));
-        let (mut lemke, found) = starts.next()?;
+        let Some((mut lemke, found)) = starts.next() else {
+            return Err(match (start, self.state.search.unconfirmed) {
+                (0, _) => NotFound::NoStart,
+                (_, 0) => NotFound::Ray,
+                (_, states) => NotFound::Unconfirmed { states },
+            });
+        };
         let pivot = if found == start { pivot } else { 0 };
         for _ in 0..pivot {
-            lemke.pivot()?;
+            lemke.pivot();
         }
-        Some((lemke, found, pivot))
+        Ok((lemke, found, pivot))
     }
 
     /// What the nodes brought into the present major iteration.
@@ -493,38 +509,27 @@ impl Stepper {
         first.iter().map(of).collect()
     }
 
-    /// Holds a census over all nodes that can touch, and takes the next of its answers, those first that change the least.
+    /// Takes the next answer of a census over all nodes that can touch.
     fn try_all(&mut self) -> Outcome {
-        let Pivoting::At { start: number, .. } = self.state.search.pivoting else {
-            return self.stuck(Failure::Ray);
+        let number = match self.state.search.pivoting {
+            Pivoting::At { start, .. } => start,
+            _ => 0,
         };
-        let Ok(problem) = self.system.frozen(&self.model, &self.state) else {
-            return self.stuck(Failure::Ray);
+        let (undecided, census) = match self.census() {
+            Ok(held) => held,
+            Err(why) => return self.stuck(Failure::NotFound(why)),
         };
-        let undecided: Vec<usize> = (0..problem.nodes.len())
-            .filter(|&place| problem.nodes[place].choices().len() > 1)
-            .collect();
-        let census = problem
-            .reduced(&undecided)
-            .and_then(|problem| census(&problem).ok());
-        let Some(mut census) = census else {
-            return self.stuck(Failure::Ray);
-        };
-        let brought = self.brought();
-        let differs = |(place, node): (&usize, &NodeAnswer)| brought[*place] != node.assumed;
-        census.answers.sort_by_key(|found| {
-            let all = undecided.iter().zip(&found.answer.nodes);
-            all.filter(|&pair| differs(pair)).count()
-        });
         let Some(found) = census.answers.get(number) else {
-            let first = self.state.search.first.clone();
-            return self.stuck(Failure::NoAnswer {
-                first: first.unwrap_or(Box::new(Failure::Ray)),
-                tried: census.tried,
+            return self.stuck(match census.answers.len() {
+                0 => Failure::NoAnswer {
+                    first: self.state.search.first.clone(),
+                    tried: census.tried,
+                },
+                states => Failure::NotFound(NotFound::Unconfirmed { states }),
             });
         };
         let free = (Assumed::Free, [0.0, 0.0, f64::INFINITY, 0.0]);
-        let mut told = vec![free; problem.nodes.len()];
+        let mut told = vec![free; self.state.nodes.len()];
         for (&place, node) in undecided.iter().zip(&found.answer.nodes) {
             let numbers = [node.f_n, node.f_t, node.gap, node.slip];
             told[place] = (node.assumed, numbers);
@@ -535,6 +540,25 @@ impl Stepper {
         self.state.search.pivoting = Pivoting::Found { start: number };
         self.state.next.minor += 1;
         Outcome::Minor
+    }
+
+    /// The nodes that can touch, and a census over them, those answers first that change the least.
+    fn census(&mut self) -> Result<(Vec<usize>, Census), NotFound> {
+        let problem = self.system.frozen(&self.model, &self.state);
+        let problem = problem.map_err(|_| NotFound::NotCondensed)?;
+        let undecided: Vec<usize> = (0..problem.nodes.len())
+            .filter(|&place| problem.nodes[place].choices().len() > 1)
+            .collect();
+        let problem = problem.reduced(&undecided).ok_or(NotFound::Loose)?;
+        let nodes = undecided.len();
+        let mut census = census(&problem).map_err(|_| NotFound::TooMany { nodes })?;
+        let brought = self.brought();
+        let differs = |(place, node): (&usize, &NodeAnswer)| brought[*place] != node.assumed;
+        census.answers.sort_by_key(|found| {
+            let all = undecided.iter().zip(&found.answer.nodes);
+            all.filter(|&pair| differs(pair)).count()
+        });
+        Ok((undecided, census))
     }
 
     /// Records what pivoting or the census has a node do, and leaves it in the state.

@@ -680,6 +680,7 @@ impl System {
                 largest
             },
             length: model.length,
+            spring: self.spring(model),
             settings: state.settings(),
             relation,
         })

@@ -72,6 +72,7 @@ pub enum Reason {
     Diverged,
     Jammed,
     NoAnswer,
+    NotFound,
 }
 
 impl Reason {
@@ -84,7 +85,7 @@ impl Reason {
             Reason::Singular => 's',
             Reason::Diverged => 'd',
             Reason::Jammed => 'j',
-            Reason::NoAnswer => 'n',
+            Reason::NoAnswer | Reason::NotFound => 'n',
         }
     }
 }
@@ -99,7 +100,8 @@ impl From<&Failure> for Reason {
             Failure::Singular(_) => Reason::Singular,
             Failure::Diverged { .. } => Reason::Diverged,
             Failure::Jammed { .. } => Reason::Jammed,
-            Failure::NoAnswer { .. } | Failure::Ray => Reason::NoAnswer,
+            Failure::NoAnswer { .. } => Reason::NoAnswer,
+            Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
         }
     }
 }
@@ -115,6 +117,7 @@ impl fmt::Display for Reason {
             Reason::Diverged => "diverged",
             Reason::Jammed => "jammed",
             Reason::NoAnswer => "no-answer",
+            Reason::NotFound => "not-found",
         })
     }
 }

@@ -1,7 +1,7 @@
 //! What a run is worth: the words that stability maps sort runs by.
 
 use super::result::Reason;
-use crate::solve::Failure;
+use crate::solve::{Failure, NotFound};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -36,8 +36,7 @@ impl Verdict {
             },
             Failure::Diverged { .. } => Verdict::Diverged,
             // That nothing was found where not all could be tried says nothing about the problem.
-            Failure::NoAnswer { tried: 0, .. } => Verdict::Failed(Reason::NoAnswer),
-            Failure::NoAnswer { .. } | Failure::Ray => Verdict::NoAnswer,
+            Failure::NoAnswer { .. } | Failure::NotFound(NotFound::Ray) => Verdict::NoAnswer,
             other => Verdict::Failed(Reason::from(other)),
         }
     }

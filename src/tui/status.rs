@@ -195,7 +195,7 @@ fn interventions(view: &View) -> Option<String> {
     let strategy = state.settings().strategy;
     let leads = strategy != Strategy::Table2 && state.status != Status::Finished;
     let parts = [
-        leads.then(|| format!("strategy {}", report::strategy(strategy))),
+        leads.then(|| format!("strategy {}", strategy.name())),
         (state.piece.cut > 0)
             .then(|| format!("increment cut to {}", number::plain(state.piece.size()))),
         (held > 0).then(|| format!("◆ {held} held")),
