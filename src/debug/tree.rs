@@ -156,7 +156,10 @@ impl Tree {
     }
 
     /// Adds a point to the tip, to be looked at from now on.
-    pub fn push(&mut self, frame: Frame, strip: Strip) {
+    pub fn push(&mut self, mut frame: Frame, strip: Strip) {
+        if let Some(tip) = self.line.frames.last() {
+            copy(&mut frame, tip);
+        }
         self.ledger.add(&frame);
         self.line.frames.push(frame);
         self.line.strips.push(strip);
@@ -359,6 +362,27 @@ impl Tree {
         gather(&self.line, None);
         found.sort_unstable();
         found
+    }
+}
+
+/// Gives a frame memory of this thread's, shared with the frame before where both hold the same. What it came in goes back
+/// to the solver's thread, which fills it again, instead of waiting for new pages at every iteration.
+fn copy(frame: &mut Frame, before: &Frame) {
+    fn part<T: Clone + PartialEq>(own: &mut Arc<T>, before: &Arc<T>) {
+        *own = if own == before {
+            before.clone()
+        } else {
+            Arc::new(T::clone(own))
+        };
+    }
+    let state = &mut frame.state;
+    state.nodes = state.nodes.clone();
+    part(&mut state.u, &before.state.u);
+    part(&mut state.start, &before.state.start);
+    part(&mut state.trail, &before.state.trail);
+    part(&mut state.rounds, &before.state.rounds);
+    if let Some(event) = &mut frame.event {
+        *event = Arc::new(Event::clone(event));
     }
 }
 

@@ -10,7 +10,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// How long who waits for the worker sleeps between two looks: were it woken by every message, the solver would pay for
+/// that at every iteration.
+const NAP: Duration = Duration::from_micros(200);
 
 /// What the worker is to do.
 pub enum Job {
@@ -130,7 +134,12 @@ impl Worker {
 
     /// The next message; waits for it.
     pub fn next(&self) -> Message {
-        self.messages.recv().unwrap_or(Message::Died)
+        loop {
+            match self.try_next() {
+                Some(message) => return message,
+                None => thread::sleep(NAP),
+            }
+        }
     }
 
     /// The next message, if there is one.

@@ -1,8 +1,9 @@
 //! LU of sparse systems, scaled, refined and checked.
 //!
 //! The augmented system of eqn (9) mixes stiffnesses of very different size with constraint rows of size one and,
-//! where friction stands in the matrix, is unsymmetric. So it is scaled row by row and column by column, by powers of
-//! two, which cost no digits and seldom change. Small systems whose groups of unknowns are known are factored front by
+//! where friction stands in the matrix, is unsymmetric. So it is scaled, rows and columns, by powers of two, which cost no
+//! digits. Where matrices differ in their last rows only (a major iteration's differ in the equations
+//! of the interface), one scale serves all, but for these rows. Small systems whose groups of unknowns are known are factored front by
 //! front ([`super::fronts`]); others, and those that find no pivots there, by faer with partial pivoting. The symbolic
 //! part is kept as long as the pattern stands.
 
@@ -34,6 +35,9 @@ pub struct Factors {
     residual: Vec<f64>,
     sizes: Vec<f64>,
     correction: Vec<f64>,
+    /// The rows from here on are scaled anew in each factorization, and their entries: place, row, column.
+    first_own: usize,
+    own: Vec<(usize, usize, usize)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,6 +92,8 @@ impl Factors {
             residual: vec![0.0; n],
             sizes: vec![0.0; n],
             correction: vec![0.0; n],
+            first_own: n,
+            own: Vec::new(),
         }
     }
 
@@ -96,7 +102,23 @@ impl Factors {
         &self.pattern
     }
 
-    /// Factors the matrix with these values (in the order of the pattern).
+    /// Scales for all matrices to come, until the next call, that differ from this one only in the rows from `first` on. The
+    /// rows before these are taken to be about as large as their columns: the matrix is nearly symmetric there.
+    pub fn scale(&mut self, values: &[f64], first: usize) {
+        self.used = Used::Neither;
+        self.values.copy_from_slice(values);
+        self.equilibrate();
+        if self.first_own != first {
+            self.first_own = first;
+            let entries = self.pattern.iter().enumerate();
+            let own = entries.filter(|(_, (row, _))| *row >= first);
+            self.own.clear();
+            self.own
+                .extend(own.map(|(place, (row, col))| (place, row, col)));
+        }
+    }
+
+    /// Factors the matrix with these values (in the order of the pattern), for which [`Factors::scale`] found the scale.
     ///
     /// # Errors
     /// [`SolveError::Singular`] where a pivot column is empty; near-singularity shows in [`Factors::solve`] and
@@ -104,7 +126,8 @@ impl Factors {
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.used = Used::Neither;
         self.values.copy_from_slice(values);
-        self.equilibrate();
+        self.scale_own_rows();
+        self.apply_scale();
         if let Some(fronts) = &mut self.fronts
             && fronts.factor(&self.scaled).is_ok()
         {
@@ -238,31 +261,40 @@ impl Factors {
         }
     }
 
-    /// Ruiz equilibration: rows and columns are divided by about the square roots of their largest entries, some times.
+    /// Ruiz equilibration: row and column i are divided by about the square root of the largest entry, some times.
     fn equilibrate(&mut self) {
-        let n = self.pattern.n;
-        self.row_scale.fill(1.0);
         self.col_scale.fill(1.0);
         for _ in 0..SWEEPS {
-            self.sizes.fill(0.0);
-            self.residual.fill(0.0);
-            for col in 0..n {
+            for (col, size) in self.sizes.iter_mut().enumerate() {
                 let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
                 let rows = &self.pattern.row_idx[range.clone()];
-                let (own, mut most) = (self.col_scale[col], 0.0_f64);
-                for (value, &row) in self.values[range].iter().zip(rows) {
-                    let size = (value * own * self.row_scale[row]).abs();
-                    self.sizes[row] = self.sizes[row].max(size);
-                    most = most.max(size);
-                }
-                self.residual[col] = most;
+                let entries = self.values[range].iter().zip(rows);
+                let sizes = entries.map(|(value, &row)| (value * self.col_scale[row]).abs());
+                *size = sizes.fold(0.0, f64::max) * self.col_scale[col];
             }
-            for i in 0..n {
-                self.row_scale[i] *= inverse_root(self.sizes[i]);
-                self.col_scale[i] *= inverse_root(self.residual[i]);
+            for (scale, &size) in self.col_scale.iter_mut().zip(&self.sizes) {
+                *scale *= inverse_root(size);
             }
         }
-        for col in 0..n {
+        self.row_scale.copy_from_slice(&self.col_scale);
+    }
+
+    /// Divides each row from `first_own` on by about its largest entry.
+    fn scale_own_rows(&mut self) {
+        let sizes = &mut self.sizes[self.first_own..];
+        sizes.fill(0.0);
+        for &(place, row, col) in &self.own {
+            let size = (self.values[place] * self.col_scale[col]).abs();
+            let largest = &mut sizes[row - self.first_own];
+            *largest = largest.max(size);
+        }
+        for (scale, &size) in self.row_scale[self.first_own..].iter_mut().zip(&*sizes) {
+            *scale = inverse(size);
+        }
+    }
+
+    fn apply_scale(&mut self) {
+        for col in 0..self.pattern.n {
             let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
             let rows = &self.pattern.row_idx[range.clone()];
             let own = self.col_scale[col];
@@ -313,14 +345,20 @@ impl General {
     }
 }
 
-/// The power of two nearest below the inverse of a square root, up to its own square root.
+/// A power of two near the inverse of the square root.
 fn inverse_root(size: f64) -> f64 {
-    if size > 0.0 && size.is_finite() {
-        let exponent = i64::try_from(size.to_bits() >> 52).unwrap_or(1023) - 1023;
-        power_of_two(-(exponent.div_euclid(2)))
-    } else {
-        1.0
-    }
+    exponent(size).map_or(1.0, |exponent| power_of_two(-exponent.div_euclid(2)))
+}
+
+/// The power of two by which a size comes to lie between one and two.
+fn inverse(size: f64) -> f64 {
+    exponent(size).map_or(1.0, |exponent| power_of_two(-exponent))
+}
+
+/// Exponent of a size; none of zero and of what is no number.
+fn exponent(size: f64) -> Option<i64> {
+    let exponent = || i64::try_from(size.to_bits() >> 52).unwrap_or(1023) - 1023;
+    (size > 0.0 && size.is_finite()).then(exponent)
 }
 
 fn power_of_two(exponent: i64) -> f64 {
@@ -342,6 +380,7 @@ mod tests {
     fn a_badly_scaled_saddle_point_is_solved_to_round_off() {
         let (pattern, values) = dense(3, &[1.2e7, 3.0, 1.0, 3.0, 1e-3, 1.0, 1.0, 1.0, 0.0]);
         let mut factors = Factors::new(pattern.clone()).unwrap();
+        factors.scale(&values, 2);
         factors.factor(&values).unwrap();
         let exact = [1.0, -2.0, 3e5];
         let (mut b, mut x) = ([0.0; 3], [0.0; 3]);
@@ -354,9 +393,29 @@ mod tests {
     }
 
     #[test]
+    fn one_scale_serves_matrices_that_differ_in_their_last_rows() {
+        let (pattern, first) = dense(3, &[1.2e7, 3.0, 1.0, 3.0, 1e-3, 1.0, 1.0, 1.0, 0.0]);
+        let (_, second) = dense(3, &[1.2e7, 3.0, 1.0, 3.0, 1e-3, 1.0, 0.0, 0.0, 4e9]);
+        let mut factors = Factors::new(pattern.clone()).unwrap();
+        factors.scale(&first, 2);
+        for values in [&first, &second, &first] {
+            factors.factor(values).unwrap();
+            let exact = [1.0, -2.0, 3.0];
+            let (mut b, mut x) = ([0.0; 3], [0.0; 3]);
+            pattern.multiply(values, &exact, &mut b);
+            factors.solve(&b, &mut x).unwrap();
+            for (x, e) in x.iter().zip(exact) {
+                assert!((x - e).abs() <= 1e-11 * e.abs(), "{x} {e}");
+            }
+            assert!(factors.inverse_norm() < 1e6);
+        }
+    }
+
+    #[test]
     fn a_singular_matrix_is_told_by_the_norm_of_its_inverse_or_by_the_solve() {
         let (pattern, values) = dense(2, &[1.0, 2.0, 2.0, 4.0]);
         let mut factors = Factors::new(pattern).unwrap();
+        factors.scale(&values, 2);
         if factors.factor(&values).is_ok() {
             let mut x = [0.0; 2];
             assert!(factors.inverse_norm() > 1e12 || factors.solve(&[1.0, 1.0], &mut x).is_err());

@@ -68,6 +68,8 @@ pub struct System {
     /// What `stiffness` is laid out for.
     layout: Option<Layout>,
     whole: Option<Factors>,
+    /// Whether `whole` is scaled for the present linearisation.
+    scaled: bool,
     bodies: Option<Bodies>,
     /// Whether the scene's bodies may be condensed by [`Bodies`].
     condensable: bool,
@@ -114,6 +116,7 @@ impl System {
             assembly: Assembly::new(model),
             layout: None,
             whole: None,
+            scaled: false,
             bodies: None,
             condensable: condensable(model),
             pairing: Vec::new(),
@@ -171,6 +174,7 @@ impl System {
         state: &State,
     ) -> Result<(), SolveError> {
         self.condensed.fresh = false;
+        self.scaled = false;
         self.place(model, &state.u);
         for (interface, (node, slave)) in self
             .interfaces
@@ -559,6 +563,7 @@ impl System {
 
     fn solve_augmented(&mut self, model: &Model, state: &State) -> Solved {
         self.condensed.fresh = false;
+        self.scale(model, state);
         self.start_values();
         let unknowns = model.dofs.equations;
         for s in 0..self.interfaces.len() {
@@ -575,6 +580,23 @@ impl System {
             self.condensed.motions[s] = self.motion_of_solution(model, s, node);
         }
         solved
+    }
+
+    /// Finds the scale of all systems of this linearisation: that of the one in which every node is held.
+    fn scale(&mut self, model: &Model, state: &State) {
+        if std::mem::replace(&mut self.scaled, true) {
+            return;
+        }
+        self.start_values();
+        for s in 0..self.interfaces.len() {
+            let frame = self.interfaces[s].frame(&state.nodes[s]);
+            for (k, row) in springs(0.0).iter().enumerate() {
+                self.place_row(s, k, row, frame);
+            }
+        }
+        if let Some(factors) = &mut self.whole {
+            factors.scale(&self.values, model.dofs.equations);
+        }
     }
 
     /// Stiffness and out-of-balance forces, without any interface.
@@ -712,12 +734,13 @@ impl System {
             self.turn(model, state);
         }
         self.condensed.relation.stiffness = self.spring(model);
-        self.condense_whole(model)
+        self.condense_whole(model, state)
     }
 
     /// Condenses with every interface equation replaced by `motion − ΔF / stiffness = z`: the forces are then a linear
     /// function of z, found column by column.
-    fn condense_whole(&mut self, model: &Model) -> Result<f64, SolveError> {
+    fn condense_whole(&mut self, model: &Model, state: &State) -> Result<f64, SolveError> {
+        self.scale(model, state);
         self.start_values();
         let unknowns = model.dofs.equations;
         let give = -1.0 / self.condensed.relation.stiffness;

@@ -1,6 +1,6 @@
 //! What the debugger costs: `cargo bench --bench debugger`.
 //!
-//! - `run_alone` against `run_recorded`: a session keeps the whole history of the same run.
+//! - recording: a session keeps the whole history of problem 04, against a run that keeps nothing.
 //! - `frame`: all panes at 200 by 60, with 1,000 slave nodes; and the page of the timeline.
 //! - `key_while_solving`: from a key to the frame that shows what it did, while 100,000 unknowns are being solved.
 
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use stickslip::debug::command::{Command, Unit};
 use stickslip::debug::session::Session;
-use stickslip::scene::Scene;
+use stickslip::scene::{Model, Scene};
 use stickslip::solve::{Outcome, Stepper};
 use stickslip::tui::run::Debugger;
 use stickslip::tui::theme::Theme;
@@ -22,6 +22,8 @@ const BLOCKS: &str = concat!(
     "/tests/benches/two-blocks-pressed-sheared.ron"
 );
 const CIRCLE: &str = "04-cantilever-rigid-circle";
+/// Pairs of runs that are compared.
+const PAIRS: usize = 200;
 const RUN: Command = Command::Forward {
     unit: Unit::Run,
     count: 1,
@@ -37,6 +39,7 @@ const LONG: &str = "(title: \"long\", nodes: [
     history: (path: [0, 1], increment: 0.5))";
 
 fn main() {
+    recording();
     divan::main();
 }
 
@@ -48,27 +51,45 @@ fn scene(name: &str, set: &[(&str, &str)]) -> Scene {
     Scene::open(name, &set).unwrap_or_else(|e| panic!("{e}"))
 }
 
-#[divan::bench(sample_count = 10)]
-fn run_alone(bencher: Bencher) {
-    let model = Arc::new(scene(CIRCLE, &[]).model);
-    bencher.bench(|| {
-        let mut stepper = Stepper::new(model.clone());
-        while let Some(event) = stepper.step() {
-            assert!(!matches!(event.outcome, Outcome::Failed(_)));
-        }
-    });
+/// What keeping the whole history costs: runs alone and recorded in turn, so that both meet the same machine.
+fn recording() {
+    // Short runs, since the machine's speed changes by the second.
+    let scene = scene(CIRCLE, &[("history.increment", "0.05")]);
+    let model = Arc::new(scene.model.clone());
+    let mut pairs: Vec<[f64; 2]> = (0..PAIRS)
+        .map(|_| [alone(&model), recorded(&scene)])
+        .collect();
+    let least = [0, 1].map(|k| pairs.iter().fold(f64::INFINITY, |m, pair| m.min(pair[k])));
+    pairs.sort_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
+    let more = |place: usize| 100.0 * (pairs[place][1] / pairs[place][0] - 1.0);
+    println!(
+        "recording the whole history, {PAIRS} pairs: {:+.1} % (median; quartiles {:+.1} and {:+.1}); least {:.1} and {:.1} ms, {:+.1} %",
+        more(PAIRS / 2),
+        more(PAIRS / 4),
+        more(3 * PAIRS / 4),
+        1e3 * least[0],
+        1e3 * least[1],
+        100.0 * (least[1] / least[0] - 1.0)
+    );
 }
 
-#[divan::bench(sample_count = 10)]
-fn run_recorded(bencher: Bencher) {
-    let scene = scene(CIRCLE, &[]);
-    bencher
-        .with_inputs(|| Session::new(scene.clone()))
-        .bench_values(|mut session| {
-            session.submit(RUN).unwrap_or_else(|e| panic!("{e}"));
-            session.wait();
-            session
-        });
+/// Seconds of a run that keeps nothing.
+fn alone(model: &Arc<Model>) -> f64 {
+    let mut stepper = Stepper::new(model.clone());
+    let began = Instant::now();
+    while let Some(event) = stepper.step() {
+        assert!(!matches!(event.outcome, Outcome::Failed(_)));
+    }
+    began.elapsed().as_secs_f64()
+}
+
+/// Seconds of the same in a session.
+fn recorded(scene: &Scene) -> f64 {
+    let mut session = Session::new(scene.clone());
+    let began = Instant::now();
+    session.submit(RUN).unwrap_or_else(|e| panic!("{e}"));
+    session.wait();
+    began.elapsed().as_secs_f64()
 }
 
 /// A debugger of 1,000 slave nodes, some minor iterations on its way.

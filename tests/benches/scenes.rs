@@ -3,7 +3,7 @@
 use divan::Bencher;
 use std::sync::Arc;
 use stickslip::scene::{Model, Scene};
-use stickslip::solve::{Outcome, State, Stepper};
+use stickslip::solve::{Outcome, Stepper};
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -26,32 +26,19 @@ fn model(name: &str, set: &[(&str, &str)]) -> Arc<Model> {
     )
 }
 
-/// Runs to the end; `record` keeps every state and event, as the debugger does.
-fn run(model: &Arc<Model>, record: bool) -> Vec<State> {
+/// Runs to the end.
+fn run(model: &Arc<Model>) {
     let mut stepper = Stepper::new(model.clone());
-    let mut history = Vec::new();
     while let Some(event) = stepper.step() {
         assert!(!matches!(event.outcome, Outcome::Failed(_)));
-        if record {
-            divan::black_box(event.clone());
-            history.push(stepper.state().clone());
-        }
     }
-    history
 }
 
 /// Problem 04 in 700 increments of 0.005.
 #[divan::bench(sample_count = 10)]
 fn problem_04(bencher: Bencher) {
     let model = model("04-cantilever-rigid-circle", &[]);
-    bencher.bench(|| run(&model, false));
-}
-
-/// The same with all states and events kept.
-#[divan::bench(sample_count = 10)]
-fn problem_04_recorded(bencher: Bencher) {
-    let model = model("04-cantilever-rigid-circle", &[]);
-    bencher.bench(|| run(&model, true));
+    bencher.bench(|| run(&model));
 }
 
 /// Problem 04 in 7 increments, on meshes of 5, 10, 20 and 40 elements.
@@ -59,12 +46,12 @@ fn problem_04_recorded(bencher: Bencher) {
 fn problem_04_in_large_increments(bencher: Bencher, refine: &str) {
     let set = [("refine", refine), ("history.increment", "0.5")];
     let model = model("04-cantilever-rigid-circle", &set);
-    bencher.bench(|| run(&model, false));
+    bencher.bench(|| run(&model));
 }
 
 /// Two blocks pressed and sheared, 1.4k and 11k unknowns.
 #[divan::bench(args = ["2", "6"], sample_count = 3)]
 fn two_blocks(bencher: Bencher, refine: &str) {
     let model = model(BLOCKS, &[("refine", refine)]);
-    bencher.bench(|| run(&model, false));
+    bencher.bench(|| run(&model));
 }
