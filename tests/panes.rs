@@ -426,3 +426,63 @@ fn drawing_thousands_of_iterations() {
         );
     }
 }
+
+/// The debugger on problem 04 in a few large increments, with a line typed.
+fn measuring(line: &str) -> Debugger {
+    let set = [("history.increment".to_string(), "0.5".to_string())];
+    let scene = Scene::open("04-cantilever-rigid-circle", &set).unwrap();
+    let mut debugger = Debugger::new(Theme::mono(), vec![], Some(Session::new(scene)));
+    debugger.type_keys(":");
+    debugger.type_text(line);
+    debugger.key(&keys::press("Enter").unwrap());
+    debugger
+}
+
+#[test]
+fn a_chart_of_the_scene_is_measured_beside_the_run_and_shown_when_it_is_done() {
+    let mut debugger = measuring("chart refine=1,2 nodes.beam.per_element=3,5");
+    // Steps go on meanwhile.
+    debugger.key(&keys::press("s").unwrap());
+    debugger.settle();
+    let shown = debugger.text(120, 40);
+    assert!(shown.contains("Work and precision"), "{shown}");
+    assert!(shown.contains("refine=1, per_element=3"), "{shown}");
+    debugger.type_keys("Esc");
+    let shown = debugger.text(120, 40);
+    assert!(shown.contains("increment 1") && !shown.contains("chart:"));
+    assert_eq!(debugger.session.as_ref().unwrap().frames().len(), 2);
+}
+
+#[test]
+fn a_chart_that_is_being_measured_says_how_far_it_is_and_can_be_stopped() {
+    let mut debugger = measuring("chart history.increment=5e-6,4e-6");
+    debugger.advance();
+    let shown = debugger.text(80, 24);
+    assert!(
+        shown.contains("chart: 0 %") && shown.contains("Ctrl-C"),
+        "{shown}"
+    );
+    debugger.type_keys("Ctrl-c");
+    let shown = debugger.text(80, 24);
+    assert!(!shown.contains("chart: "), "{shown}");
+    assert!(
+        shown.contains("stopped before there was anything"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn what_no_chart_can_be_made_of_is_told() {
+    for (line, told) in [
+        ("chart refin=1,2", "refin"),
+        ("chart refine=", "refine"),
+        ("chart no-such-file.csv", "no-such-file.csv"),
+    ] {
+        let debugger = measuring(line);
+        let shown = debugger.text(120, 40);
+        assert!(
+            shown.contains(told) && !shown.contains("Work and precision"),
+            "{shown}"
+        );
+    }
+}

@@ -234,6 +234,27 @@ fn the_ladder_gets_out_of_the_oscillators_that_have_an_answer() {
 }
 
 #[test]
+fn the_ladder_goes_on_with_friction_where_table_2_cycles() {
+    for (name, angle, increment) in [
+        ("02-two-cantilevers-rough", "10", "0.05"),
+        ("02-two-cantilevers-rough", "20", "0.05"),
+        ("04-cantilever-rigid-circle", "10", "0.02"),
+        ("04-cantilever-rigid-circle", "30", "0.02"),
+    ] {
+        let with = |strategy| {
+            let set = [
+                ("friction.angle", angle),
+                ("history.increment", increment),
+                ("settings.strategy", strategy),
+            ];
+            run(&scene(name, &set)).failure
+        };
+        assert!(with("table2").is_some(), "{name} at {angle} degrees");
+        assert_eq!(with("ladder"), None, "{name} at {angle} degrees");
+    }
+}
+
+#[test]
 fn where_there_is_no_answer_the_ladder_says_so_and_cuts_the_increment_down_to_the_least() {
     let set = [("settings.strategy", "ladder"), ("history.least", "0.2")];
     let mut stepper = Stepper::new(Arc::new(scene("osc-coh-none", &set).model));

@@ -9,9 +9,10 @@ use crate::debug::breakpoints::Condition;
 use crate::debug::lesson;
 use crate::debug::tree::Tree;
 use crate::debug::watches::{Quantity, Watch};
-use crate::scene::{Mode, Model, Scene};
+use crate::scene::{Mode, Model, Scene, paths};
 use crate::solve::census::MOST;
 use crate::solve::{Intervention, Start};
+use crate::study::Vary;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -116,6 +117,17 @@ pub enum Action {
     Ui(Ui),
 }
 
+/// Which work-precision chart is wanted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ChartOf {
+    /// That of this scene.
+    Scene,
+    /// This scene over the product of these settings.
+    Settings(Vec<Vary>),
+    /// A table that was written before.
+    File(String),
+}
+
 /// What concerns the terminal alone.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ui {
@@ -139,8 +151,8 @@ pub enum Ui {
     StartFrom(usize),
     /// Take this remedy of the list (from 0).
     Apply(usize),
-    /// Show the work-precision chart of a file.
-    Chart(String),
+    /// Show a work-precision chart.
+    Chart(ChartOf),
     /// The shape larger, smaller, and all of it.
     Enlarge,
     Shrink,
@@ -485,7 +497,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "remedies", "", &["r"], "remedies", "Try every remedy from here; Enter takes the selected one", Verb::Do(Ui::Page(Page::Remedies))),
     entry(Group::Look, "timeline", "", &["t"], "timeline", "All modes by iteration; Left and Right go through them with the whole screen", Verb::Do(Ui::Page(Page::Timeline))),
     entry(Group::Look, "census", "[NODES]", &[], "", "Try every assignment of modes on the problem that is solved next: of these nodes (at most 8), or of all that can touch", Verb::Census),
-    entry(Group::Look, "chart", "FILE", &[], "", "Error over cost: a table that `stickslip chart --csv` made", Verb::Chart),
+    entry(Group::Look, "chart", "[FILE|PATH=A,B,C]", &[], "", "Error over cost: of this scene, measured now (its own chart, or over settings), or a table that `stickslip chart --csv` made", Verb::Chart),
     entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
     entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
     entry(Group::Look, "zoom", "", &["z"], "zoom", "This pane alone, and back", Verb::Do(Ui::Zoom)),
@@ -514,22 +526,15 @@ pub const ACTIONS: &[Entry] = &[
 ];
 
 /// What `set` can change during a run.
-pub const PATHS: &[&str] = &[
-    "history.increment",
-    "friction.angle",
-    "friction.cohesion",
-    "settings.residual",
-    "settings.t_max",
-    "settings.slip",
-    "settings.sticking",
-    "settings.ties",
-    "settings.minors",
-    "settings.majors",
-    "settings.at_minor_limit",
-    "settings.at_cycle",
-    "settings.at_major_limit",
-    "settings.tolerance",
-];
+fn set_paths() -> Vec<String> {
+    let others = ["history.increment", "friction.angle", "friction.cohesion"];
+    let settings = paths::of_settings().into_iter().map(|(path, _)| path);
+    others
+        .map(String::from)
+        .into_iter()
+        .chain(settings)
+        .collect()
+}
 
 /// The entry that a key does.
 pub fn by_key(key: &str) -> Option<&'static Entry> {
@@ -663,8 +668,7 @@ impl Entry {
                 let filter = one_of(&words, Filter::ALL, Filter::word)?;
                 return Ok(Action::Ui(Ui::Filter(filter)));
             }
-            Verb::Chart if rest.is_empty() => return Err(self.usage()),
-            Verb::Chart => return Ok(Action::Ui(Ui::Chart(rest.into()))),
+            Verb::Chart => return Ok(Action::Ui(Ui::Chart(chart_of(rest, &words)?))),
             Verb::Lesson if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Lesson))),
             Verb::Lesson => return Ok(Action::Ui(Ui::Lesson(rest.into()))),
             Verb::Answer if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Answer))),
@@ -791,7 +795,11 @@ impl Entry {
 
     fn set(&self, words: &[&str]) -> Result<Command, String> {
         let [path, value] = words[..] else {
-            return Err(format!("{}; paths: {}", self.usage(), PATHS.join(", ")));
+            return Err(format!(
+                "{}; paths: {}",
+                self.usage(),
+                set_paths().join(", ")
+            ));
         };
         Ok(Command::Set {
             path: path.into(),
@@ -906,6 +914,18 @@ fn chosen(word: Option<&str>, context: &Context) -> Result<usize, String> {
         None if context.selected < slaves(context)?.slaves.len() => Ok(context.selected),
         None => Err("this scene has no slave nodes".into()),
     }
+}
+
+/// A file, or settings with their values; nothing is the scene's own chart.
+fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, String> {
+    if rest.is_empty() {
+        return Ok(ChartOf::Scene);
+    }
+    if !words.iter().all(|word| word.contains('=')) {
+        return Ok(ChartOf::File(rest.into()));
+    }
+    let over: Result<_, _> = words.iter().map(|word| Vary::parse(word)).collect();
+    over.map(ChartOf::Settings)
 }
 
 /// The choice that a word, or its beginning, stands for; none without a word.
@@ -1093,7 +1113,7 @@ impl Entry {
             (Verb::Delete | Verb::Enable { .. }, 0) => vec!["all".into()],
             (Verb::Watch, 0) => Quantity::ALL.map(|quantity| quantity.word().into()).into(),
             (Verb::Watch, 1) => nodes().chain(std::iter::once("as".into())).collect(),
-            (Verb::Set, 0) => PATHS.iter().map(|path| path.to_string()).collect(),
+            (Verb::Set, 0) => set_paths(),
             (Verb::Set, 1) => values(before)
                 .iter()
                 .map(|value| value.to_string())
@@ -1117,16 +1137,11 @@ impl Entry {
 
 /// Values that a setting can take, where they are words.
 fn values(before: &str) -> &'static [&'static str] {
-    match before.split_whitespace().nth(1) {
-        Some("settings.residual") => &["stress", "accumulate"],
-        Some("settings.t_max") => &["lagged", "consistent"],
-        Some("settings.slip") => &["increment", "major"],
-        Some("settings.sticking") => &["anchored", "increments"],
-        Some("settings.ties") => &["keep", "printed"],
-        Some("settings.at_cycle") => &["stop", "damp"],
-        Some("settings.at_minor_limit" | "settings.at_major_limit") => &["stop", "accept"],
-        _ => &[],
-    }
+    let path = before.split_whitespace().nth(1).unwrap_or_default();
+    let found = paths::of_settings()
+        .into_iter()
+        .find(|(own, _)| own == path);
+    found.map_or(&[], |(_, words)| words)
 }
 
 /// The table as the README shows it.
@@ -1137,12 +1152,9 @@ pub fn markdown() -> String {
         for entry in ACTIONS.iter().filter(|entry| entry.group == group) {
             let keys: Vec<_> = entry.keys.iter().map(|key| format!("`{key}`")).collect();
             let name = format!("{} {}", entry.name, entry.arguments);
-            text += &format!(
-                "| {} | `{}` | {} |\n",
-                keys.join(" "),
-                name.trim_end(),
-                entry.help
-            );
+            // In a table of Markdown a bar parts columns even in code.
+            let [name, help] = [name.trim_end(), entry.help].map(|text| text.replace('|', "\\|"));
+            text += &format!("| {} | `{name}` | {help} |\n", keys.join(" "));
         }
         text.push('\n');
     }

@@ -45,6 +45,23 @@ pub fn list(spec: &Spec) -> Vec<Listed> {
     all
 }
 
+/// The settings by their paths, and the words that each can be; none where it is a number.
+pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
+    let mut all = Vec::new();
+    let place = Place {
+        name: "settings".to_owned(),
+        at: at!["settings"],
+    };
+    settings(&place, &mut Settings::default(), &mut |place, scalar| {
+        let words: &[&str] = match scalar {
+            Scalar::Choice(choice) => choice.names(),
+            _ => &[],
+        };
+        all.push((place.name.clone(), words));
+    });
+    all
+}
+
 /// Sets one scalar. Whether the scene is sound with it shows when it is compiled.
 ///
 /// # Errors

@@ -435,24 +435,23 @@ impl Stepper {
 
     /// One pivot of Lemke's, from a start; where that has ended on a ray, the next start is next.
     fn pivot(&mut self, start: usize, pivot: usize) -> Outcome {
-        if !matches!(self.lemke, Some((_, s, p)) if (s, p) == (start, pivot)) {
-            match self.path(start, pivot) {
-                Ok(path) => self.lemke = Some(path),
-                Err(why) => return self.stuck(Failure::NotFound(why)),
-            }
-        }
-        let Some((lemke, start, pivot)) = &mut self.lemke else {
-            return self.stuck(Failure::NotFound(NotFound::NoStart));
+        let path = match self.lemke.take() {
+            Some(path) if (path.1, path.2) == (start, pivot) => Ok(path),
+            _ => self.path(start, pivot),
+        };
+        let (mut lemke, start, mut pivot) = match path {
+            Ok(path) => path,
+            Err(why) => return self.stuck(Failure::NotFound(why)),
         };
         // It has ended already where its start is the answer.
         if lemke.pivot().is_some() {
-            *pivot += 1;
+            pivot += 1;
         }
-        let (start, pivot, ended) = (*start, *pivot, lemke.ended());
-        let (cover, bound) = (lemke.cover(), lemke.bound());
+        let (cover, bound, ended) = (lemke.cover(), lemke.bound(), lemke.ended());
         let told: Vec<(Assumed, [f64; 4])> = (0..self.state.nodes.len())
             .map(|place| (lemke.assumed(place), lemke.numbers(place)))
             .collect();
+        self.lemke = Some((lemke, start, pivot));
         self.state.search.pivoting = match ended {
             None => Pivoting::At { start, pivot },
             Some(End::Solved) => Pivoting::Found { start },

@@ -14,7 +14,7 @@
 //! Work-precision charts:
 //!
 //! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_figure`]: drawn.
-//! - [`reference`]: what runs are measured against.
+//! - [`reference`]: what runs are measured against; [`measuring`]: a chart measured beside other work.
 //!
 //! Nothing here knows a command line.
 
@@ -24,6 +24,7 @@ pub mod csv;
 pub mod figure;
 pub mod log;
 pub mod map;
+pub mod measuring;
 pub mod origin;
 pub mod plan;
 pub mod plot;

@@ -1,10 +1,9 @@
 //! Where results come from: the program's revision, and the machine.
 
-/// The revision that the program was built from, as whoever built it said (`STICKSLIP_REVISION=$(git describe --always
-/// --dirty) cargo build`); a build cannot know it by itself without being tied to a work tree.
+/// The revision that the program was built from, as `build.rs` found it; a development build does not ask for it.
 pub const REVISION: &str = match option_env!("STICKSLIP_REVISION") {
     Some(revision) => revision,
-    None => "revision unknown",
+    None => "a build without a revision",
 };
 
 /// The program and its revision.

@@ -3,7 +3,7 @@
 
 use crate::debug::branches::summaries;
 use crate::debug::command::{
-    self, Action, Command, Context, Filter, Page, Question, Sort, Step, To, Ui, Whose,
+    self, Action, ChartOf, Command, Context, Filter, Page, Question, Sort, Step, To, Ui, Whose,
 };
 use crate::debug::lesson::tutor::Kind;
 use crate::debug::lesson::{Guess, Tutor};
@@ -30,8 +30,8 @@ pub enum Effect {
     Open(String),
     /// Begin a lesson, by file or built-in name.
     Lesson(String),
-    /// Show the work-precision chart of a file.
-    Chart(String),
+    /// Show a work-precision chart.
+    Chart(ChartOf),
     Suspend,
     Redraw,
     Quit,
@@ -147,6 +147,8 @@ pub struct App {
     pub lesson: Option<Tutor>,
     /// Free mode, outside lessons.
     pub guess: Option<Guess>,
+    /// Increments done of a chart that is being measured, and all of them.
+    pub measuring: Option<(u64, u64)>,
     /// Turns of the spinner.
     pub tick: usize,
     /// The last motion, for Enter.
@@ -188,6 +190,7 @@ impl App {
             offers,
             lesson: None,
             guess: None,
+            measuring: None,
             tick: 0,
             last: None,
             history: Vec::new(),
@@ -273,7 +276,8 @@ impl App {
     fn interrupt(&mut self, view: Option<&View>) -> Option<Effect> {
         self.close(view);
         let trying = |view: &View| view.looks.is_some_and(|looks| looks.is_trying());
-        if view.is_some_and(|view| view.running || trying(view)) {
+        let works = view.is_some_and(|view| view.running || trying(view));
+        if works || self.measuring.is_some() {
             return Some(Effect::Interrupt);
         }
         self.say("nothing is running; q quits");
@@ -427,7 +431,7 @@ impl App {
             Ui::SortBackward => self.backward = !self.backward,
             Ui::Filter(filter) => self.filter = filter.unwrap_or(next(&Filter::ALL, self.filter)),
             Ui::Monitor(monitor) => self.watch(monitor, view),
-            Ui::Chart(file) => return Some(Effect::Chart(file)),
+            Ui::Chart(of) => return Some(Effect::Chart(of)),
             Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
             Ui::On => self.go_on(view),
             Ui::Answer(word) => self.answer(&word, view),

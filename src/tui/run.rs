@@ -1,11 +1,12 @@
 //! The event loop, and what it loops over: an app, a session, and commands that wait for the solver.
 
-use crate::debug::command::{Command, Unit};
+use crate::debug::command::{ChartOf, Command, Unit};
 use crate::debug::journal::{JournalError, Keep};
 use crate::debug::lesson::{Lesson, Tutor};
 use crate::debug::report;
 use crate::debug::session::{Reply, Session};
 use crate::scene::{Scene, builtin};
+use crate::study::measuring::Measuring;
 use crate::tui::app::{App, Effect, Offer, Overlay};
 use crate::tui::draw;
 use crate::tui::keys;
@@ -197,6 +198,8 @@ pub struct Debugger {
     trying: bool,
     /// Whether scenes that are opened here get a journal.
     keeps: bool,
+    /// A chart that is being measured.
+    measuring: Option<Measuring>,
 }
 
 /// Most commands that wait; more come only from a key that is held down.
@@ -218,6 +221,7 @@ impl Debugger {
             frames: 0,
             trying: false,
             keeps: false,
+            measuring: None,
         }
     }
 
@@ -253,10 +257,7 @@ impl Debugger {
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
             Effect::Open(scene) => self.open(&scene),
-            Effect::Chart(file) => match Page::open(&file) {
-                Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
-                Err(error) => self.app.complain(error),
-            },
+            Effect::Chart(of) => self.chart(of),
             Effect::Lesson(name) => match Lesson::open(&name) {
                 Ok(lesson) => self.teach(lesson),
                 Err(error) => self.app.complain(error.to_string()),
@@ -297,6 +298,10 @@ impl Debugger {
             }
             match &mut self.session {
                 Some(session) if session.looks().is_busy() => session.wait_for_looks(),
+                // Under another page it would wait for ever.
+                _ if self.measuring.is_some() && matches!(self.app.overlay, Overlay::None) => {
+                    std::thread::sleep(QUICK);
+                }
                 _ => return,
             }
         }
@@ -373,7 +378,59 @@ impl Debugger {
         self.app.say(format!("{said}{between}{aside}"));
     }
 
+    fn chart(&mut self, of: ChartOf) {
+        let (Some(session), false) = (&self.session, matches!(of, ChartOf::File(_))) else {
+            return match of {
+                ChartOf::File(file) => self.show_chart(Page::open(&file)),
+                _ => self.app.complain("there is no scene to measure; :open one"),
+            };
+        };
+        let over = match of {
+            ChartOf::Settings(over) => over,
+            _ => Vec::new(),
+        };
+        match Measuring::start(session.scene(), &over) {
+            Ok(measuring) => {
+                self.app.measuring = Some(measuring.progress());
+                self.measuring = Some(measuring);
+                self.app
+                    .say("measuring beside all else, and shown when it is done; Ctrl-C stops it");
+            }
+            Err(error) => self.app.complain(error.to_string()),
+        }
+    }
+
+    fn show_chart(&mut self, page: Result<Page, String>) {
+        match page {
+            Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
+            Err(error) => self.app.complain(error),
+        }
+    }
+
+    /// Follows a chart that is being measured, and shows it once nothing else lies over the panes. Returns whether there is
+    /// something new to draw.
+    fn follow_chart(&mut self) -> bool {
+        let Some(measuring) = &self.measuring else {
+            return false;
+        };
+        let progress = Some(measuring.progress());
+        let grown = std::mem::replace(&mut self.app.measuring, progress) != progress;
+        if !matches!(self.app.overlay, Overlay::None) {
+            return grown;
+        }
+        let Some(result) = measuring.result() else {
+            return grown;
+        };
+        (self.measuring, self.app.measuring) = (None, None);
+        self.app.say("");
+        self.show_chart(result.and_then(Page::of_chart));
+        true
+    }
+
     fn interrupt(&mut self) {
+        if let Some(measuring) = &self.measuring {
+            measuring.interrupt();
+        }
         self.queue.clear();
         if let Some(tutor) = &mut self.app.lesson {
             // What the lesson wanted is not done.
@@ -382,7 +439,10 @@ impl Debugger {
         if let Some(session) = &self.session {
             session.interrupt();
             session.looks().interrupt();
-            self.app.say("stopping after this minor iteration");
+            self.app.say(match (&self.measuring, session.is_running()) {
+                (Some(_), false) => "stopping the chart",
+                _ => "stopping after this minor iteration",
+            });
         }
     }
 
@@ -394,6 +454,7 @@ impl Debugger {
                 }
                 self.session = Some(session);
                 self.queue.clear();
+                (self.measuring, self.app.measuring) = (None, None);
                 self.app.opened();
                 self.app.say("s is one minor iteration; ? lists the keys");
             }
@@ -414,8 +475,9 @@ impl Debugger {
 
     /// Gathers what the solver did and gives it the next command. Returns whether there is something new to draw.
     pub fn advance(&mut self) -> bool {
+        let measured = self.follow_chart();
         let Some(session) = &mut self.session else {
-            return false;
+            return measured;
         };
         let was_busy = session.is_running();
         let mut seen = session.gather_looks();
@@ -455,7 +517,7 @@ impl Debugger {
             self.start(command);
             return true;
         }
-        seen || said || grown || failed || was_busy != busy
+        measured || seen || said || grown || failed || was_busy != busy
     }
 
     /// Asks for what the panes would tell of the shown iteration and the selected node. Returns whether anything new is

@@ -60,10 +60,18 @@ fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
 fn position(app: &App, view: &View, width: usize) -> Line<'static> {
     let (wide, closer) = (place(app, view, "   ", true), place(app, view, "  ", true));
     let second = view.position().attempt > 1;
-    [wide, closer]
+    let mut line = [wide, closer]
         .into_iter()
         .find(|line| line.width() <= width)
-        .unwrap_or_else(|| place(app, view, " ", second))
+        .unwrap_or_else(|| place(app, view, " ", second));
+    if let Some((done, all)) = app.measuring {
+        let percent = 100 * done / all.max(1);
+        let chart = Span::styled(format!("   chart: {percent} %"), app.theme.warning);
+        if line.width() + chart.width() <= width {
+            line.push_span(chart);
+        }
+    }
+    line
 }
 
 fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {

@@ -1,4 +1,4 @@
-//! The work-precision page: a chart's table (`stickslip chart --csv`) drawn in the terminal, error over cost in decades.
+//! The work-precision page: a chart, measured just now or read from a table (`stickslip chart --csv`), drawn in the terminal, error over cost in decades.
 //!
 //! Each run is its series' letter, a capital where no other run beats it in both; failures stand as ✗ on a rail above. One
 //! run is selected, and told in full below.
@@ -16,7 +16,7 @@ use std::path::Path;
 /// What the page shows.
 #[derive(Debug, Clone)]
 pub struct Page {
-    /// The file.
+    /// What messages call the table.
     name: String,
     text: String,
     /// At least one.
@@ -41,10 +41,25 @@ impl Page {
     /// If it cannot be read.
     pub fn open(file: &str) -> Result<Page, String> {
         let text = std::fs::read_to_string(Path::new(file)).map_err(|e| format!("{file}: {e}"))?;
+        Page::of_table(file, text)
+    }
+
+    /// The page of a chart that was just measured.
+    ///
+    /// # Errors
+    /// If there is nothing in it to be shown.
+    pub fn of_chart(chart: Precision) -> Result<Page, String> {
+        if chart.points.is_empty() {
+            return Err("stopped before there was anything to compare".into());
+        }
+        Page::of_table("chart", precision::csv(&[chart]))
+    }
+
+    fn of_table(name: &str, text: String) -> Result<Page, String> {
         let cost = Cost::default();
         Ok(Page {
-            charts: precision::read(file, &text, cost, None)?,
-            name: file.to_owned(),
+            charts: precision::read(name, &text, cost, None)?,
+            name: name.to_owned(),
             text,
             chart: 0,
             run: 0,

@@ -86,10 +86,11 @@ def scene_a(tools):
         return math.hypot(x - u, y - v)
 
     cases = []
-    for refine in (1, 2, 3, 4, 8):
-        for increment in (0.5,):
+    for nodes, refines in ((3, (1, 2, 3, 4, 6, 8)), (4, (1, 2, 3, 4, 6)), (5, (1, 2, 4, 8))):
+        for refine in refines:
             command = [tools["stickslip"], "run", CIRCLE, "--quiet", "--csv", "-", "--set", "refine=%d" % refine,
-                       "--set", "history.increment=%g" % increment, "--set", TOLERANCE]
+                       "--set", "nodes.beam.per_element=%d" % nodes, "--set", "history.increment=0.5",
+                       "--set", TOLERANCE]
 
             def read(work, text):
                 rows = [line for line in text.splitlines() if re.match(r"\d+,", line)]
@@ -98,7 +99,7 @@ def scene_a(tools):
                     return "stopped: " + text.strip().splitlines()[-1][:60]
                 iterations = sum(int(row.split(",")[3]) for row in rows)
                 return error(float(fields[4]), float(fields[5])), None, iterations
-            cases.append(Case("stickslip, increment %g" % increment, "refine=%d" % refine, command, None, read))
+            cases.append(Case("stickslip, %d nodes an element" % nodes, "refine=%d" % refine, command, None, read))
     if tools["ccx"]:
         for elements in (5, 10, 20, 40, 80):
             name = "a%d" % elements
