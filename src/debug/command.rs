@@ -1483,6 +1483,12 @@ mod tests {
             ["force beam.5 free", "force beam.5 fixed"]
         );
         assert_eq!(ask("release b"), ["release beam.4", "release beam.5"]);
+        let strategies = ["ladder", "least", "lemke"].map(|s| format!("set settings.strategy {s}"));
+        assert_eq!(ask("set settings.strategy l"), strategies);
+        assert_eq!(
+            ask("set settings.to"),
+            ["set settings.touch", "set settings.tolerance"]
+        );
         let both = ["census beam.4,beam.4", "census beam.4,beam.5"];
         assert_eq!(ask("census beam.4,b"), both);
         assert_eq!(

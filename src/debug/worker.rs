@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 /// How long who waits for the worker sleeps between two looks: were it woken by every message, the solver would pay for
 /// that at every iteration.
-const NAP: Duration = Duration::from_micros(200);
+const NAP: Duration = Duration::from_millis(1);
 
 /// What the worker is to do.
 pub enum Job {
