@@ -14,9 +14,8 @@ fn main() {
     }
     let given = env::var("STICKSLIP_REVISION").ok();
     let revision = given.or_else(|| optimised.then(described).flatten());
-    if let Some(revision) = revision {
-        println!("cargo::rustc-env=STICKSLIP_REVISION={revision}");
-    }
+    let revision = revision.unwrap_or_else(|| "a build without a revision".into());
+    println!("cargo::rustc-env=STICKSLIP_REVISION={revision}");
 }
 
 /// The last commit, and whether the work tree is another; none without git.

@@ -539,7 +539,10 @@ fn ctrl_z_goes_back_to_the_shell_and_fg_returns() {
     session.keys("s");
     session.see_picture(FLOOR, "4 s", 120, 40);
     session.keys("q");
-    session.wait("the main screen", Session::on_main_screen);
+    // The shell forgets what is typed before it has taken its terminal back.
+    session.wait("the shell's prompt", |screen| {
+        Session::on_main_screen(screen) && screen.contents().trim_end().ends_with("ready>")
+    });
     session.type_and_see("echo left=$?\r", "left=0");
     session.keys("exit\r");
     session.end();

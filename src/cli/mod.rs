@@ -27,6 +27,7 @@ use crate::debug::files::FileError;
 use crate::debug::journal::JournalError;
 use crate::debug::snapshot::SnapshotError;
 use crate::scene::{Scene, SceneError};
+use crate::study::origin;
 use clap::{Parser, Subcommand};
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -78,7 +79,7 @@ fn how_to_overwrite(error: &FileError) -> &'static str {
 
 /// Steps through contact iterations of the finite element method, in a terminal.
 #[derive(Debug, Parser)]
-#[command(name = "stickslip", version, args_conflicts_with_subcommands = true)]
+#[command(name = "stickslip", version = origin::VERSION, args_conflicts_with_subcommands = true)]
 #[command(max_term_width = 100)]
 #[command(after_help = "\
 SCENE is a file or the name of a built-in scene (`stickslip list`).

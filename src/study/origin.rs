@@ -1,14 +1,19 @@
 //! Where results come from: the program's revision, and the machine.
 
 /// The revision that the program was built from, as `build.rs` found it; a development build does not ask for it.
-pub const REVISION: &str = match option_env!("STICKSLIP_REVISION") {
-    Some(revision) => revision,
-    None => "a build without a revision",
-};
+pub const REVISION: &str = env!("STICKSLIP_REVISION");
+
+/// The program's version, with its revision.
+pub const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (",
+    env!("STICKSLIP_REVISION"),
+    ")"
+);
 
 /// The program and its revision.
 pub fn program() -> String {
-    format!("stickslip {} ({REVISION})", env!("CARGO_PKG_VERSION"))
+    format!("stickslip {VERSION}")
 }
 
 /// The processor's name, where the system tells it, else its kind; and the number of cores.
