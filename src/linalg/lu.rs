@@ -2,8 +2,8 @@
 //!
 //! The augmented system of eqn (9) mixes stiffnesses of very different size with constraint rows of size one and,
 //! where friction stands in the matrix, is unsymmetric. So it is scaled, rows and columns, by powers of two, which cost no
-//! digits. Where matrices differ in their last rows only (a major iteration's differ in the equations
-//! of the interface), one scale serves all, but for these rows. Small systems whose groups of unknowns are known are factored front by
+//! digits. Where matrices differ in their last rows only (a major iteration's differ in the equations of the interface), one
+//! scale serves all, but for these rows. Small systems whose groups of unknowns are known are factored front by
 //! front ([`super::fronts`]); others, and those that find no pivots there, by faer with partial pivoting. The symbolic
 //! part is kept as long as the pattern stands.
 

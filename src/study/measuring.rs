@@ -18,8 +18,8 @@ pub struct Measuring {
 }
 
 impl Measuring {
-    /// Starts to measure a scene as it was opened: its own chart, or with `over` the product of that. Each run is done
-    /// once.
+    /// Starts to measure a scene's file as it stands, with what was set from outside when it was opened: its own chart, or
+    /// with `over` the product of that. Each run is done once.
     ///
     /// # Errors
     /// If a path or a value will not do.

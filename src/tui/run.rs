@@ -379,15 +379,13 @@ impl Debugger {
     }
 
     fn chart(&mut self, of: ChartOf) {
-        let (Some(session), false) = (&self.session, matches!(of, ChartOf::File(_))) else {
-            return match of {
-                ChartOf::File(file) => self.show_chart(Page::open(&file)),
-                _ => self.app.complain("there is no scene to measure; :open one"),
-            };
-        };
         let over = match of {
+            ChartOf::File(file) => return self.show_chart(Page::open(&file)),
+            ChartOf::Scene => Vec::new(),
             ChartOf::Settings(over) => over,
-            _ => Vec::new(),
+        };
+        let Some(session) = &self.session else {
+            return self.app.complain("there is no scene to measure; :open one");
         };
         match Measuring::start(session.scene(), &over) {
             Ok(measuring) => {
@@ -468,6 +466,7 @@ impl Debugger {
         let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
         self.session = Some(session);
         self.queue.clear();
+        (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         self.app.lesson = Some(tutor);
         self.app.say("");

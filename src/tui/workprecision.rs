@@ -1,4 +1,5 @@
-//! The work-precision page: a chart, measured just now or read from a table (`stickslip chart --csv`), drawn in the terminal, error over cost in decades.
+//! The work-precision page: a chart, measured just now or read from a table (`stickslip chart --csv`), drawn in the
+//! terminal, error over cost in decades.
 //!
 //! Each run is its series' letter, a capital where no other run beats it in both; failures stand as ✗ on a rail above. One
 //! run is selected, and told in full below.
