@@ -3,6 +3,7 @@
 //! Standard output carries data only; messages go to standard error, and progress there only if it is a terminal.
 //! Exit codes are those of [`Exit`].
 
+mod audit;
 mod chart;
 mod check;
 mod core;
@@ -111,6 +112,8 @@ enum Command {
     Resume(resume::Args),
     /// Tells a session's journal as text
     Story(story::Args),
+    /// Judges every accepted increment by positions and forces alone: the worst violation of each law
+    Audit(audit::Args),
     /// Tries what gets a scene past its first failure, and compares
     Remedies(remedies::Args),
     /// Writes the fewest nodes that still cycle as a scene of their own
@@ -175,6 +178,7 @@ pub fn main() -> ExitCode {
                 | Command::Chart(_)
                 | Command::Resume(_)
                 | Command::Lesson(_)
+                | Command::Audit(_)
         )
     ) {
         // These have nothing to put away.
@@ -186,6 +190,7 @@ pub fn main() -> ExitCode {
         Some(Command::Check(args)) => check::main(args),
         Some(Command::List) => list::main(),
         Some(Command::Record(args)) => record::main(args),
+        Some(Command::Audit(args)) => audit::main(args),
         Some(Command::Replay(args)) => replay::main(args),
         Some(Command::Diff(args)) => diff::main(args),
         Some(Command::Resume(args)) => resume::main(args),

@@ -129,9 +129,13 @@ fn ends_major(outcome: &Outcome) -> bool {
     matches!(
         outcome,
         Outcome::Major { .. }
+            | Outcome::Refused { .. }
             | Outcome::Increment { .. }
             | Outcome::Failed(
-                Failure::MajorLimit { .. } | Failure::MajorCycle(_) | Failure::Diverged { .. }
+                Failure::MajorLimit { .. }
+                    | Failure::MajorCycle(_)
+                    | Failure::Diverged { .. }
+                    | Failure::Refused(_)
             )
     )
 }

@@ -185,7 +185,10 @@ impl<'a> Run<'a> {
             }
             if matches!(
                 event.outcome,
-                Outcome::Climbed { .. } | Outcome::Cut { .. } | Outcome::Damped { .. }
+                Outcome::Climbed { .. }
+                    | Outcome::Cut { .. }
+                    | Outcome::Damped { .. }
+                    | Outcome::Refused { .. }
             ) {
                 self.note();
             }
@@ -225,10 +228,7 @@ impl<'a> Run<'a> {
     /// Tells what the last increment was accepted in spite of.
     fn warn(&mut self) {
         let event = self.stepper.event();
-        let Outcome::Increment { unsettled, .. } = event.outcome else {
-            return;
-        };
-        let although = report::reservations(&self.scene.model, event, unsettled);
+        let although = report::reservations(&self.scene.model, event);
         if although.is_empty() {
             return;
         }

@@ -75,7 +75,9 @@ pub fn trace_rows(model: &Model, event: &Event) -> String {
 
 fn residual(event: &Event) -> f64 {
     match &event.outcome {
-        Outcome::Major { after, .. } | Outcome::Increment { after, .. } => after.relative,
+        Outcome::Major { after, .. }
+        | Outcome::Refused { after, .. }
+        | Outcome::Increment { after, .. } => after.relative,
         Outcome::Failed(Failure::MajorLimit { relative, .. } | Failure::Diverged { relative }) => {
             *relative
         }

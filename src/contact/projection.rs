@@ -5,6 +5,7 @@
 //! lies to the right of the walk along the chain, t is n turned 90 degrees anticlockwise, that is, t points along
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
+use crate::contact::corner;
 use crate::contact::turning::Curve;
 use crate::fem::lagrange::{MAX_NODES, samples, shape};
 use crate::scene::model::Surface;
@@ -13,8 +14,6 @@ use crate::scene::model::Surface;
 const END_TOLERANCE: f64 = 1e-9;
 /// By how much another element must be closer before a node leaves its own, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
-/// How far past a border to the next element [`hold`] keeps a node on its own, in ξ.
-const OVERHANG: f64 = 0.02;
 /// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
 const BULGE: f64 = 0.5;
 
@@ -25,7 +24,7 @@ pub struct Spot {
     pub surface: usize,
     /// Number of the element in the surface.
     pub element: usize,
-    /// Coordinate in the element, −1 to 1, or a little beyond where the node is held there ([`hold`]).
+    /// Coordinate in the element, −1 to 1; without bounds on an endless line.
     pub xi: f64,
 }
 
@@ -124,27 +123,33 @@ fn consider(
     }
 }
 
-/// The spot of a node that keeps the element it had, up to [`OVERHANG`] past a border to the next one; none where it has
-/// gone further, or was on none.
-///
-/// Where elements meet at an angle, each of the two may send a node that comes to rest at their border to the other.
-pub fn hold(
-    slave: [f64; 2],
-    surfaces: &[Surface],
-    positions: &[[f64; 2]],
-    previous: Option<Spot>,
-) -> Option<Spot> {
-    let previous = previous?;
-    let surface = &surfaces[previous.surface];
-    let nodes = &surface.elements[previous.element];
-    let xi = descend(nodes, positions, slave, previous.xi, 1.0 + 2.0 * OVERHANG);
-    let border = Spot {
-        xi: xi.clamp(-1.0, 1.0),
-        ..previous
+/// The border of two elements of a surface that follow each other, as an end of the first of them; none where they do not.
+pub fn border(surface: &Surface, surface_number: usize, from: usize, to: usize) -> Option<Spot> {
+    [1.0, -1.0].into_iter().find_map(|xi| {
+        let end = Spot {
+            surface: surface_number,
+            element: from,
+            xi,
+        };
+        let (across, _) = neighbour(surface, end)?;
+        (across == to).then_some(end)
+    })
+}
+
+/// Half the angle between the normals of the two elements that meet at a border, in radians, where they form a concave
+/// corner; none elsewhere.
+pub fn concave(surface: &Surface, border: Spot, positions: &[[f64; 2]]) -> Option<f64> {
+    let (other, xi) = neighbour(surface, border)?;
+    let slope = |element: usize, xi: f64| {
+        let nodes = &surface.elements[element];
+        blend(nodes, positions, &shape(nodes.len(), xi).d)
     };
-    let held = !surface.endless
-        && (xi.abs() < 1.0 || (neighbour(surface, border).is_some() && xi.abs() <= 1.0 + OVERHANG));
-    held.then_some(Spot { xi, ..previous })
+    let (own, across) = (slope(border.element, border.xi), slope(other, xi));
+    if border.xi > 0.0 {
+        corner::concave(own, across)
+    } else {
+        corner::concave(across, own)
+    }
 }
 
 /// Geometry at a spot, for a slave node at `slave`.
@@ -248,21 +253,15 @@ fn closest(
             if now.0 < best.0 { now } else { best }
         },
     );
-    let refined = descend(nodes, positions, slave, start.1, 1.0);
+    let refined = descend(nodes, positions, slave, start.1);
     let ended = (squared(&shape(nodes.len(), refined).n), refined);
     let (squared, xi) = if ended.0 <= start.0 { ended } else { start };
     (squared.sqrt(), xi)
 }
 
-/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ `bound`, falling back on Gauss-Newton where the curve bends
-/// too much towards the node.
-fn descend(
-    nodes: &[usize],
-    positions: &[[f64; 2]],
-    slave: [f64; 2],
-    start: f64,
-    bound: f64,
-) -> f64 {
+/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1, falling back on Gauss-Newton where the curve bends too much
+/// towards the node.
+fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
         let s = shape(nodes.len(), xi);
@@ -282,7 +281,7 @@ fn descend(
         if denominator == 0.0 {
             break;
         }
-        let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-bound, bound);
+        let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-1.0, 1.0);
         let step = (next - xi).abs();
         xi = next;
         if step <= 2.0 * f64::EPSILON {

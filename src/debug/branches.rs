@@ -190,6 +190,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> Verdict {
         | Kind::Damped
         | Kind::Climbed
         | Kind::Cut
+        | Kind::Refused
         | Kind::Major => Verdict::Running,
         Kind::Cycle => {
             let own = frame

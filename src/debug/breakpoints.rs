@@ -106,7 +106,9 @@ impl Condition {
                 .after
                 .as_ref()
                 .is_some_and(|after| after.relative > now.residual),
-            Condition::Failure => now.kind.is_failure() || now.kind == Kind::Cut,
+            Condition::Failure => {
+                now.kind.is_failure() || matches!(now.kind, Kind::Cut | Kind::Refused)
+            }
             Condition::At(place) => {
                 let place = (place.increment, place.major, place.minor);
                 let at = |strip: &Strip| {

@@ -9,8 +9,9 @@
 //! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
 //! - [`core`]: the fewest nodes that still cycle; [`export`]: they, or the whole frozen problem, as a scene of their own.
 //! - [`lesson`]: guided lessons, and free mode.
-//! - [`report`]: what happened, in words.
+//! - [`report`]: what happened, in words; [`judged`]: what the judge found; [`audit`]: over a history.
 
+pub mod audit;
 pub mod branches;
 pub mod breakpoints;
 pub mod command;
@@ -22,6 +23,7 @@ pub mod export;
 pub mod files;
 pub mod influence;
 pub mod journal;
+pub mod judged;
 pub mod lesson;
 pub mod looks;
 pub mod remedies;

@@ -330,6 +330,7 @@ pub fn end_words(end: &End) -> String {
         End::Failed(Failure::Singular(_)) => "singular".into(),
         End::Failed(Failure::Diverged { .. }) => "diverged".into(),
         End::Failed(Failure::Jammed { .. }) => "jammed".into(),
+        End::Failed(Failure::Refused(_)) => "refused".into(),
         End::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
         End::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
         End::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),

@@ -1,6 +1,7 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
 use crate::contact::decision::{Decision, Rule, Tested};
+use crate::debug::judged;
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
 use crate::solve::rounds::{Round, Stop};
@@ -203,14 +204,16 @@ pub fn outcome(model: &Model, event: &Event) -> String {
                 after.limit
             )
         }
-        Outcome::Increment {
-            unsettled, last, ..
-        } => {
+        Outcome::Refused { why, .. } => format!(
+            "{at}: refused: {}; goes on, and from here on net slip counts",
+            judged::finding(model, why)
+        ),
+        Outcome::Increment { last, .. } => {
             let end = if *last { "; the history is done" } else { "" };
             format!(
                 "{at}: load {} accepted{}{end}",
                 event.load_factor,
-                reservations(model, event, *unsettled)
+                reservations(model, event)
             )
         }
         Outcome::Failed(failure) => format!("{at}: {}", describe_failure(model, failure)),
@@ -245,7 +248,13 @@ fn pivot(model: &Model, event: &Event) -> String {
 }
 
 /// What an accepted increment was accepted in spite of; empty where there is nothing.
-pub fn reservations(model: &Model, event: &Event, unsettled: u32) -> String {
+pub fn reservations(model: &Model, event: &Event) -> String {
+    let Outcome::Increment {
+        unsettled, marked, ..
+    } = &event.outcome
+    else {
+        return String::new();
+    };
     let mut text = match unsettled {
         0 => String::new(),
         1 => ", although one loop was cut off unsettled".into(),
@@ -260,6 +269,9 @@ pub fn reservations(model: &Model, event: &Event, unsettled: u32) -> String {
             ", although Table 2 rejects the mode held at {}",
             defied.join(", ")
         );
+    }
+    if let Some(found) = marked {
+        text += &format!(", although {}", judged::finding(model, found));
     }
     text
 }
@@ -370,6 +382,9 @@ pub fn advice(failure: &Failure) -> &'static str {
             "a smaller history.increment; past a limit point, prescribe a displacement instead of the load"
         }
         Failure::Diverged { .. } => "a smaller history.increment",
+        Failure::Refused(_) => {
+            "a smaller history.increment or history.least (settings.strategy=ladder cuts by itself), or another mesh of the surface"
+        }
         Failure::Jammed { .. } => {
             "to move the node out of the surface, to free its support, or to turn the surface (reverse)"
         }
@@ -418,6 +433,9 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         }
         Failure::Diverged { relative } => {
             format!("diverged: displacements beyond all bounds, relative residual {relative:.3e}")
+        }
+        Failure::Refused(found) => {
+            format!("refused, since {}", judged::finding(model, found))
         }
         Failure::Jammed { slave: s, gap } => format!(
             "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",

@@ -18,6 +18,8 @@ use std::sync::Arc;
 pub const FORMAT: u32 = 1;
 /// Most bytes of a snapshot; the largest scenes need a tenth of it.
 const MOST_BYTES: u64 = 256 << 20;
+/// Bytes that tell a snapshot from a scene.
+const READ_TO_TELL: u64 = 4096;
 
 /// A recorded state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -211,6 +213,16 @@ impl Snapshot {
         Snapshot::from_text(&file, &text)
     }
 
+    /// Whether a file begins as a snapshot does, and as no scene: with its format.
+    pub fn is_one(path: &Path) -> bool {
+        let mut start = Vec::new();
+        let read = std::fs::File::open(path)
+            .and_then(|open| open.take(READ_TO_TELL).read_to_end(&mut start));
+        let text = String::from_utf8_lossy(&start);
+        let first = text.trim_start_matches(['\u{feff}', '(', ' ', '\t', '\r', '\n']);
+        read.is_ok() && first.starts_with("format")
+    }
+
     /// Reads a snapshot from a text; `file` is what messages call it.
     ///
     /// # Errors
@@ -305,7 +317,9 @@ impl Recorded {
 
 fn after(outcome: &Outcome) -> Option<Norms> {
     match outcome {
-        Outcome::Major { after, .. } | Outcome::Increment { after, .. } => Some(*after),
+        Outcome::Major { after, .. }
+        | Outcome::Refused { after, .. }
+        | Outcome::Increment { after, .. } => Some(*after),
         _ => None,
     }
 }

@@ -24,6 +24,8 @@ pub enum Kind {
     Cut,
     /// The end of a major iteration.
     Major,
+    /// The same; the judge refused the state, and net slip counts from here on.
+    Refused,
     /// The end of an increment: accepted.
     Increment,
     /// The same, and the end of the history.
@@ -43,6 +45,7 @@ impl Kind {
             Outcome::Climbed { .. } => Kind::Climbed,
             Outcome::Cut { .. } => Kind::Cut,
             Outcome::Major { .. } => Kind::Major,
+            Outcome::Refused { .. } => Kind::Refused,
             Outcome::Increment { last: false, .. } => Kind::Increment,
             Outcome::Increment { last: true, .. } => Kind::Last,
             Outcome::Failed(Failure::Cycle(_)) => Kind::Cycle,
@@ -226,7 +229,9 @@ fn begins(event: &Event) -> bool {
 
 fn after(event: &Event) -> Option<Box<Norms>> {
     match &event.outcome {
-        Outcome::Major { after, .. } | Outcome::Increment { after, .. } => Some(Box::new(*after)),
+        Outcome::Major { after, .. }
+        | Outcome::Refused { after, .. }
+        | Outcome::Increment { after, .. } => Some(Box::new(*after)),
         _ => None,
     }
 }

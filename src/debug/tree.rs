@@ -346,7 +346,7 @@ impl Tree {
                 }
                 let class = match strip.kind {
                     Kind::Minor | Kind::Damped | Kind::Climbed => 0,
-                    Kind::Major => 1,
+                    Kind::Major | Kind::Refused => 1,
                     _ => 2 + (at % 2) as u8,
                 };
                 let near = match branch {

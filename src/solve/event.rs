@@ -1,6 +1,7 @@
 //! What one minor iteration did, typed.
 
 use crate::contact::decision::Decision;
+use crate::contact::judge::Finding;
 use crate::contact::projection::Spot;
 use crate::scene::Mode;
 use crate::scene::spec::Strategy;
@@ -109,11 +110,16 @@ pub enum Outcome {
     /// The minor iterations are done, but equilibrium is not reached: another major iteration. `settled` is false
     /// where the limit of minor iterations was accepted.
     Major { after: Norms, settled: bool },
+    /// The increment would be done, but the judge found that a node's net slip is against Coulomb's law: another major
+    /// iteration, and from here on net slip counts.
+    Refused { why: Finding, after: Norms },
     /// The increment is accepted. `unsettled` counts minor loops and majors whose limits were accepted instead of
-    /// reached; `last` says that the history ends here.
+    /// reached; `marked` is what the judge found against a law, where it was accepted all the same; `last` says that the
+    /// history ends here.
     Increment {
         after: Norms,
         unsettled: u32,
+        marked: Option<Finding>,
         last: bool,
     },
     /// The increment failed.
@@ -154,6 +160,8 @@ pub enum Failure {
     },
     /// Pivoting, or the census, found no consistent state, which does not prove that there is none.
     NotFound(NotFound),
+    /// Converged, but against a law of contact or balance.
+    Refused(Finding),
     /// A touching node and its master can neither of them move to close the gap (slave number).
     Jammed { slave: usize, gap: f64 },
 }

@@ -80,6 +80,7 @@ impl State {
     pub(super) fn begin(&mut self) {
         (self.next.major, self.next.minor) = (1, 1);
         (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
+        self.net = false;
         self.load_factor = self.piece.target();
         self.search = Search::default();
         (self.aim, self.reached) = (self.load_factor, self.start.load_factor);
@@ -100,7 +101,7 @@ impl State {
         if node.spot.is_none() && mode != Mode::Free {
             return Err("the node is past the end of its surface: it has nothing to touch".into());
         }
-        if node.mode == Mode::Free && mode != Mode::Free && touch != Touch::Start {
+        if node.mode == Mode::Free && mode != Mode::Free && touch != Touch::Start && !node.kept {
             node.ratio = node.travel;
         }
         node.mode = mode;

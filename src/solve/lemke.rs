@@ -22,6 +22,9 @@ use crate::solve::frozen::{Assumed, Frozen};
 const TINY: f64 = 1e-11;
 /// Ratios that differ by less than this are a tie.
 const TIE: f64 = 1e-12;
+/// Most pivots of a path, for each row. Usual paths take about one; where forces are round-off, no basis is better than
+/// another and the path would go on for ever.
+const PIVOTS: usize = 20;
 /// Estimated norm of a basis' scaled inverse from which on it is singular.
 const SINGULAR: f64 = 1e11;
 
@@ -60,6 +63,7 @@ pub struct Lemke {
     /// Node and kind of the variable that left last.
     left: Option<(usize, Kind)>,
     ended: Option<End>,
+    pivots: usize,
     /// Which nodes are rough, with the friction coefficient and the cohesion.
     friction: Vec<Option<(f64, f64)>>,
     force: f64,
@@ -72,6 +76,8 @@ pub enum End {
     /// The basis solves the problem.
     Solved,
     Ray,
+    /// It did not end within the pivots that it has.
+    Astray,
 }
 
 /// Number of starts there are to try.
@@ -114,6 +120,7 @@ impl Lemke {
             entering: None,
             left: None,
             ended: None,
+            pivots: 0,
             friction,
             force: positive(problem.force),
             length: positive(problem.length),
@@ -257,6 +264,11 @@ impl Lemke {
     pub fn pivot(&mut self) -> Option<()> {
         if self.ended.is_some() {
             return None;
+        }
+        self.pivots += 1;
+        if self.pivots > PIVOTS * self.rows {
+            self.ended = Some(End::Astray);
+            return Some(());
         }
         let cover = self.variables.len();
         let (entering, row) = match self.entering {

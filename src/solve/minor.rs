@@ -109,7 +109,7 @@ pub fn judge(
     } else {
         0.0
     };
-    let sense = sense(&before, &record, tangential);
+    let sense = sense(&before, &record, tangential, &check.settings);
     node.sign = turned
         .unwrap_or_else(|| direction(record.f_t, ties.force, sense, ties.length, before.sign));
     node.t_max = t_max(friction, record.f_n, node.sign);
@@ -117,7 +117,7 @@ pub fn judge(
     if let Forced::Once(_) = node.forced {
         node.forced = Forced::No;
     }
-    leave_or_enter(node, before.mode, check.settings.touch);
+    leave_or_enter(node, &before, check.settings.touch);
     let lag = before.mode == Mode::Sliding
         && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
     let settled = !record.decision.changes() && !lag;
@@ -226,20 +226,27 @@ pub fn one_at_a_time(nodes: &mut [NodeState], before: &[NodeState], records: &mu
     }
 }
 
-/// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free.
-fn sense(before: &NodeState, record: &NodeRecord, tangential: f64) -> f64 {
+/// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free, from its
+/// anchor on where it keeps one.
+fn sense(before: &NodeState, record: &NodeRecord, tangential: f64, settings: &Settings) -> f64 {
     if before.mode == Mode::Free {
-        tangential
+        match before.kept {
+            true => before.slipped(settings) + tangential,
+            false => tangential,
+        }
     } else {
         record.slip
     }
 }
 
-/// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens.
-fn leave_or_enter(node: &mut NodeState, before: Mode, touch: Touch) {
-    match (before, node.mode) {
+/// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens. One that has kept its anchor goes back
+/// there.
+fn leave_or_enter(node: &mut NodeState, before: &NodeState, touch: Touch) {
+    match (before.mode, node.mode) {
         (_, Mode::Free) => node.ratio = 0.0,
-        (Mode::Free, _) if touch != Touch::Start => node.ratio = node.travel,
+        (Mode::Free, _) if touch != Touch::Start && !before.kept => {
+            node.ratio = node.travel;
+        }
         _ => {}
     }
 }

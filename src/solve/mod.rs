@@ -5,6 +5,7 @@
 //!   bodies condensed; `condensed`: the interface alone; [`singular`]: why there is no solution.
 //! - [`minor`]: a minor iteration at one slave node; [`frozen`]: the interface problem by itself.
 //! - [`census`] and [`lemke`]: what finds a consistent state of it, all nodes together.
+//! - `place`: where the slave nodes stand; `verdict`: what becomes of a state that the judge refuses.
 //! - [`rounds`]: cycles of major iterations.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
@@ -17,11 +18,13 @@ mod interface;
 pub mod intervene;
 pub mod lemke;
 pub mod minor;
+mod place;
 pub mod rounds;
 pub mod singular;
 pub mod state;
 pub mod stepper;
 pub mod system;
+mod verdict;
 
 pub use event::{Event, Failure, Forced, NodeRecord, Norms, NotFound, Outcome, Position};
 pub use intervene::{Intervention, Start};

@@ -3,6 +3,8 @@
 //! A state is cheap to clone, since what changes seldom is shared; restoring one and going on gives the same bits as
 //! never having left. What can be computed again from it (geometry, stiffness, factors) is not in it.
 
+use crate::contact::corner;
+use crate::contact::judge::Verdict;
 use crate::contact::projection::Spot;
 use crate::contact::strategy::{LADDER, limit};
 use crate::fem::assembly::history_len;
@@ -44,6 +46,10 @@ pub struct State {
     pub minors: u32,
     /// Loops of the present attempt that were ended by a limit and accepted.
     pub unsettled: u32,
+    /// Whether nodes that touched when the increment started keep their anchors from there: the judge has refused a state of
+    /// the present attempt ([`crate::contact::judge`]).
+    #[serde(default)]
+    pub net: bool,
     /// Largest displacement change in the last major iteration over the length scale.
     pub correction: f64,
     /// Whether and how it can go on.
@@ -77,10 +83,14 @@ pub struct NodeState {
     pub sign: f64,
     /// Slip counted up to the start of the present major iteration.
     pub slip: f64,
-    /// Where on the master it stuck, or last was when an increment was accepted; none while it is free
-    /// ([`crate::contact::anchor`]).
+    /// Where on the master it stuck, or last was when an increment was accepted; none from a major iteration on in which it
+    /// opened, unless it is kept ([`crate::contact::anchor`]).
     pub anchor: Option<Spot>,
-    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t.
+    /// Whether the anchor is kept while the node is free, so that its net slip counts.
+    #[serde(default)]
+    pub kept: bool,
+    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t; in a
+    /// corner, how far along t the node still has to go to it.
     pub drift: f64,
     /// Ratio ρ of tangential to normal travel where the node touched in the present major iteration; else 0.
     pub ratio: f64,
@@ -88,6 +98,12 @@ pub struct NodeState {
     pub travel: f64,
     /// Where S* lies; none past the ends of all surfaces.
     pub spot: Option<Spot>,
+    /// Half the angle (radians) of the concave corner in which it is held; S* is that corner then.
+    #[serde(default)]
+    pub corner: Option<f64>,
+    /// The master element that it left last in the present increment.
+    #[serde(default)]
+    pub left: Option<usize>,
     /// Outward normal at the start of the present major iteration.
     pub normal: [f64; 2],
 }
@@ -103,6 +119,9 @@ pub struct IncrementStart {
     pub nodes: Vec<NodeState>,
     /// What the elements remember of it ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
     pub history: Vec<f64>,
+    /// What the judge found when it was accepted; none before the first increment.
+    #[serde(default)]
+    pub verdict: Option<Verdict>,
 }
 
 /// How far the strategy has come ([`crate::contact::strategy`]).
@@ -326,6 +345,7 @@ impl State {
             u: u.clone(),
             nodes: nodes.clone(),
             history: vec![0.0; history_len(model)],
+            verdict: None,
         };
         let piece = Piece::whole(model, &start, controls.increment);
         let aim = piece.target();
@@ -349,6 +369,7 @@ impl State {
             piece,
             minors: 0,
             unsettled: 0,
+            net: false,
             correction: 0.0,
             status: Status::Running,
         }
@@ -383,10 +404,13 @@ impl NodeState {
             },
             slip: brought.slip,
             anchor: None,
+            kept: false,
             drift: brought.slip,
             ratio: brought.ratio,
             travel: 0.0,
             spot: None,
+            corner: None,
+            left: None,
             normal: [0.0, 1.0],
         }
     }
@@ -394,10 +418,21 @@ impl NodeState {
     /// What it has slipped up to the start of the present major iteration, and what sticking takes back: counted, or
     /// measured from its anchor.
     pub fn slipped(&self, settings: &Settings) -> f64 {
+        if self.corner.is_some() {
+            return self.drift;
+        }
         match (settings.sticking, settings.slip) {
             (Sticking::Anchored, _) => self.drift,
             (Sticking::Increments, SlipCount::Increment) => self.slip,
             (Sticking::Increments, SlipCount::Major) => 0.0,
+        }
+    }
+
+    /// Friction where it stands: that in force, or what the corner makes of it.
+    pub fn friction(&self, in_force: &Friction) -> Friction {
+        match self.corner {
+            Some(half) => corner::widened(in_force, half),
+            None => *in_force,
         }
     }
 

@@ -8,12 +8,12 @@
 //! until residual and interface conditions are within the tolerance; then the increment is accepted
 //! ```
 
-use crate::contact::anchor::{distance, pierced};
+use crate::contact::anchor::pierced;
 use crate::contact::decision::{Decision, Rule, Test, Tested, Ties};
-use crate::contact::projection::{footing, hold, project, tangent};
+use crate::contact::judge::{Finding, Verdict};
 use crate::contact::strategy::{LADDER, one_at_a_time};
 use crate::contact::table1::t_max;
-use crate::scene::model::{Surface, Watched};
+use crate::scene::model::Watched;
 use crate::scene::spec::{AtCycle, AtLimit, Axis, ResidualMethod, SlipCount, Sticking, Strategy};
 use crate::scene::{Mode, Model, spec};
 use crate::solve::census::{Census, census};
@@ -24,12 +24,14 @@ use crate::solve::frozen::{Assumed, Frozen, NodeAnswer};
 use crate::solve::intervene::Intervention;
 use crate::solve::lemke::{End, Lemke, STARTS};
 use crate::solve::minor::{self, Check, carried, judge};
+use crate::solve::place::Ground;
 use crate::solve::rounds::{Round, Scales};
 use crate::solve::singular;
 use crate::solve::state::{
     IncrementStart, Input, NodeState, Piece, Pivoting, Search, State, Status,
 };
 use crate::solve::system::{Solved, System};
+use crate::solve::verdict::Bench;
 use std::sync::Arc;
 
 /// A displacement this many times the scene's length is divergence.
@@ -40,8 +42,6 @@ const SAME: f64 = 1e-14;
 /// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
 /// the length instead.
 const STILL: f64 = 1e-8;
-/// From this major iteration on nodes keep their master elements a little past the borders.
-const HOLD_FROM: u32 = 5;
 /// Forces this many times larger than the interface's stiffness over the scene's length are no forces.
 const UNBOUNDED: f64 = 1e10;
 /// Rounds that all changes at once may go on without getting fewer.
@@ -53,16 +53,17 @@ const SMALLEST_PART: f64 = 1e-6;
 
 /// The solver: a state, and the workspace that is made from it.
 pub struct Stepper {
-    model: Arc<Model>,
-    state: State,
-    system: System,
+    pub(super) model: Arc<Model>,
+    pub(super) state: State,
+    pub(super) system: System,
     /// Whether `system` is linearised about `state`.
-    linearised: bool,
+    pub(super) linearised: bool,
     /// The pivoting of the present major iteration, with its start and the pivots done.
     lemke: Option<(Lemke, usize, usize)>,
     /// What the nodes came with into the present minor iteration, where only one of them may change.
     before: Vec<NodeState>,
     event: Event,
+    pub(super) bench: Bench,
 }
 
 impl Stepper {
@@ -82,6 +83,7 @@ impl Stepper {
             linearised: false,
             lemke: None,
             before: Vec::new(),
+            bench: Bench::default(),
             model,
         };
         stepper.find_spots();
@@ -283,7 +285,8 @@ impl Stepper {
         for (slave, node) in self.state.nodes.iter_mut().enumerate() {
             let site = self.system.site(slave, node);
             let given = self.system.given(slave);
-            let (record, still) = judge(node, &site, given, &controls.friction[slave], &check);
+            let friction = node.friction(&controls.friction[slave]);
+            let (record, still) = judge(node, &site, given, &friction, &check);
             settled &= still;
             self.event.nodes.push(record);
         }
@@ -455,7 +458,7 @@ impl Stepper {
         self.state.search.pivoting = match ended {
             None => Pivoting::At { start, pivot },
             Some(End::Solved) => Pivoting::Found { start },
-            Some(End::Ray) => Pivoting::At {
+            Some(End::Ray | End::Astray) => Pivoting::At {
                 start: start + 1,
                 pivot: 0,
             },
@@ -569,8 +572,8 @@ impl Stepper {
         rule: Rule,
         cover: f64,
     ) {
-        let friction = self.state.controls.friction[slave];
         let node = &mut self.state.nodes[slave];
+        let friction = node.friction(&self.state.controls.friction[slave]);
         let site = self.system.site(slave, node);
         let before = node.mode;
         node.mode = assumed.mode();
@@ -612,6 +615,15 @@ impl Stepper {
 
     /// The increment fails; on the ladder it is cut, where that can help and it is not at its smallest yet.
     fn fail(&mut self, why: Failure) -> Outcome {
+        match self.cut(&why) {
+            Some(cut) => cut,
+            None => Outcome::Failed(why),
+        }
+    }
+
+    /// Starts the increment again with half its size; none where the strategy does not, where that cannot help, and where it
+    /// is at its smallest.
+    pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
         let controls = &self.state.controls;
         let helps = !matches!(
             why,
@@ -624,14 +636,14 @@ impl Stepper {
             || half.size() < least
             || half.size() == 0.0
         {
-            return Outcome::Failed(why);
+            return None;
         }
         self.state.piece = half;
         self.state.start_again();
         self.linearised = false;
         self.lemke = None;
-        let size = half.size();
-        Outcome::Cut { why, size }
+        let (why, size) = (why.clone(), half.size());
+        Some(Outcome::Cut { why, size })
     }
 
     /// Starts the minor iterations of this major one again, with half the load; false if too little is left of it.
@@ -696,11 +708,11 @@ impl Stepper {
             && after.interface <= after.limit.max(settings.tolerance);
         let at_limit = self.state.next.major.is_multiple_of(settings.majors);
         if settled && balanced {
-            return self.accept(after);
+            return self.finish(after);
         }
         if at_limit && bounded && settings.at_major_limit == AtLimit::Accept {
             self.state.unsettled += 1;
-            return self.accept(after);
+            return self.finish(after);
         }
         self.state.next.major += 1;
         self.state.next.minor = 1;
@@ -755,7 +767,7 @@ impl Stepper {
         for (s, node) in self.state.nodes.iter_mut().enumerate() {
             let record = &self.event.nodes[s];
             (node.f_n, node.f_t) = (record.f_n, record.f_t);
-            node.slip = if record.decision.before == Mode::Free {
+            node.slip = if record.decision.before == Mode::Free && !node.kept {
                 0.0
             } else {
                 let motion = self.system.relative_motion(s);
@@ -789,63 +801,30 @@ impl Stepper {
         self.system.turn(&self.model, &self.state);
     }
 
-    /// Projects every slave node anew. Forces keep their components in the frame that turns with the surface.
+    /// Finds anew where every slave node stands.
     fn find_spots(&mut self) {
         self.system.place(&self.model, &self.state.u);
-        let positions = &self.system.positions;
-        let holds = self.state.next.major >= HOLD_FROM;
         // Where slip is counted anew in every major iteration, so is what to stick to.
         let settings = &self.state.controls.settings;
         let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
+        let ground = Ground {
+            surfaces: &self.model.surfaces,
+            positions: &self.system.positions,
+        };
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
-            let at = positions[slave.node];
-            let surfaces = &self.model.surfaces;
-            let held = if holds && node.mode != Mode::Free {
-                hold(at, surfaces, positions, node.spot)
-            } else {
-                None
-            };
-            node.spot =
-                held.or_else(|| project(at, surfaces, &slave.surfaces, positions, node.spot));
-            match node.spot {
-                Some(spot) => {
-                    node.normal = footing(&self.model.surfaces, spot, positions, at).normal;
-                }
-                None => {
-                    node.mode = Mode::Free;
-                    (node.f_n, node.f_t, node.t_max, node.slip) = (0.0, 0.0, 0.0, 0.0);
-                }
-            }
-            if node.mode == Mode::Free {
-                (node.f_n, node.f_t) = (0.0, 0.0);
-            }
-            if anew && node.mode == Mode::Sliding {
-                node.anchor = node.spot;
-            }
-            find_anchor(node, &self.model.surfaces, positions);
+            ground.stand(node, slave, anew);
         }
         self.linearised = false;
     }
 
-    /// Anchors the nodes that bring slip into the scene as far back as they have slipped. One that has just opened is not
-    /// anchored, and takes its slip back all the same, should it stick in this major iteration.
+    /// Anchors the nodes that bring slip into the scene as far back as they have slipped.
     fn place_anchors(&mut self) {
-        let (surfaces, positions) = (&self.model.surfaces, &self.system.positions);
+        let ground = Ground {
+            surfaces: &self.model.surfaces,
+            positions: &self.system.positions,
+        };
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.slaves) {
-            if node.mode == Mode::Free {
-                node.drift = node.slip;
-            }
-            let Some(spot) = node
-                .spot
-                .filter(|_| node.mode != Mode::Free && node.slip != 0.0)
-            else {
-                continue;
-            };
-            let footing = footing(surfaces, spot, positions, positions[slave.node]);
-            let t = tangent(footing.normal);
-            let point = [0, 1].map(|k| footing.foot[k] + node.slip * t[k]);
-            node.anchor = project(point, surfaces, &[spot.surface], positions, Some(spot));
-            find_anchor(node, surfaces, positions);
+            ground.place_anchor(node, slave);
         }
     }
 
@@ -883,12 +862,21 @@ impl Stepper {
     }
 
     /// Makes the present state the start of the next increment.
-    fn accept(&mut self, after: Norms) -> Outcome {
+    pub(super) fn accept(
+        &mut self,
+        after: Norms,
+        verdict: Verdict,
+        marked: Option<Finding>,
+    ) -> Outcome {
         let unsettled = self.state.unsettled;
         for node in &mut self.state.nodes {
-            node.slip = 0.0;
+            (node.slip, node.left, node.kept) = (0.0, None, false);
             if node.mode == Mode::Sliding {
                 (node.anchor, node.drift) = (node.spot, 0.0);
+            } else if node.corner.is_some() {
+                node.anchor = node.spot;
+            } else if node.mode == Mode::Free {
+                (node.anchor, node.drift) = (None, 0.0);
             }
         }
         let mut leg = self.state.start.leg;
@@ -899,6 +887,7 @@ impl Stepper {
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         start.leg = leg;
+        start.verdict = Some(verdict);
         self.system
             .advance(&self.state.u, &start.u, &mut start.history);
         Arc::make_mut(&mut start.u).copy_from_slice(&self.state.u);
@@ -923,6 +912,7 @@ impl Stepper {
         Outcome::Increment {
             after,
             unsettled,
+            marked,
             last,
         }
     }
@@ -956,24 +946,15 @@ impl Stepper {
                         largest
                     }
                 }),
+                // The load is that of the displacements at hand, not the one that is aimed at next.
                 Watched::Reaction { dof } => {
-                    self.system.nodal_force(*dof) - self.system.interaction(*dof)
+                    let loads = self.model.loads.iter().filter(|load| load.dof == *dof);
+                    let load: f64 = loads
+                        .map(|l| l.value * l.scale.at(self.state.reached))
+                        .sum();
+                    self.system.internal()[*dof] - load - self.system.interaction(*dof)
                 }
             });
         }
     }
-}
-
-/// Gives a touching node that has no anchor one where it stands, takes it from a free one, and measures the drift. A node
-/// that has come to another surface is anchored anew there.
-fn find_anchor(node: &mut NodeState, surfaces: &[Surface], positions: &[[f64; 2]]) {
-    let (Some(spot), true) = (node.spot, node.mode != Mode::Free) else {
-        (node.anchor, node.drift) = (None, 0.0);
-        return;
-    };
-    let anchor = node.anchor.filter(|a| a.surface == spot.surface);
-    node.anchor = anchor.or(Some(spot));
-    node.drift = anchor.map_or(0.0, |anchor| {
-        distance(&surfaces[spot.surface], spot, anchor, positions)
-    });
 }

@@ -508,7 +508,8 @@ impl System {
                 Mode::Sliding => (node.f_t - t_max).abs(),
                 _ => 0.0,
             };
-            let anchored = state.controls.settings.sticking == Sticking::Anchored;
+            let anchored =
+                state.controls.settings.sticking == Sticking::Anchored || node.corner.is_some();
             let drift = match mode {
                 Mode::Fixed if anchored && self.interfaces[s].moves[1] => node.drift.abs(),
                 _ => 0.0,
@@ -539,6 +540,11 @@ impl System {
     /// Whether any unknown takes part in a slave node's normal and tangential motion.
     pub fn moves(&self, slave: usize) -> [bool; 2] {
         self.interfaces[slave].moves
+    }
+
+    /// Internal force at each degree of freedom in the last linearisation.
+    pub fn internal(&self) -> &[f64] {
+        &self.force
     }
 
     /// Internal force less applied load at a degree of freedom: what support or surface must give there.
@@ -690,7 +696,7 @@ impl System {
                 slave,
                 site: self.site(slave, node),
                 prescribed: self.frames[slave].map(|d| dot(d, self.interfaces[slave].prescribed)),
-                friction: state.controls.friction[slave],
+                friction: node.friction(&state.controls.friction[slave]),
                 state: *node,
             });
         let largest = relation.start.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
@@ -826,8 +832,8 @@ impl System {
     /// Table 1's rows of a node.
     fn rows(&self, s: usize, state: &State) -> [Equation; 2] {
         let (node, site) = (&state.nodes[s], self.site(s, &state.nodes[s]));
-        let friction = &state.controls.friction[s];
-        minor::rows(node, &site, friction, &state.settings())
+        let friction = node.friction(&state.controls.friction[s]);
+        minor::rows(node, &site, &friction, &state.settings())
     }
 
     /// A slave node's surroundings in the last linearisation.

@@ -71,6 +71,7 @@ pub enum Reason {
     Singular,
     Diverged,
     Jammed,
+    Refused,
     NoAnswer,
     NotFound,
 }
@@ -85,6 +86,7 @@ impl Reason {
             Reason::Singular => 's',
             Reason::Diverged => 'd',
             Reason::Jammed => 'j',
+            Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
         }
     }
@@ -100,6 +102,7 @@ impl From<&Failure> for Reason {
             Failure::Singular(_) => Reason::Singular,
             Failure::Diverged { .. } => Reason::Diverged,
             Failure::Jammed { .. } => Reason::Jammed,
+            Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
             Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
         }
@@ -116,6 +119,7 @@ impl fmt::Display for Reason {
             Reason::Singular => "singular",
             Reason::Diverged => "diverged",
             Reason::Jammed => "jammed",
+            Reason::Refused => "refused",
             Reason::NoAnswer => "no-answer",
             Reason::NotFound => "not-found",
         })

@@ -136,7 +136,9 @@ fn one(problem: &Problem, scene: Scene) -> Trial {
                 trial.verdict = Verdict::of(failure);
                 break;
             }
-            Outcome::Major { .. } | Outcome::Increment { .. } => trial.majors += 1,
+            Outcome::Major { .. } | Outcome::Refused { .. } | Outcome::Increment { .. } => {
+                trial.majors += 1;
+            }
             _ => {}
         }
     }

@@ -159,8 +159,13 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         Outcome::Damped { .. }
         | Outcome::Climbed { .. }
         | Outcome::Cut { .. }
+        | Outcome::Refused { .. }
         | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
-        Outcome::Increment { unsettled: 0, .. } => ("✓", theme.good),
+        Outcome::Increment {
+            unsettled: 0,
+            marked: None,
+            ..
+        } => ("✓", theme.good),
         Outcome::Increment { .. } => ("✓", theme.warning),
         Outcome::Failed(_) => ("✗", theme.bad),
     };

@@ -212,6 +212,7 @@ fn end(kind: Kind, app: &App) -> (&'static str, Style) {
         Kind::Intervention => ("◇", theme.warning),
         Kind::Damped | Kind::Cut => ("½", theme.warning),
         Kind::Climbed => ("⇑", theme.warning),
+        Kind::Refused => ("⊘", theme.warning),
         Kind::Major => ("▸", theme.faint),
         Kind::Increment | Kind::Last => ("✓", theme.good),
         Kind::Cycle => ("↺", theme.bad),

@@ -126,7 +126,9 @@ impl<'a> View<'a> {
         };
         let settled = matches!(
             event.outcome,
-            Outcome::Major { settled: true, .. } | Outcome::Increment { .. }
+            Outcome::Major { settled: true, .. }
+                | Outcome::Refused { .. }
+                | Outcome::Increment { .. }
         );
         let slides =
             record.decision.before == Mode::Sliding && record.decision.next == Mode::Sliding;

@@ -1,0 +1,178 @@
+//! `stickslip audit`: the worst violation of every law over whole histories.
+
+use super::interrupt::Interrupt;
+use super::{Error, Exit, SetArgs, say, tell};
+use crate::contact::judge::Law;
+use crate::debug::audit::{Audit, Found};
+use crate::debug::judged;
+use crate::debug::report;
+use crate::debug::snapshot::{Applied, Snapshot};
+use crate::scene::{Model, Scene};
+use crate::solve::{Outcome, Stepper};
+use std::path::Path;
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scene files, names of built-in scenes, or snapshots
+    #[arg(required = true, value_name = "SCENE|SNAPSHOT")]
+    inputs: Vec<String>,
+    #[command(flatten)]
+    set: SetArgs,
+}
+
+/// What to audit: a scene, and of a snapshot what was done to it, and how far.
+struct Course {
+    scene: Scene,
+    applied: Vec<Applied>,
+    steps: Option<u64>,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
+    let mut exit = Exit::Good;
+    for input in &args.inputs {
+        let course = open(input, args)?;
+        match one(&course, &interrupt)? {
+            Exit::Good => {}
+            Exit::Interrupted => return Ok(Exit::Interrupted),
+            other => exit = other,
+        }
+    }
+    Ok(exit)
+}
+
+/// A file that says which format it has is a snapshot, any other a scene.
+fn open(input: &str, args: &Args) -> Result<Course, Error> {
+    let path = Path::new(input);
+    let is_snapshot = path.is_file() && Snapshot::is_one(path);
+    if !is_snapshot {
+        return Ok(Course {
+            scene: Scene::open(input, &args.set.set)?,
+            applied: Vec::new(),
+            steps: None,
+        });
+    }
+    if !args.set.set.is_empty() {
+        return Err(Error::Usage(format!(
+            "{input}: a snapshot is audited as it was recorded; --set is for scenes"
+        )));
+    }
+    let snapshot = Snapshot::read(path)?;
+    Ok(Course {
+        scene: Scene::from_spec(input, snapshot.scene)?,
+        applied: snapshot.interventions,
+        steps: Some(snapshot.steps),
+    })
+}
+
+fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
+    let mut stepper = Stepper::new(Arc::new(course.scene.model.clone()));
+    let (mut audit, mut applied) = (Audit::default(), course.applied.iter().peekable());
+    let mut failed = None;
+    for done in 0_u64.. {
+        if interrupt.came() {
+            tell(&format!("{}: interrupted", course.scene.name));
+            return Ok(Exit::Interrupted);
+        }
+        while let Some(next) = applied.next_if(|a| a.step == done) {
+            let name = &course.scene.name;
+            stepper
+                .intervene(&next.intervention)
+                .map_err(|e| Error::Usage(format!("{name}: after step {done}: {e}")))?;
+        }
+        if course.steps == Some(done) {
+            break;
+        }
+        let Some(event) = stepper.step() else { break };
+        // A snapshot goes on from a failure, as its user did.
+        if let Outcome::Failed(failure) = &event.outcome
+            && course.steps.is_none()
+        {
+            failed = Some((event.position, event.load_factor, failure.clone()));
+        }
+        if failed.is_some() {
+            break;
+        }
+        audit.take(&stepper);
+    }
+    let (name, model) = (&course.scene.name, &course.scene.model);
+    say(&table(name, model, &audit))?;
+    if let Some((position, load, failure)) = failed {
+        let last = stepper.state().start.load_factor;
+        let told = report::failure(model, position, load, last, &failure);
+        tell(&format!("{name}: the history ends early: {told}"));
+    }
+    Ok(match audit.broken().next() {
+        Some(_) => Exit::Unconverged,
+        None => Exit::Good,
+    })
+}
+
+/// What was found, as text.
+fn table(name: &str, model: &Model, audit: &Audit) -> String {
+    let Audit {
+        increments, marked, ..
+    } = audit;
+    let mut text = match marked {
+        0 => format!("{name}: {increments} increments accepted\n"),
+        _ => format!("{name}: {increments} increments accepted, {marked} of them marked\n"),
+    };
+    text += "  law          worst     allowed   where\n";
+    for law in Law::ALL {
+        text += &match audit.of(law) {
+            None => format!("  {:<11}  -\n", law.name()),
+            Some(found) => row(model, law, found),
+        };
+    }
+    if *marked > 0 {
+        text += "  marked, not counted:\n";
+        for found in audit.worst_marked.iter().flatten() {
+            text += &row(model, found.finding.law, found);
+        }
+    }
+    for found in audit.broken() {
+        text += &format!(
+            "  broken: {}: {}\n",
+            place(found),
+            judged::finding(model, &found.finding)
+        );
+    }
+    if let Some(found) = audit.work.as_ref().filter(|found| found.times() > 1.0) {
+        text += &format!(
+            "  also: {}: {}\n",
+            place(found),
+            judged::finding(model, &found.finding)
+        );
+    }
+    if let Some(inside) = &audit.inside {
+        text += &format!(
+            "  also: increment {} (load {}): {}, a node of a master, is inside {} by {:.3e}; contact of slave nodes does not see it\n",
+            inside.increment,
+            inside.load_factor,
+            model.nodes[inside.node].name,
+            model.bodies[inside.body].name,
+            inside.depth
+        );
+    }
+    text
+}
+
+fn place(found: &Found) -> String {
+    format!("increment {} (load {})", found.increment, found.load_factor)
+}
+
+fn row(model: &Model, law: Law, found: &Found) -> String {
+    let node = found
+        .finding
+        .slave
+        .map_or("all", |s| report::slave(model, s));
+    let over = if found.times() <= 1.0 { "" } else { "  BROKEN" };
+    format!(
+        "  {:<11}  {:<8.1e}  {:<8.1e}  {}, {node}{over}\n",
+        law.name(),
+        found.finding.amount,
+        found.tolerance,
+        place(found)
+    )
+}
