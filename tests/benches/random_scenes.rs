@@ -5,6 +5,7 @@
 //! cargo bench --bench random_scenes -- 10000 --list FILE           writes a line for every scene as well
 //! cargo bench --bench random_scenes -- --seed 1 --only 157         one scene, with all that is wrong in it
 //! cargo bench --bench random_scenes -- --write 157 FILE.ron        writes one scene to a file, to be run or debugged
+//! cargo bench --bench random_scenes -- --file FILE.ron --set refine=2    the same for any scene, changed in some way
 //! ```
 //!
 //! What is printed is the same whatever the number of cores, but for the time.
@@ -32,6 +33,7 @@ struct Asked {
     only: Option<u64>,
     write: Option<(u64, String)>,
     files: Vec<String>,
+    set: Vec<(String, String)>,
 }
 
 fn asked() -> Option<Asked> {
@@ -50,6 +52,11 @@ fn asked() -> Option<Asked> {
             "--list" => asked.list = Some(args.next()?),
             "--write" => asked.write = Some((args.next()?.parse().ok()?, args.next()?)),
             "--file" => asked.files.push(args.next()?),
+            "--set" => {
+                let set = args.next()?;
+                let (path, value) = set.split_once('=')?;
+                asked.set.push((path.to_owned(), value.to_owned()));
+            }
             count => asked.count = Some(count.parse().ok()?),
         }
     }
@@ -59,7 +66,7 @@ fn asked() -> Option<Asked> {
 fn main() -> ExitCode {
     let Some(asked) = asked() else {
         eprintln!(
-            "usage: [COUNT] [--seed N] [--from NUMBER] [--list FILE] [--only NUMBER] [--write NUMBER FILE] [--file SCENE]"
+            "usage: [COUNT] [--seed N] [--from NUMBER] [--list FILE] [--only NUMBER] [--write NUMBER FILE] [--file SCENE] [--set PATH=VALUE]"
         );
         return ExitCode::from(2);
     };
@@ -71,7 +78,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     for file in &asked.files {
-        match Scene::open(file, &[]) {
+        match Scene::open(file, &asked.set) {
             Ok(scene) => show(file, &scene),
             Err(error) => {
                 eprintln!("{error}");

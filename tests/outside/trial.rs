@@ -1,6 +1,6 @@
 //! A scene run to its end, or to its failure, with every accepted increment judged from outside.
 
-use super::chain::{Chain, Place, Point, cross, minus, norm};
+use super::chain::{Point, norm};
 use super::judge::{Breach, Pull, Scales, Seen, judge};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -12,12 +12,10 @@ use stickslip::solve::{Failure, Outcome, Stepper};
 
 /// Minor iterations after which a run is given up, so that one that goes on for ever ends the same way everywhere.
 const PATIENCE: usize = 20_000;
-/// Elements whose directions differ by more than this (radians) where they meet have a vertex there.
-const KINK: f64 = 1e-4;
 /// Forces that are this part of what the stiffest section bears before it is strained by 1 are as exact as can be had.
 const ROUNDING: f64 = 1e-7;
-/// A node that is pressed, nearer to a border than this part of an element, may be about to need its vertex.
-const NEAR: f64 = 0.02;
+/// Passages from one element to another within an attempt that make hopping.
+const HOPS: usize = 4;
 
 /// What became of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +24,7 @@ pub enum End {
     Failed {
         /// The name of the failure.
         kind: String,
-        /// Its major iterations do not end, and a node hops between two elements, or is close to where they meet at an angle.
+        /// Its major iterations do not end, and a node hops between elements.
         at_vertex: bool,
     },
     /// It was given up.
@@ -99,6 +97,7 @@ impl Trial {
             length: model.length,
             force: ROUNDING * stiffness(&model),
         };
+        let mut passages = Passages::default();
         for _ in 0..PATIENCE {
             if stepper.step().is_none() {
                 self.end = End::Finished;
@@ -107,11 +106,20 @@ impl Trial {
             match &stepper.event().outcome {
                 Outcome::Increment { .. } => {}
                 Outcome::Failed(failure) => {
-                    self.end = failed(&model, &stepper, failure);
+                    self.end = failed(failure, &passages);
                     return;
+                }
+                Outcome::Major { .. } => {
+                    passages.count(&stepper);
+                    continue;
+                }
+                Outcome::Cut { .. } => {
+                    passages = Passages::default();
+                    continue;
                 }
                 _ => continue,
             }
+            passages = Passages::default();
             let mut reactions = Vec::new();
             stepper.monitors(&mut reactions);
             let state = stepper.state();
@@ -218,12 +226,12 @@ fn positions(model: &Model, u: &[f64]) -> Vec<Point> {
         .collect()
 }
 
-fn failed(model: &Model, stepper: &Stepper, failure: &Failure) -> End {
+fn failed(failure: &Failure, passages: &Passages) -> End {
     let kind = kind(failure);
     // Only what no number of major iterations ends may be due to a vertex.
-    let majors = kind.contains("Major") && near_vertex(model, stepper);
+    let hop = kind.contains("Major") && passages.hop();
     End::Failed {
-        at_vertex: hops(failure) || majors,
+        at_vertex: hop || at_vertex(failure),
         kind,
     }
 }
@@ -247,36 +255,35 @@ fn head(text: &str) -> &str {
 
 /// Whether the major iterations cycle because a node hops from element to element, or the failure says itself that it is at a
 /// vertex.
-fn hops(failure: &Failure) -> bool {
+fn at_vertex(failure: &Failure) -> bool {
     match failure {
         Failure::MajorCycle(round) => round.members.iter().any(|(_, stops)| {
             let mut elements: Vec<_> = stops.iter().filter_map(|s| s.element).collect();
             elements.dedup();
             elements.len() > 1
         }),
-        Failure::LadderEnded { first, last } => hops(first) || hops(last),
+        Failure::LadderEnded { first, last } => at_vertex(first) || at_vertex(last),
         other => kind(other).contains("Vertex"),
     }
 }
 
-/// Whether in the present, failed state a node lies on a surface, and close to where two elements of it meet at an angle.
-fn near_vertex(model: &Model, stepper: &Stepper) -> bool {
-    let positions = positions(model, &stepper.state().u);
-    let mut nodes = model.slaves.iter().zip(&stepper.state().nodes);
-    nodes.any(|(slave, state)| {
-        let pressed = norm(state.force()) > 0.0;
-        pressed
-            && slave.surfaces.iter().any(|&surface| {
-                let surface = &model.surfaces[surface];
-                let chain = Chain::new(&surface.elements, &positions, surface.endless);
-                (1..chain.count()).any(|element| {
-                    let ends = [(element - 1, 1.0), (element, -1.0)];
-                    let [one, other] = ends.map(|(element, xi)| Place { element, xi });
-                    let (foot, slope) = chain.at(one);
-                    let apart = norm(minus(positions[slave.node], foot));
-                    let kink = cross(chain.frame(one).1, chain.frame(other).1);
-                    kink.abs() > KINK && apart < 2.0 * NEAR * norm(slope)
-                })
-            })
-    })
+/// How often each slave node passes from element to element in the major iterations of an attempt at an increment. It tells
+/// kinds of failures apart and judges nothing.
+#[derive(Default)]
+struct Passages(Vec<(Option<(usize, usize)>, usize)>);
+
+impl Passages {
+    fn count(&mut self, stepper: &Stepper) {
+        let nodes = &stepper.state().nodes;
+        self.0.resize(nodes.len(), (None, 0));
+        for (node, (last, count)) in nodes.iter().zip(&mut self.0) {
+            let here = node.spot.map(|spot| (spot.surface, spot.element));
+            *count += usize::from(last.is_some() && here != *last);
+            *last = here;
+        }
+    }
+
+    fn hop(&self) -> bool {
+        self.0.iter().any(|(_, count)| *count >= HOPS)
+    }
 }
