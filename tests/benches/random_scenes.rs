@@ -1,0 +1,157 @@
+//! Many random mesh scenes, judged from outside.
+//!
+//! ```text
+//! cargo bench --bench random_scenes -- 10000 --seed 1              scenes 0 to 9,999 of seed 1, and their tables
+//! cargo bench --bench random_scenes -- 10000 --list FILE           writes a line for every scene as well
+//! cargo bench --bench random_scenes -- --seed 1 --only 157         one scene, with all that is wrong in it
+//! cargo bench --bench random_scenes -- --write 157 FILE.ron        writes one scene to a file, to be run or debugged
+//! cargo bench --bench random_scenes -- --file FILE.ron --set refine=2    the same for any scene, changed in some way
+//! ```
+//!
+//! What is printed is the same whatever the number of cores, but for the time.
+
+#[path = "../outside/mod.rs"]
+mod outside;
+
+use outside::tally;
+use outside::trial::{attempt, forgives};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+use stickslip::scene::Scene;
+
+/// Scenes where nobody says how many.
+const SCENES: u64 = 1000;
+
+/// What the command line asks for.
+#[derive(Default)]
+struct Asked {
+    count: Option<u64>,
+    seed: u64,
+    from: u64,
+    list: Option<String>,
+    only: Option<u64>,
+    write: Option<(u64, String)>,
+    files: Vec<String>,
+    set: Vec<(String, String)>,
+}
+
+fn asked() -> Option<Asked> {
+    let mut asked = Asked {
+        seed: 1,
+        ..Asked::default()
+    };
+    let mut args = std::env::args().skip(1);
+    while let Some(arg) = args.next() {
+        match arg.as_str() {
+            // What cargo says to every bench.
+            "--bench" => {}
+            "--seed" => asked.seed = args.next()?.parse().ok()?,
+            "--from" => asked.from = args.next()?.parse().ok()?,
+            "--only" => asked.only = Some(args.next()?.parse().ok()?),
+            "--list" => asked.list = Some(args.next()?),
+            "--write" => asked.write = Some((args.next()?.parse().ok()?, args.next()?)),
+            "--file" => asked.files.push(args.next()?),
+            "--set" => {
+                let set = args.next()?;
+                let (path, value) = set.split_once('=')?;
+                asked.set.push((path.to_owned(), value.to_owned()));
+            }
+            count => asked.count = Some(count.parse().ok()?),
+        }
+    }
+    Some(asked)
+}
+
+fn main() -> ExitCode {
+    let Some(asked) = asked() else {
+        eprintln!(
+            "usage: [COUNT] [--seed N] [--from NUMBER] [--list FILE] [--only NUMBER] [--write NUMBER FILE] [--file SCENE] [--set PATH=VALUE]"
+        );
+        return ExitCode::from(2);
+    };
+    if let Some((number, file)) = &asked.write {
+        if let Err(error) = std::fs::write(file, tally::scene(asked.seed, *number).0.text) {
+            eprintln!("{file}: {error}");
+            return ExitCode::from(2);
+        }
+        return ExitCode::SUCCESS;
+    }
+    for file in &asked.files {
+        match Scene::open(file, &asked.set) {
+            Ok(scene) => show(file, &scene),
+            Err(error) => {
+                eprintln!("{error}");
+                return ExitCode::from(2);
+            }
+        }
+    }
+    if let Some(number) = asked.only {
+        let (drawn, scene) = tally::scene(asked.seed, number);
+        println!("{}", drawn.text);
+        show(&format!("scene {number}"), &scene);
+        return ExitCode::SUCCESS;
+    }
+    if asked.files.is_empty() {
+        return many(&asked);
+    }
+    ExitCode::SUCCESS
+}
+
+/// Prints everything that is wrong in a scene.
+fn show(name: &str, scene: &Scene) {
+    let trial = attempt(scene);
+    println!(
+        "{name}: {:?}, {} increments, {} on a vertex, {} unexplained{}",
+        trial.end,
+        trial.increments,
+        trial.vertices,
+        trial.unexplained,
+        if forgives(scene) { ", forgiven" } else { "" }
+    );
+    for wrong in &trial.wrong {
+        let node = wrong.breach.slave.map(|slave| {
+            let node = scene.model.slaves[slave].node;
+            scene.model.nodes[node].name.as_str()
+        });
+        println!(
+            "  increment {} to {:?}: {} by {:.3e} at {}",
+            wrong.increment,
+            wrong.load_factor,
+            wrong.breach.law.name(),
+            wrong.breach.amount,
+            node.unwrap_or("all")
+        );
+    }
+}
+
+fn many(asked: &Asked) -> ExitCode {
+    let count = asked.count.unwrap_or(SCENES);
+    let done = AtomicUsize::new(0);
+    let start = Instant::now();
+    let rows = tally::run(asked.seed, asked.from..asked.from + count, |_| {
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(500) {
+            eprintln!("{done} scenes, {:.0} s", start.elapsed().as_secs_f64());
+        }
+    });
+    println!(
+        "{count} scenes from {} on of seed {}\n",
+        asked.from, asked.seed
+    );
+    print!("{}", tally::tables(&rows));
+    let wrong = rows.iter().filter(|row| row.is_wrong());
+    println!("\nscenes with wrong increments");
+    for row in wrong.clone() {
+        println!("{}", row.line());
+    }
+    eprintln!("{:.0} s", start.elapsed().as_secs_f64());
+    if let Some(file) = &asked.list {
+        let lines: String = rows.iter().map(|row| row.line() + "\n").collect();
+        if let Err(error) = std::fs::write(file, lines) {
+            eprintln!("{file}: {error}");
+            return ExitCode::from(2);
+        }
+    }
+    ExitCode::from(u8::from(wrong.count() > 0))
+}
