@@ -491,6 +491,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
     let done = |unsettled| Outcome::Increment {
         after,
         unsettled,
+        marked: None,
         last: false,
     };
     assert_eq!(say(done(0)), " ✓ load 0.3 accepted");

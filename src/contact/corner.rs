@@ -179,7 +179,7 @@ mod tests {
         let wide = widened(&friction, 30_f64.to_radians());
         let (mu, c) = (friction.coefficient(), friction.cohesion);
         // Leaving along the side behind, only that one gives force, friction and cohesion against it.
-        let side = side(120.0, mu, c);
+        let side = side(60.0, mu, c);
         let t = tangent(side.normal);
         for f_n in [0.5, 2.0] {
             let f = add(
@@ -187,6 +187,7 @@ mod tests {
                 t,
                 -(mu * f_n + c),
             );
+            // Walked from right to left: t of the mean normal is −x.
             let (mean_n, mean_t) = (f[1], -f[0]);
             let limit = wide.coefficient() * mean_n + wide.cohesion;
             assert!((mean_t + limit).abs() < 1e-12, "{mean_t} {limit}");
@@ -197,19 +198,16 @@ mod tests {
     fn friction_that_is_mobilised_narrows_the_cone_of_its_side() {
         let mu = 20_f64.to_radians().tan();
         let walls = [side(60.0, mu, 0.0), side(120.0, mu, 0.0)];
-        // It slid down the first wall along t (150 degrees): friction points to −30, the force of that wall to 40 degrees.
-        let beyond = |angle: f64| {
-            beyond_sum(
-                force(angle, 1.0),
-                [&walls[0], &walls[1]],
-                [Some(-1.0), None],
-            )
+        // It slid down the wall before the corner along t (210 degrees): friction points to 30, and the force of that wall to
+        // 100 degrees; the corner gives nothing steeper on that side.
+        let beyond = |angle: f64, mobilised: f64| {
+            let both = [&walls[1], &walls[0]];
+            beyond_sum(force(angle, 1.0), both, [Some(mobilised), None])
         };
-        assert!(beyond(41.0) <= 0.0 && beyond(139.0) <= 0.0 && beyond(39.0) > 0.0);
-        // The other way: the wall gives 80 degrees, and the corner nothing flatter.
-        let other =
-            |angle: f64| beyond_sum(force(angle, 1.0), [&walls[0], &walls[1]], [Some(1.0), None]);
-        assert!(other(79.0) > 0.0 && other(81.0) <= 0.0);
+        assert!(beyond(41.0, -1.0) <= 0.0 && beyond(99.0, -1.0) <= 0.0);
+        assert!(beyond(39.0, -1.0) > 0.0 && beyond(101.0, -1.0) > 0.0);
+        // With friction the other way that wall gives 140 degrees.
+        assert!(beyond(101.0, 1.0) <= 0.0 && beyond(139.0, 1.0) <= 0.0 && beyond(141.0, 1.0) > 0.0);
     }
 
     #[test]

@@ -5,15 +5,28 @@
 //! minus to plus at a closest point, and at an end of an element it points past the end.
 
 use crate::contact::projection::Spot;
-use crate::fem::lagrange::{MAX_NODES, shape};
+use crate::fem::lagrange::{MAX_NODES, Shape, shape};
 use crate::scene::model::Surface;
+use std::sync::LazyLock;
 
 /// Intervals in which an element of m > 2 nodes is searched, for each of its nodes but one.
 const INTERVALS: usize = 4;
-/// Most halvings of an interval: down to neighbouring numbers.
-const HALVINGS: u32 = 60;
+/// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
+const STEPS: u32 = 60;
 /// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
 const BULGE: f64 = 0.5;
+
+/// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
+static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
+    let of = |m: usize| {
+        let intervals = if m == 2 { 1 } else { INTERVALS * (m - 1) };
+        let at = |k: usize| -1.0 + 2.0 * k as f64 / intervals as f64;
+        (0..=intervals).map(|k| (at(k), shape(m, at(k)))).collect()
+    };
+    (0..=MAX_NODES)
+        .map(|m| if m < 2 { Vec::new() } else { of(m) })
+        .collect()
+});
 
 /// A point of a surface that is closer than its neighbours on the same element.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,11 +49,18 @@ pub fn find(
     feet: &mut Vec<Foot>,
 ) {
     feet.clear();
+    // Nodes lie on the curves: none of them is closer than the closest point, and few elements reach that far.
+    let chains = candidates.iter().map(|&surface| &surfaces[surface]);
+    let nodes = chains
+        .filter(|chain| !chain.endless)
+        .flat_map(|chain| chain.elements.iter().flatten());
+    let squares = nodes.map(|&n| squared([point[0] - positions[n][0], point[1] - positions[n][1]]));
+    let reach = squares.fold(f64::INFINITY, f64::min).sqrt() + slack;
     let mut least = f64::INFINITY;
     for &surface in candidates {
         let chain = &surfaces[surface];
         for (element, nodes) in chain.elements.iter().enumerate() {
-            if !chain.endless && lies_beyond(nodes, positions, point, least + slack) {
+            if !chain.endless && lies_beyond(nodes, positions, point, reach.min(least + slack)) {
                 continue;
             }
             let mut found = |xi: f64| {
@@ -69,54 +89,61 @@ pub fn find(
 
 /// Gives every local minimum of the distance over an element.
 fn minima(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], found: &mut impl FnMut(f64)) {
-    let slope = |xi: f64| slope(nodes, positions, point, xi);
-    let m = nodes.len();
-    let intervals = if m == 2 { 1 } else { INTERVALS * (m - 1) };
-    let at = |k: usize| -1.0 + 2.0 * k as f64 / intervals as f64;
-    let mut left = slope(-1.0);
-    if left >= 0.0 {
+    let grid = &GRID[nodes.len()];
+    let slope = |s: &Shape| slope(nodes, positions, point, s).0;
+    let mut left = (-1.0, slope(&grid[0].1));
+    if left.1 >= 0.0 {
         found(-1.0);
     }
-    for k in 0..intervals {
-        let right = slope(at(k + 1));
-        if left < 0.0 && right >= 0.0 && !(k + 1 == intervals && right == 0.0) {
-            found(root(slope, [at(k), at(k + 1)], [left, right]));
+    for (xi, s) in &grid[1..] {
+        let right = (*xi, slope(s));
+        let at_end = *xi == 1.0 && right.1 == 0.0;
+        if left.1 < 0.0 && right.1 >= 0.0 && !at_end {
+            found(root(nodes, positions, point, [left.0, right.0]));
         }
         left = right;
     }
-    if left <= 0.0 {
+    if left.1 <= 0.0 {
         found(1.0);
     }
 }
 
-/// A root of a function that changes its sign from minus to plus: false position, halved where that is slow.
-fn root(f: impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2], [mut fa, mut fb]: [f64; 2]) -> f64 {
-    for k in 0..2 * HALVINGS {
-        let middle = 0.5 * (a + b);
-        let secant = (a * fb - b * fa) / (fb - fa);
-        let inside = k % 2 == 0 && secant > a && secant < b;
-        let x = if inside { secant } else { middle };
-        if x <= a || x >= b {
-            break;
+/// The root of (x − p) · x' between two ξ between which it changes its sign from minus to plus: Newton's method, and halving
+/// where that leaves the interval.
+fn root(
+    nodes: &[usize],
+    positions: &[[f64; 2]],
+    point: [f64; 2],
+    [mut low, mut high]: [f64; 2],
+) -> f64 {
+    let mut xi = 0.5 * (low + high);
+    for _ in 0..STEPS {
+        let (value, rise) = slope(nodes, positions, point, &shape(nodes.len(), xi));
+        let newton = xi - value / rise;
+        if (newton - xi).abs() <= f64::EPSILON {
+            return newton.clamp(low, high);
         }
-        let fx = f(x);
-        if fx == 0.0 {
-            return x;
-        }
-        if fx < 0.0 {
-            (a, fa) = (x, fx);
+        if value < 0.0 {
+            low = xi;
         } else {
-            (b, fb) = (x, fx);
+            high = xi;
         }
+        xi = if newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
     }
-    if -fa < fb { a } else { b }
+    xi
 }
 
-/// (x − p) · x' at ξ.
-fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], xi: f64) -> f64 {
-    let s = shape(nodes.len(), xi);
+/// (x − p) · x' at ξ, and its derivative by ξ.
+fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> (f64, f64) {
     let (x, d) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
-    (x[0] - point[0]) * d[0] + (x[1] - point[1]) * d[1]
+    let dd = blend(nodes, positions, &s.dd);
+    let to = [x[0] - point[0], x[1] - point[1]];
+    let rise = squared(d) + to[0] * dd[0] + to[1] * dd[1];
+    (to[0] * d[0] + to[1] * d[1], rise)
 }
 
 /// ξ of the foot on the endless straight line through an element's ends.
@@ -124,8 +151,7 @@ fn on_line(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
     let (start, end) = (place(nodes, positions, -1.0), place(nodes, positions, 1.0));
     let along = [end[0] - start[0], end[1] - start[1]];
     let to = [point[0] - start[0], point[1] - start[1]];
-    let squared = along[0] * along[0] + along[1] * along[1];
-    2.0 * (to[0] * along[0] + to[1] * along[1]) / squared.max(f64::MIN_POSITIVE) - 1.0
+    2.0 * (to[0] * along[0] + to[1] * along[1]) / squared(along).max(f64::MIN_POSITIVE) - 1.0
 }
 
 /// Position of a point of an element.
@@ -159,8 +185,12 @@ fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) ->
     })
 }
 
+fn squared(v: [f64; 2]) -> f64 {
+    v[0] * v[0] + v[1] * v[1]
+}
+
 fn length(v: [f64; 2]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1]).sqrt()
+    squared(v).sqrt()
 }
 
 #[cfg(test)]
