@@ -522,7 +522,7 @@ fn problem_05_converges_with_its_mesh() {
         last(&finished(&scene(ROLES[0], &set)), "u_x")
     };
     // The block's corner is a singular point, which is compressed the more the finer the mesh is. St Venant-Kirchhoff
-    // material softens in compression; with it the finer meshes do not get to the end.
+    // material softens in compression; with it the finest mesh does not get to the end.
     for (law, load, limits) in [
         ("svk", "0.6", [1e-3, 1.3e-4]),
         ("neohookean", "1.1", [2.4e-3, 3.7e-4]),
@@ -532,12 +532,6 @@ fn problem_05_converges_with_its_mesh() {
         let errors = [one, two].map(|tip| (tip - four).abs());
         assert!(errors[0] < limits[0] && errors[1] < limits[1], "{errors:?}");
     }
-    let uncut = [
-        ("refine", "2"),
-        ("history.increment", "0.15"),
-        ("history.least", "0.15"),
-    ];
-    assert!(run(&scene(ROLES[0], &uncut)).failure.is_some());
 }
 
 /// Strain energy of all bodies at displacements u: the internal forces have a potential, so it is their work on any way

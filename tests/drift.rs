@@ -39,9 +39,11 @@ fn anchored_nodes_do_not_drift_and_others_do_in_third_order_of_the_increment() {
             let order = f64::log2(before / drifted);
             assert!((2.7..3.3).contains(&order), "{increment}: order {order}");
         }
-        // It costs nothing, and moves the result by no more than what drifted.
+        // It costs nothing, and moves the result by no more than what drifted; but what drifts is never refused, and so
+        // never cut.
         let majors = |run: &Run| run.accepted.iter().map(|a| a.majors).sum::<u32>();
-        assert!(majors(&held) <= majors(&loose), "{increment}");
+        let cut = held.accepted.len() > loose.accepted.len();
+        assert!(cut || majors(&held) <= majors(&loose), "{increment}");
         let end = |run: &Run| run.accepted.last().unwrap().monitors["u_x"];
         assert!((end(&held) - end(&loose)).abs() < drifted * held.stepper.model().length);
     }

@@ -138,7 +138,11 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
             judged::finding(model, &found.finding)
         );
     }
-    if let Some(found) = audit.work.as_ref().filter(|found| found.times() > 1.0) {
+    if let Some(found) = audit
+        .work
+        .as_ref()
+        .filter(|found| found.finding.is_broken())
+    {
         text += &format!(
             "  also: {}: {}\n",
             place(found),
@@ -167,12 +171,16 @@ fn row(model: &Model, law: Law, found: &Found) -> String {
         .finding
         .slave
         .map_or("all", |s| report::slave(model, s));
-    let over = if found.times() <= 1.0 { "" } else { "  BROKEN" };
+    let over = if found.finding.is_broken() {
+        "  BROKEN"
+    } else {
+        ""
+    };
     format!(
         "  {:<11}  {:<8.1e}  {:<8.1e}  {}, {node}{over}\n",
         law.name(),
         found.finding.amount,
-        found.tolerance,
+        found.finding.allowed,
         place(found)
     )
 }

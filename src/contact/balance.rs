@@ -46,6 +46,7 @@ pub fn check(
         law: Law::Balance,
         slave: worst.1.and_then(slave),
         amount: worst.0,
+        allowed: scales.allowed(Law::Balance),
         numbers: Numbers::default(),
     });
     // A body that is given by a matrix may be held by what the matrix stands for.
@@ -60,6 +61,7 @@ pub fn check(
         law: Law::Moments,
         slave: None,
         amount: total.size(scales.length) / scales.force,
+        allowed: scales.allowed(Law::Moments),
         numbers: Numbers::default(),
     });
 }

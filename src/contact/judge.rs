@@ -11,7 +11,8 @@
 //! - in a corner between two sides the force is what both give together ([`super::corner`]);
 //! - every node is in balance, and so are the bodies as a whole with the reactions ([`super::balance`]).
 //!
-//! All amounts are relative to the scene's length or force, and to be compared with one tolerance.
+//! All amounts are relative to the scene's length or force. Lengths and forces have a tolerance each: where stiffnesses leave
+//! forces less exact, places stay as exact as ever.
 
 use crate::contact::anchor::distance;
 use crate::contact::corner::{Side, beyond_sum, beyond_vertex, concave};
@@ -47,7 +48,24 @@ pub struct Seen<'a> {
 pub struct Scales {
     pub length: f64,
     pub force: f64,
-    pub tolerance: f64,
+    /// Largest amounts that are nothing: of lengths over `length`, and of forces over `force`.
+    pub lengths: f64,
+    pub forces: f64,
+}
+
+impl Scales {
+    /// Length up to which two places are the same.
+    pub fn near(&self) -> f64 {
+        self.lengths * self.length
+    }
+
+    /// How large an amount against a law may be.
+    pub fn allowed(&self, law: Law) -> f64 {
+        match law {
+            Law::Penetration | Law::Gap => self.lengths,
+            _ => self.forces,
+        }
+    }
 }
 
 /// A law.
@@ -62,9 +80,10 @@ pub enum Law {
     Tension,
     /// |F_t| <= tan φ F_n + c (force).
     Cone,
-    /// A net slip is opposed by friction at its limit; without that there is none (the lesser of length and force).
+    /// A net slip is opposed by friction at its limit; without that there is none (force that friction is short of its limit,
+    /// where there is a slip).
     Slip,
-    /// Friction opposes the slip of a node that was open before, wherever it touched (the lesser of length and force).
+    /// Friction opposes the slip of a node that was open before, wherever it touched (force).
     Touch,
     /// The forces on every node add up to nothing (force).
     Balance,
@@ -110,8 +129,9 @@ pub struct Finding {
     pub law: Law,
     /// Where (slave number); none of the whole scene, or of a node that is no slave.
     pub slave: Option<usize>,
-    /// How much, relative to the scene's length or force.
+    /// How much, relative to the scene's length or force, and how much is allowed.
     pub amount: f64,
+    pub allowed: f64,
     pub numbers: Numbers,
 }
 
@@ -132,8 +152,6 @@ pub struct Numbers {
 /// A state judged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// How large an amount may be.
-    pub tolerance: f64,
     /// The worst place for every law, in the order of [`Law::ALL`]; none where the law applied nowhere.
     pub worst: [Option<Finding>; 8],
     /// Where friction gave the most work, if it did.
@@ -141,9 +159,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    fn new(tolerance: f64) -> Self {
+    fn new() -> Self {
         Verdict {
-            tolerance,
             worst: [None; 8],
             work: None,
         }
@@ -160,11 +177,11 @@ impl Verdict {
         }
     }
 
-    /// The largest violation, within the tolerance or not.
+    /// The largest violation, within what is allowed or not.
     pub fn largest(&self) -> Option<Finding> {
         let all = self.worst.iter().flatten().copied();
         all.reduce(|worst, next| {
-            if next.amount > worst.amount {
+            if next.times() > worst.times() {
                 next
             } else {
                 worst
@@ -172,15 +189,29 @@ impl Verdict {
         })
     }
 
-    /// The laws that are broken: amounts that are not within the tolerance.
+    /// The laws that are broken: amounts that are not within what is allowed.
     pub fn broken(&self) -> impl Iterator<Item = &Finding> {
-        let within = |f: &&Finding| f.amount <= self.tolerance;
-        self.worst.iter().flatten().filter(move |f| !within(f))
+        self.worst
+            .iter()
+            .flatten()
+            .filter(|found| found.is_broken())
+    }
+}
+
+impl Finding {
+    /// Whether the amount is more than is allowed.
+    pub fn is_broken(&self) -> bool {
+        self.times().is_nan() || self.times() > 1.0
+    }
+
+    /// How many times what is allowed the amount is.
+    pub fn times(&self) -> f64 {
+        self.amount / self.allowed
     }
 }
 
 /// The judge, with the memory that it works in.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Judge {
     feet: Vec<Foot>,
     earlier: Vec<Foot>,
@@ -225,11 +256,24 @@ impl Amounts {
     }
 }
 
+/// Feet and sides that a node has at most, as a rule.
+const FEW: usize = 16;
+
 impl Judge {
+    /// A judge with memory for what is usual.
+    pub fn new() -> Self {
+        feet::prepare();
+        Judge {
+            feet: Vec::with_capacity(FEW),
+            earlier: Vec::with_capacity(FEW),
+            sides: Vec::with_capacity(FEW),
+        }
+    }
+
     /// Judges contact and friction. `contact` gets the interaction force at every node, x and y, as the feet found here
     /// hand it on to the master.
     pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {
-        let mut verdict = Verdict::new(seen.scales.tolerance);
+        let mut verdict = Verdict::new();
         contact.fill([0.0; 2]);
         for slave in 0..seen.slaves.len() {
             self.node(seen, slave, contact, &mut verdict);
@@ -254,11 +298,9 @@ impl Judge {
     fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
         let Slave { node, surfaces, .. } = &seen.slaves[slave];
         let (point, force) = (seen.now[*node], seen.forces[slave]);
-        let Scales {
-            length, tolerance, ..
-        } = seen.scales;
-        let near = tolerance * length;
-        let pressed = size(force) > tolerance * seen.scales.force;
+        let Scales { length, forces, .. } = seen.scales;
+        let near = seen.scales.near();
+        let pressed = size(force) > forces * seen.scales.force;
         feet::find(
             point,
             seen.surfaces,
@@ -272,6 +314,7 @@ impl Judge {
                 law,
                 slave: Some(slave),
                 amount,
+                allowed: seen.scales.allowed(law),
                 numbers,
             });
         };
@@ -426,17 +469,17 @@ fn on_side(seen: &Seen, force: [f64; 2], at: &Touching) -> Amounts {
         ..
     } = numbers;
     let against = f_t * slip.signum();
-    let lesser = |force: f64| (slip.abs() / scales.length).min(force.max(0.0) / scales.force);
-    let at_limit = limit - f_t.abs() <= scales.tolerance * scales.force;
+    let slips = slip.abs() > scales.near();
+    let at_limit = limit - f_t.abs() <= scales.forces * scales.force;
     Amounts {
         tension: (-f_n).max(0.0) / scales.force,
         cone: (f_t.abs() - limit).max(0.0) / scales.force,
         slip: match at.past {
-            Past::Touched(_) => lesser(limit + against),
+            Past::Touched(_) if slips => (limit + against).max(0.0) / scales.force,
             _ => 0.0,
         },
         touch: match at.past {
-            Past::Open(_) if at_limit => lesser(against),
+            Past::Open(_) if slips && at_limit => against.max(0.0) / scales.force,
             _ => 0.0,
         },
         touched: matches!(at.past, Past::Touched(_)),
@@ -476,7 +519,7 @@ fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> 
     let meet = (before.spot.surface == behind.spot.surface).then_some(());
     let numbers = numbers(force, before);
     let slip = match before.past {
-        Past::Touched(slip) if slip.abs() > scales.tolerance * scales.length => slip,
+        Past::Touched(slip) if slip.abs() > scales.near() => slip,
         _ => 0.0,
     };
     if meet.is_some() && concave(before.tangent, behind.tangent).is_none() {
@@ -484,7 +527,8 @@ fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> 
         return Amounts {
             tension: beyond.tension / scales.force,
             cone: beyond.cone / scales.force,
-            slip: slip.abs() / scales.length,
+            // Where it slid onto the vertex, neither side's friction is at its limit.
+            slip: if slip == 0.0 { 0.0 } else { f64::INFINITY },
             touch: 0.0,
             touched: false,
             numbers,
@@ -505,7 +549,7 @@ fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> 
     Amounts {
         tension: 0.0,
         cone,
-        slip: (slip.abs() / scales.length).min(beyond(mobilised) - cone),
+        slip: beyond(mobilised) - cone,
         touch: 0.0,
         touched: false,
         numbers,
@@ -554,8 +598,7 @@ fn signed_gap(foot: &Foot, point: [f64; 2], seen: &Seen) -> f64 {
 }
 
 fn is_past_end(foot: &Foot, point: [f64; 2], seen: &Seen) -> bool {
-    let near = seen.scales.tolerance * seen.scales.length;
-    is_past_end_at(foot, point, seen.surfaces, seen.now, near)
+    is_past_end_at(foot, point, seen.surfaces, seen.now, seen.scales.near())
 }
 
 /// Whether a point lies past an end of the chain that its foot is at, by more than `near`.

@@ -19,15 +19,6 @@ pub struct Found {
     pub increment: u32,
     pub load_factor: f64,
     pub finding: Finding,
-    /// What its amount may be.
-    pub tolerance: f64,
-}
-
-impl Found {
-    /// How many times the tolerance the amount is.
-    pub fn times(&self) -> f64 {
-        self.finding.amount / self.tolerance
-    }
 }
 
 /// A master's node inside the body of slave nodes.
@@ -73,7 +64,6 @@ impl Audit {
             increment: event.position.increment,
             load_factor: event.load_factor,
             finding,
-            tolerance: verdict.tolerance,
         };
         let worst = match marked {
             Some(_) => &mut self.worst_marked,
@@ -102,11 +92,8 @@ impl Audit {
 
     /// The laws that unmarked increments broke.
     pub fn broken(&self) -> impl Iterator<Item = &Found> {
-        let within = |found: &&Found| found.times() <= 1.0;
-        self.worst
-            .iter()
-            .flatten()
-            .filter(move |found| !within(found))
+        let all = self.worst.iter().flatten();
+        all.filter(|found| found.finding.is_broken())
     }
 
     /// The worst place of a law in increments that were not marked.
@@ -117,11 +104,9 @@ impl Audit {
 
 fn keep_worse(worst: &mut Option<Found>, found: Option<Found>) {
     let Some(found) = found else { return };
-    let times = found.times();
-    if worst
-        .as_ref()
-        .is_none_or(|w| times > w.times() || times.is_nan())
-    {
+    let times = found.finding.times();
+    let worse = |worst: &Found| times > worst.finding.times() || times.is_nan();
+    if worst.as_ref().is_none_or(worse) {
         *worst = Some(found);
     }
 }

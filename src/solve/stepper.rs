@@ -83,7 +83,7 @@ impl Stepper {
             linearised: false,
             lemke: None,
             before: Vec::new(),
-            bench: Bench::default(),
+            bench: Bench::new(&model),
             model,
         };
         stepper.find_spots();

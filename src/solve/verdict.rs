@@ -8,6 +8,7 @@
 
 use crate::contact::balance::{self, Forces};
 use crate::contact::judge::{Finding, Judge, Law, Scales, Seen, Verdict};
+use crate::scene::Model;
 use crate::scene::spec::{SlipCount, Sticking, Ties};
 use crate::solve::event::{Failure, Forced, Norms, Outcome};
 use crate::solve::place::Ground;
@@ -19,7 +20,7 @@ const TOLERANCE: f64 = 1e-8;
 const TIMES: f64 = 10.0;
 
 /// The judge, with the memory that it works in.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Bench {
     judge: Judge,
     /// Positions of all nodes in the last accepted state.
@@ -33,6 +34,22 @@ pub struct Bench {
     load: Vec<f64>,
 }
 
+impl Bench {
+    /// Memory for a scene.
+    pub fn new(model: &Model) -> Self {
+        let (nodes, slaves) = (model.nodes.len(), model.slaves.len());
+        Bench {
+            judge: Judge::new(),
+            before: Vec::with_capacity(nodes),
+            forces: Vec::with_capacity(slaves),
+            brought: Vec::with_capacity(slaves),
+            earlier: Vec::with_capacity(slaves),
+            contact: vec![[0.0; 2]; nodes],
+            load: vec![0.0; model.dofs.len()],
+        }
+    }
+}
+
 impl Stepper {
     /// Accepts a converged state, or does with it what the judge makes necessary.
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
@@ -44,7 +61,7 @@ impl Stepper {
             return self.accept(after, verdict, Some(worst));
         }
         if worst.law == Law::Slip && !self.state.net {
-            self.count_net_slip(after);
+            self.count_net_slip();
             return Outcome::Refused { why: worst, after };
         }
         let why = Failure::Refused(worst);
@@ -62,11 +79,12 @@ impl Stepper {
     /// Judges the present state, at the end of a major iteration whose norms these are.
     pub(super) fn judge_state(&mut self, after: &Norms) -> Verdict {
         let (model, state, bench) = (&self.model, &self.state, &mut self.bench);
-        let tolerance = state.controls.settings.tolerance.max(after.limit);
+        let tolerance = state.controls.settings.tolerance;
         let scales = Scales {
             length: model.length,
             force: after.scale.max(f64::MIN_POSITIVE),
-            tolerance: (TIMES * tolerance).max(TOLERANCE),
+            lengths: (TIMES * tolerance).max(TOLERANCE),
+            forces: (TIMES * tolerance.max(after.limit)).max(TOLERANCE),
         };
         bench.before.clear();
         let at_start = model.dofs.first.iter().zip(&model.nodes);
@@ -86,7 +104,6 @@ impl Stepper {
         bench
             .earlier
             .extend(state.start.nodes.iter().map(|node| node.f_t));
-        bench.contact.resize(model.nodes.len(), [0.0; 2]);
         let now = &self.system.positions;
         let seen = Seen {
             surfaces: &model.surfaces,
@@ -100,8 +117,7 @@ impl Stepper {
             scales,
         };
         let mut verdict = bench.judge.interface(&seen, &mut bench.contact);
-        bench.load.clear();
-        bench.load.resize(model.dofs.len(), 0.0);
+        bench.load.fill(0.0);
         for load in &model.loads {
             bench.load[load.dof] += load.value * load.scale.at(state.reached);
         }
@@ -127,8 +143,9 @@ impl Stepper {
 
     /// Gives the nodes that touched when the increment started their anchors back, for the rest of the attempt, and goes on
     /// with another major iteration.
-    fn count_net_slip(&mut self, after: Norms) {
-        let near = TOLERANCE.max(TIMES * after.limit) * self.model.length;
+    fn count_net_slip(&mut self) {
+        let tolerance = self.state.controls.settings.tolerance;
+        let near = (TIMES * tolerance).max(TOLERANCE) * self.model.length;
         let ground = Ground {
             surfaces: &self.model.surfaces,
             positions: &self.system.positions,

@@ -1,5 +1,6 @@
 //! The residual over the major iterations of the shown increment, on a log scale, with the limit it must get under.
 
+use crate::debug::report;
 use crate::solve::Norms;
 use crate::tui::app::App;
 use crate::tui::canvas::Canvas;
@@ -15,6 +16,8 @@ use ratatui::widgets::Widget;
 
 /// Width of the labels at the axis, the axis included.
 const LABELS: u16 = 7;
+/// Height from which on there is a line for the judge.
+const ROOM_FOR_JUDGE: u16 = 7;
 /// Most columns between two major iterations.
 const SPREAD: usize = 14;
 
@@ -44,16 +47,41 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Span::styled("  ┄ limit ", theme.faint),
         Span::raw(short(last.limit)),
     ]);
-    draw::lines(buffer, inner, &[caption]);
-    // A row for the caption above, a row for the numbers of the iterations below.
-    if inner.height >= 5 && inner.width > LABELS + 4 {
+    let mut above = vec![caption];
+    above.extend(judged(view, theme).filter(|_| inner.height >= ROOM_FOR_JUDGE));
+    draw::lines(buffer, inner, &above);
+    let above = above.len() as u16;
+    // A row for the numbers of the iterations below.
+    if inner.height >= above + 4 && inner.width > LABELS + 4 {
         let plot = Rect {
-            y: inner.y + 1,
-            height: inner.height - 1,
+            y: inner.y + above,
+            height: inner.height - above,
             ..inner
         };
         chart(buffer, plot, &view.residuals, theme);
     }
+}
+
+/// What the judge found worst of the last accepted increment; none before the first.
+fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
+    let verdict = view.frame().state.start.verdict.as_ref()?;
+    let worst = verdict.largest()?;
+    let (sign, style) = match worst.is_broken() {
+        true => ("✗", theme.warning),
+        false => ("✓", theme.good),
+    };
+    let node = worst.slave.map(|slave| report::slave(&view.model, slave));
+    let place = node.map_or(String::new(), |node| format!(" at {node}"));
+    Some(Line::from(vec![
+        Span::styled(" last accepted ", theme.faint),
+        Span::styled(sign, style),
+        Span::styled(" worst ", theme.faint),
+        Span::raw(format!("{} {}", worst.law.name(), short(worst.amount))),
+        Span::styled(
+            format!("{place}, allowed {}", short(worst.allowed)),
+            theme.faint,
+        ),
+    ]))
 }
 
 /// The vertical axis: decades from the top down, and under them a row for what is exactly zero, if anything is.
