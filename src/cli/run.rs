@@ -9,7 +9,7 @@ use crate::debug::report;
 use crate::debug::snapshot::Snapshot;
 use crate::scene::{Model, Scene};
 use crate::solve::event::Cycle;
-use crate::solve::{Event, Failure, Outcome, Stepper};
+use crate::solve::{Event, Failure, Norms, Outcome, Stepper};
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -137,6 +137,8 @@ struct Run<'a> {
     doubtful: u32,
     /// How often the strategy changed or the increment was cut.
     notes: u32,
+    /// Norms of the accepted increment whose forces are known the least.
+    noisiest: Norms,
     quiet: bool,
     /// Monitors after the last accepted increment.
     monitors: Vec<f64>,
@@ -163,6 +165,7 @@ impl<'a> Run<'a> {
             majors: 0,
             doubtful: 0,
             notes: 0,
+            noisiest: Norms::default(),
             quiet,
             monitors: Vec::new(),
         }
@@ -228,6 +231,12 @@ impl<'a> Run<'a> {
     /// Tells what the last increment was accepted in spite of.
     fn warn(&mut self) {
         let event = self.stepper.event();
+        let Outcome::Increment { after, .. } = event.outcome else {
+            return;
+        };
+        if after.noise > self.noisiest.noise {
+            self.noisiest = after;
+        }
         let although = report::reservations(&self.scene.model, event);
         if although.is_empty() {
             return;
@@ -249,6 +258,9 @@ impl<'a> Run<'a> {
                 "warning: {} increments in all were accepted like this",
                 self.doubtful
             ));
+        }
+        if let Some(left) = report::accuracy(&self.noisiest) {
+            tell(&format!("warning: {left}"));
         }
         if self.notes > MOST_WARNINGS && !args.quiet {
             tell(&format!(

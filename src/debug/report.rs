@@ -5,7 +5,7 @@ use crate::debug::judged;
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
 use crate::solve::rounds::{Round, Stop};
-use crate::solve::{Event, Failure, Intervention, NotFound, Outcome, Position, census};
+use crate::solve::{Event, Failure, Intervention, Norms, NotFound, Outcome, Position, census};
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -208,10 +208,11 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: refused: {}; goes on, and from here on net slip counts",
             judged::finding(model, why)
         ),
-        Outcome::Increment { last, .. } => {
+        Outcome::Increment { after, last, .. } => {
             let end = if *last { "; the history is done" } else { "" };
+            let left = accuracy(after).map_or(String::new(), |left| format!("; {left}"));
             format!(
-                "{at}: load {} accepted{}{end}",
+                "{at}: load {} accepted{}{left}{end}",
                 event.load_factor,
                 reservations(model, event)
             )
@@ -385,6 +386,9 @@ pub fn advice(failure: &Failure) -> &'static str {
         Failure::Refused(_) => {
             "a smaller history.increment or history.least (settings.strategy=ladder cuts by itself), or another mesh of the surface"
         }
+        Failure::RoundOff { .. } => {
+            "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid"
+        }
         Failure::Jammed { .. } => {
             "to move the node out of the surface, to free its support, or to turn the surface (reverse)"
         }
@@ -437,6 +441,10 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         Failure::Refused(found) => {
             format!("refused, since {}", judged::finding(model, found))
         }
+        Failure::RoundOff { noise } => format!(
+            "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
+            Norms::LOUDEST
+        ),
         Failure::Jammed { slave: s, gap } => format!(
             "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
             slave(model, *s),
@@ -470,6 +478,16 @@ fn not_found(why: NotFound) -> String {
             if states == 1 { "it" } else { "one" }
         ),
     }
+}
+
+/// What accuracy round-off leaves; none where it leaves enough.
+pub fn accuracy(norms: &Norms) -> Option<String> {
+    (norms.noise > Norms::AUDIBLE).then(|| {
+        format!(
+            "forces are known to about {:.0e} of the loads: that is the round-off of the stiffest ones",
+            norms.noise
+        )
+    })
 }
 
 fn motion(rigid: &RigidMotion) -> String {

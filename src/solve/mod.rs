@@ -6,6 +6,7 @@
 //! - [`minor`]: a minor iteration at one slave node; [`frozen`]: the interface problem by itself.
 //! - [`census`] and [`lemke`]: what finds a consistent state of it, all nodes together.
 //! - `place`: where the slave nodes stand; `verdict`: what becomes of a state that the judge refuses.
+//! - `sizes`: what is large, what is nothing, and what double precision leaves.
 //! - [`rounds`]: cycles of major iterations.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
@@ -21,6 +22,7 @@ pub mod minor;
 mod place;
 pub mod rounds;
 pub mod singular;
+mod sizes;
 pub mod state;
 pub mod stepper;
 pub mod system;

@@ -627,7 +627,9 @@ impl Stepper {
         let controls = &self.state.controls;
         let helps = !matches!(
             why,
-            Failure::Singular(Singular::Rigid { .. }) | Failure::Jammed { .. }
+            Failure::Singular(Singular::Rigid { .. })
+                | Failure::Jammed { .. }
+                | Failure::RoundOff { .. }
         );
         let half = self.state.piece.halved();
         let least = controls.least * (1.0 - ROUNDING);
@@ -697,20 +699,19 @@ impl Stepper {
         let Some(after) = norms else {
             return self.fail(Failure::Singular(Singular::Unexplained));
         };
-        // The bodies' own unknowns, which come last, are forces.
-        let nodal = self.model.dofs.len() - self.model.dofs.inner;
-        let motions = &self.state.u[..nodal];
-        let size = motions.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let size = self.system.sizes.largest_motion(&self.state.u);
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
         let exact = after.relative <= settings.tolerance;
         let balanced = self.state.reached == self.state.load_factor
             && (exact || (after.relative <= after.limit && after.correction <= STILL))
             && after.interface <= after.limit.max(settings.tolerance);
         let at_limit = self.state.next.major.is_multiple_of(settings.majors);
-        if settled && balanced {
+        let drowned = after.noise > Norms::LOUDEST;
+        if settled && balanced && !drowned {
             return self.finish(after);
         }
-        if at_limit && bounded && settings.at_major_limit == AtLimit::Accept {
+        let accepts = settings.at_major_limit == AtLimit::Accept && !drowned;
+        if at_limit && bounded && accepts {
             self.state.unsettled += 1;
             return self.finish(after);
         }
@@ -720,6 +721,9 @@ impl Stepper {
             return self.fail(Failure::Diverged {
                 relative: after.relative,
             });
+        }
+        if drowned && (at_limit || settled && balanced) {
+            return self.fail(Failure::RoundOff { noise: after.noise });
         }
         if settings.at_major_limit == AtLimit::Stop
             && let Some(round) = self.find_round()

@@ -74,6 +74,7 @@ pub enum Reason {
     Refused,
     NoAnswer,
     NotFound,
+    RoundOff,
 }
 
 impl Reason {
@@ -88,6 +89,7 @@ impl Reason {
             Reason::Jammed => 'j',
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
+            Reason::RoundOff => 'r',
         }
     }
 }
@@ -104,6 +106,7 @@ impl From<&Failure> for Reason {
             Failure::Jammed { .. } => Reason::Jammed,
             Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
+            Failure::RoundOff { .. } => Reason::RoundOff,
             Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
         }
     }
@@ -122,6 +125,7 @@ impl fmt::Display for Reason {
             Reason::Refused => "refused",
             Reason::NoAnswer => "no-answer",
             Reason::NotFound => "not-found",
+            Reason::RoundOff => "round-off",
         })
     }
 }
