@@ -1,9 +1,13 @@
-//! Sizes far from one: answers of zero, other units, and stiffnesses that double precision cannot carry.
+//! Sizes far from one: answers of zero, other units, stiffnesses that double precision cannot carry; and scenes so large
+//! that time and memory decide.
 
 mod common;
+#[path = "common/program.rs"]
+mod program;
 
 use common::{Run, run, scene};
 use stickslip::scene::Scene;
+use stickslip::scene::effort::Estimate;
 use stickslip::scene::spec::{BodySpec, Component, LoadSpec, Material, Nodes, Point, Spec};
 use stickslip::solve::{Failure, Norms, Outcome};
 
@@ -249,4 +253,172 @@ fn a_stiff_beam_that_swings_without_a_force_is_no_matter_of_round_off() {
         monitors: [(name: "y", of: Displacement(node: "b.end", component: y))])"#;
     let run = run(&Scene::from_text("swing.ron", text, &[]).unwrap());
     assert!((finished(&run).monitors["y"] - 1f64.sin()).abs() < 1e-12);
+}
+
+#[test]
+fn the_program_says_what_accuracy_is_left_and_fails_where_none_is() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = format!(
+        "{}/tests/scales/wrong-EA1e16.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    let ran = |stiffness: &str| {
+        std::fs::write(
+            directory.path().join("strip.ron"),
+            text.replace("1e16", stiffness),
+        )
+        .unwrap();
+        program::program(directory.path(), &["run", "-q", "strip.ron"])
+            .output()
+            .unwrap()
+    };
+    let [exact, coarse, none] = ["1e6", "1e10", "1e16"].map(ran);
+    assert_eq!([&exact, &coarse, &none].map(program::code), [0, 0, 3]);
+    assert_eq!(program::err(&exact), "");
+    let left = "warning: forces are known to about 6e-6 of the loads";
+    assert!(
+        program::err(&coarse).contains(left),
+        "{}",
+        program::err(&coarse)
+    );
+    let cannot = "double precision cannot carry this scene";
+    assert!(
+        program::err(&none).contains(cannot),
+        "{}",
+        program::err(&none)
+    );
+}
+
+#[test]
+fn a_long_master_is_not_condensed_to_a_dense_matrix() {
+    let scene = file("mem-1000-elements.ron");
+    let estimate = Estimate::of(&scene.model);
+    assert!(!estimate.condenses);
+    assert!(estimate.condensed.seconds > 100.0 * estimate.augmented.seconds);
+    assert!(estimate.condensed.bytes > 3e9 && estimate.augmented.bytes < 1e8);
+    let began = std::time::Instant::now();
+    let run = run(&scene);
+    // The paper's settings cycle here; that they do so soon is the point.
+    assert!(
+        matches!(failure(&run), Failure::Cycle(_)),
+        "{:?}",
+        run.failure
+    );
+    assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
+}
+
+/// The measured times of the README's table, and what was chosen by the plain ratio of unknowns.
+#[test]
+fn scenes_whose_interface_is_small_are_condensed_and_the_others_are_not() {
+    for (name, set, condensed) in [
+        ("01-pinned-beam-rough-floor", None, true),
+        ("02-two-cantilevers-rough", None, true),
+        ("03-distant-cantilevers", None, false),
+        ("04-cantilever-rigid-circle", None, false),
+        ("05-cantilever-elastic-block", None, false),
+        ("hertz-cylinder-on-block", None, true),
+        (
+            "tests/benches/two-blocks-pressed-sheared.ron",
+            Some(("refine", "2")),
+            true,
+        ),
+        (
+            "tests/benches/two-blocks-pressed-sheared.ron",
+            Some(("refine", "6")),
+            true,
+        ),
+    ] {
+        let set: Vec<_> = set.into_iter().collect();
+        let estimate = Estimate::of(&scene(name, &set).model);
+        assert_eq!(estimate.condenses, condensed, "{name} {estimate:?}");
+    }
+}
+
+#[test]
+fn check_prints_both_estimates_and_what_does_not_fit_is_refused_before_it_starts() {
+    let here = std::env::current_dir().unwrap();
+    let ran = |arguments: &[&str]| program::program(&here, arguments).output().unwrap();
+    let long = "tests/scales/mem-1000-elements.ron";
+    let checked = ran(&["check", long]);
+    assert_eq!(program::code(&checked), 0);
+    let text = program::out(&checked);
+    assert!(
+        text.contains("solver    augmented (auto), estimated: ")
+            && text.contains("not condensed: "),
+        "{text}"
+    );
+    assert!(text.contains(" a major iteration, 3.6 GB"), "{text}");
+    for (command, set) in [
+        ("run", ["settings.memory=0.02", "settings.solver=auto"]),
+        ("check", ["settings.memory=1", "settings.solver=condensed"]),
+        ("run", ["settings.memory=1", "settings.solver=condensed"]),
+    ] {
+        let refused = ran(&[command, long, "--set", set[0], "--set", set[1]]);
+        assert_eq!(program::code(&refused), 2, "{set:?}");
+        let told = program::err(&refused);
+        assert!(told.contains("the scene takes about "), "{told}");
+        assert!(
+            told.contains("settings.memory sets what it may take"),
+            "{told}"
+        );
+        assert_eq!(
+            set[1].ends_with("condensed"),
+            told.contains("settings.solver=augmented takes about 44 MB"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
+fn where_only_the_other_solver_fits_auto_takes_that_one() {
+    let blocks = "tests/benches/two-blocks-pressed-sheared.ron";
+    let with = |memory: &str| {
+        let scene = scene(blocks, &[("refine", "6"), ("settings.memory", memory)]);
+        Estimate::of(&scene.model)
+    };
+    let roomy = with("1");
+    assert!(roomy.condenses && roomy.condensed.bytes < roomy.augmented.bytes);
+    let between = 0.5e-9 * (roomy.condensed.bytes + roomy.augmented.bytes);
+    assert!(with(&between.to_string()).condenses);
+}
+
+/// In blocks of their own: as many contacts as fit, not a thousand.
+#[test]
+fn more_than_a_thousand_contacts_are_solved_and_more_than_fit_are_refused() {
+    let contacts = 1200;
+    let text = blocks(contacts);
+    let set = |memory: &str| [("settings.memory".to_string(), memory.to_string())];
+    let scene = Scene::from_text("many.dat", &text, &set("1")).unwrap();
+    let run = run(&scene);
+    let end = finished(&run);
+    for (k, node) in end.state.nodes.iter().enumerate() {
+        // W = (2, 0.1; 0.1, 1) with q = (-1, 0.5) slides and with (1, 0.5) opens.
+        assert_eq!(node.f_n > 0.0, k % 2 == 1, "{k}");
+        if k % 2 == 1 {
+            assert!((node.f_t.abs() - 0.3 * node.f_n).abs() < 1e-9, "{k}");
+        }
+    }
+    let error = Scene::from_text("many.dat", &text, &set("0.1")).unwrap_err();
+    let told = error.to_string();
+    assert!(
+        told.contains("many.dat:2:") && told.contains("1200 contacts"),
+        "{told}"
+    );
+}
+
+fn blocks(contacts: usize) -> String {
+    let joined = |numbers: &mut dyn Iterator<Item = String>| numbers.collect::<Vec<_>>().join(" ");
+    let ends = joined(&mut (1..=contacts).map(|k| (2 * k).to_string()));
+    let begins = joined(&mut (0..=contacts).map(|k| k.to_string()));
+    let columns = joined(&mut (0..contacts).map(|k| k.to_string()));
+    let values = joined(&mut (0..contacts).map(|k| format!("{k} 2 0.1 0.1 1")));
+    let q =
+        joined(&mut (0..contacts).map(|k| if k % 2 == 1 { "-1 0.5" } else { "1 0.5" }.to_string()));
+    let mu = joined(&mut (0..contacts).map(|_| "0.3".to_string()));
+    let size = 2 * contacts;
+    let next = contacts + 1;
+    format!(
+        "2\n{contacts}\n1\n{size} {size}\n{contacts} {contacts} {contacts}\n{ends}\n{ends}\n{next} {contacts}\n{begins}\n{columns}\n{values}\n{q}\n{mu}\n"
+    )
 }

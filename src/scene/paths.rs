@@ -749,6 +749,10 @@ fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
         &place.field("tolerance"),
         Scalar::Number(&mut settings.tolerance),
     );
+    visit(
+        &place.field("memory"),
+        Scalar::Optional(&mut settings.memory),
+    );
 }
 
 fn monitor(place: &Place, monitor: &mut MonitorSpec, visit: &mut Visit<'_>) {

@@ -594,6 +594,9 @@ pub struct Settings {
     pub at_major_limit: AtLimit,
     /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
     pub tolerance: f64,
+    /// Memory that the scene may take, in GB. Default: what is free.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub memory: Option<f64>,
 }
 
 impl Default for Settings {
@@ -614,6 +617,7 @@ impl Default for Settings {
             at_cycle: AtCycle::default(),
             at_major_limit: AtLimit::default(),
             tolerance: 1e-11,
+            memory: None,
         }
     }
 }
@@ -713,7 +717,8 @@ pub enum ResidualMethod {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Solver {
-    /// Condensed where the bodies have many times more unknowns than the interface, else augmented.
+    /// Condensed where the bodies have many times more unknowns than the interface and their displacements there are few
+    /// enough for it to be cheaper, else augmented; the other one where only that fits the memory.
     #[default]
     Auto,
     /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.

@@ -118,6 +118,11 @@ impl Stepper {
         self.linearise().then(|| self.system.norms())
     }
 
+    /// Whether the minor iterations are solved on the condensed interface.
+    pub fn condenses(&self) -> bool {
+        self.system.condenses(&self.state.controls.settings)
+    }
+
     /// The frozen interface problem of the present major iteration; none where the bodies cannot be condensed.
     pub fn frozen(&mut self) -> Option<Frozen> {
         if !self.linearise() {

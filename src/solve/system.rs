@@ -9,10 +9,11 @@ use crate::contact::table1::{Equation, Motion};
 use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
+use crate::scene::effort::{Estimate, condensable};
 use crate::scene::model::{Beam, BodyKind, Model};
-use crate::scene::spec::{Component, Geometry, Solver, Sticking};
+use crate::scene::spec::{Component, Geometry, Sticking};
 use crate::scene::{Mode, Settings};
-use crate::solve::bodies::{Bodies, condensable};
+use crate::solve::bodies::Bodies;
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
 use crate::solve::frozen::{Frozen, FrozenNode};
@@ -26,8 +27,6 @@ use std::sync::Arc;
 /// the interface, where the springs that hold a loose body cost digits before they drop out.
 const SUSPICIOUS_WHOLE: f64 = 1e12;
 const SUSPICIOUS_INTERFACE: f64 = 1e9;
-/// How many times more unknowns than the interface the bodies must have for condensing to pay (measured: README).
-const MANY_TIMES: usize = 8;
 /// An equation whose coefficients are all smaller than this (the largest is one) is empty.
 const EMPTY: f64 = 1e-12;
 
@@ -60,6 +59,7 @@ pub struct System {
     /// Whether `whole` is scaled for the present linearisation.
     scaled: bool,
     bodies: Option<Bodies>,
+    estimate: Estimate,
     /// Whether the scene's bodies may be condensed by [`Bodies`].
     condensable: bool,
     /// The elements that `whole` has places for.
@@ -103,6 +103,7 @@ impl System {
             whole: None,
             scaled: false,
             bodies: None,
+            estimate: Estimate::of(model),
             condensable: condensable(model),
             pairing: Vec::new(),
             frames: Vec::new(),
@@ -127,6 +128,11 @@ impl System {
         }
     }
 
+    /// Whether the minor iterations are solved on the condensed interface with these settings.
+    pub fn condenses(&self, settings: &Settings) -> bool {
+        self.estimate.is_condensed(settings.solver)
+    }
+
     /// Current positions of all nodes at displacements u.
     pub fn place(&mut self, model: &Model, u: &[f64]) {
         for (n, position) in self.positions.iter_mut().enumerate() {
@@ -143,7 +149,7 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
-        if condenses(model, &state.controls.settings) && self.condensable {
+        if self.condenses(&state.controls.settings) && self.condensable {
             self.linearise_in(Layout::Bodies, model, state)
         } else {
             self.linearise_in(Layout::Whole, model, state)
@@ -547,7 +553,7 @@ impl System {
     /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
     /// bodies after [`System::recover`].
     pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
-        if condenses(model, &state.controls.settings) {
+        if self.condenses(&state.controls.settings) {
             self.solve_condensed(model, state)
         } else {
             self.solve_augmented(model, state)
@@ -672,6 +678,9 @@ impl System {
     /// [`SolveError`] where the bodies cannot be condensed.
     pub fn frozen(&mut self, model: &Model, state: &State) -> Result<Frozen, SolveError> {
         if !self.condensed.fresh {
+            if self.estimate.condensed.bytes > self.estimate.budget {
+                return Err(SolveError::OutOfMemory);
+            }
             self.condensed.norm = self.condense(model, state)?;
             self.condensed.fresh = true;
         }
@@ -922,13 +931,4 @@ fn pairing(model: &Model, node: &NodeState) -> Option<(usize, usize)> {
     node.spot
         .filter(|s| !model.surfaces[s.surface].rigid)
         .map(|s| (s.surface, s.element))
-}
-
-/// Whether the minor iterations of a scene are solved on the condensed interface with these settings.
-pub fn condenses(model: &Model, settings: &Settings) -> bool {
-    match settings.solver {
-        Solver::Augmented => false,
-        Solver::Condensed => true,
-        Solver::Auto => 2 * model.slaves.len() * MANY_TIMES <= model.dofs.equations,
-    }
 }
