@@ -80,7 +80,7 @@ fn model(slaves: usize) -> Model {
         prescribed: vec![],
         path: vec![0.0, 1.0],
         increment: 0.1,
-        least: 0.1,
+        least: None,
         settings: Settings::default(),
         monitors: vec![],
         length: 4.0,

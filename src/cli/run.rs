@@ -3,9 +3,10 @@
 use super::interrupt::Interrupt;
 use super::sink::{Sent, Sink};
 use super::{Error, Exit, SceneArgs, table, tell};
-use crate::debug::diagnosis::{self, Diagnosis};
+use crate::debug::diagnosis::{self, Cause, Diagnosis};
 use crate::debug::files::Output;
 use crate::debug::report;
+use crate::debug::smaller::smaller;
 use crate::debug::snapshot::Snapshot;
 use crate::scene::{Model, Scene};
 use crate::solve::event::Cycle;
@@ -297,29 +298,43 @@ impl<'a> Run<'a> {
                     | Failure::LadderEnded { first, .. } => first,
                     failure => failure,
                 };
+                let mut none = matches!(failure, Failure::NoAnswer { .. });
                 if let Failure::Cycle(cycle) = cycle {
-                    self.diagnose(cycle);
+                    none |= self.diagnose(cycle);
+                }
+                if none {
+                    self.look_for_smaller();
                 }
                 Exit::Unconverged
             }
         }
     }
 
-    /// Tells why the minor iterations cycle, and what gets out.
-    fn diagnose(&mut self, cycle: &Cycle) {
+    /// Tells whether a smaller increment has a consistent state, where this one has none.
+    fn look_for_smaller(&mut self) {
+        let state = self.stepper.state().clone();
+        let mut scratch = Stepper::new(self.stepper.model().clone());
+        if let Some(found) = smaller(&mut scratch, &state) {
+            tell(&format!("  {}", found.words()));
+        }
+    }
+
+    /// Tells why the minor iterations cycle, and what gets out; returns whether nothing can.
+    fn diagnose(&mut self, cycle: &Cycle) -> bool {
         let Some(problem) = self.stepper.frozen() else {
-            return;
+            return false;
         };
         let Some(problem) = diagnosis::cycling(problem, cycle) else {
             tell(&format!("  not diagnosed: {}", diagnosis::too_many(cycle)));
-            return;
+            return false;
         };
         let Some(diagnosis) = Diagnosis::of(&problem) else {
-            return;
+            return false;
         };
         for line in diagnosis::words(&self.scene.model, &problem, &diagnosis) {
             tell(&format!("  {line}"));
         }
+        diagnosis.cause == Cause::NoAnswer
     }
 
     fn tell_summary(&self, monitors: bool) {

@@ -1195,7 +1195,7 @@ mod tests {
             prescribed: vec![],
             path: vec![0.0, 1.0],
             increment: 0.1,
-            least: 0.1,
+            least: None,
             settings: Settings::default(),
             monitors: vec![],
             length: 1.0,

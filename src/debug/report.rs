@@ -365,7 +365,7 @@ pub fn advice(failure: &Failure) -> &'static str {
             "settings.strategy=ladder, or the debugger, to force one of the nodes to its third mode, or another history.increment"
         }
         Failure::NoAnswer { .. } => {
-            "a smaller history.least, other loads or friction, or a prescribed displacement instead of a load"
+            "other loads or friction, or a prescribed displacement instead of a load"
         }
         Failure::LadderEnded { .. } => {
             "a smaller history.least, another history.increment, or the debugger, to see where it stands"
@@ -373,9 +373,7 @@ pub fn advice(failure: &Failure) -> &'static str {
         Failure::NotFound(_) => "settings.strategy=ladder, or a smaller history.increment",
         Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
         Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
-        Failure::MajorCycle(_) => {
-            "a smaller history.increment; at a corner, a rounded one, or two surfaces with the node a slave of each"
-        }
+        Failure::MajorCycle(_) => "a smaller history.increment; at a corner, a rounded one",
         Failure::Singular(Singular::Rigid { .. }) => {
             "a support against that motion, or slave nodes that start sliding or fixed"
         }

@@ -18,6 +18,8 @@ use std::fmt;
 
 /// How many times more unknowns than the interface the bodies must have for condensing to pay (measured: README).
 const MANY_TIMES: usize = 8;
+/// How many times dearer by the estimate condensing must be to go against that rule: the estimate is rougher than it.
+const CLEARLY: f64 = 8.0;
 /// Minor iterations of a typical major one.
 const MINORS: f64 = 3.0;
 /// Operations a second: of a sparse LDLᵀ, of a sparse LU of a mesh and of a chain, and of dense matrices.
@@ -104,7 +106,7 @@ impl Estimate {
             bytes: base + 8.0 * whole.entries,
         };
         let small = 2 * model.slaves.len() * MANY_TIMES <= model.dofs.equations;
-        let pays = small && condensed.seconds <= augmented.seconds;
+        let pays = small && condensed.seconds <= CLEARLY * augmented.seconds;
         let fits = |effort: Effort| effort.bytes <= budget;
         Estimate {
             augmented,

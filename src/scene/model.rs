@@ -27,8 +27,8 @@ pub struct Model {
     pub path: Vec<f64>,
     /// Increment of the load factor, positive.
     pub increment: f64,
-    /// Size below which an increment that fails is not cut.
-    pub least: f64,
+    /// Size below which an increment that fails is not cut; none stands for a 64th of the increment in force.
+    pub least: Option<f64>,
     pub settings: Settings,
     pub monitors: Vec<Monitor>,
     /// Diagonal of the bounding box of all bodies' nodes: the scene's unit of length for tolerances.

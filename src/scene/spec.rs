@@ -553,8 +553,13 @@ pub struct History {
 impl History {
     /// Size below which an increment is not cut.
     pub fn least(&self) -> f64 {
-        self.least.unwrap_or(self.increment / LEAST)
+        least(self.least, self.increment)
     }
+}
+
+/// Size below which an increment of this size is not cut, if `given` does not say.
+pub fn least(given: Option<f64>, increment: f64) -> f64 {
+    given.unwrap_or(increment / LEAST)
 }
 
 /// How many times smaller than an increment the smallest is that it is cut to, where the scene does not say.

@@ -2,7 +2,7 @@
 
 use crate::contact::table1::t_max;
 use crate::scene::effort::Estimate;
-use crate::scene::spec::{Friction, Settings, Touch};
+use crate::scene::spec::{Friction, Settings, Touch, least};
 use crate::scene::{Mode, Model};
 use crate::solve::event::Forced;
 use crate::solve::state::{NodeState, Piece, Search, State, Status};
@@ -167,7 +167,7 @@ impl State {
         }
         let controls = Arc::make_mut(&mut self.controls);
         controls.increment = increment;
-        controls.least = controls.least.min(increment);
+        controls.least = least(model.least, increment).min(increment);
         self.piece = Piece::whole(model, &self.start, increment);
         self.start_again();
         Ok(())

@@ -8,7 +8,7 @@ use crate::contact::judge::Verdict;
 use crate::contact::projection::Spot;
 use crate::contact::strategy::{LADDER, limit};
 use crate::fem::assembly::history_len;
-use crate::scene::spec::{FrictionLimit, InitialState, SlipCount, Sticking, Strategy};
+use crate::scene::spec::{FrictionLimit, InitialState, SlipCount, Sticking, Strategy, least};
 use crate::scene::{Friction, Mode, Model, Settings};
 use crate::solve::event::{Cycle, Failure, Forced, Position};
 use crate::solve::rounds::Rounds;
@@ -335,7 +335,7 @@ impl State {
         let load_factor = model.path[0];
         let controls = Controls {
             increment: model.increment,
-            least: model.least,
+            least: least(model.least, model.increment),
             friction: model.slaves.iter().map(|s| s.friction).collect(),
             settings: model.settings,
         };

@@ -630,12 +630,11 @@ impl Stepper {
     /// is at its smallest.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
         let controls = &self.state.controls;
-        let helps = !matches!(
-            why,
-            Failure::Singular(Singular::Rigid { .. })
-                | Failure::Jammed { .. }
-                | Failure::RoundOff { .. }
-        );
+        let helps = match why {
+            Failure::Jammed { .. } | Failure::RoundOff { .. } => false,
+            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
+            _ => true,
+        };
         let half = self.state.piece.halved();
         let least = controls.least * (1.0 - ROUNDING);
         if controls.settings.strategy != Strategy::Ladder
@@ -651,6 +650,14 @@ impl Stepper {
         self.lemke = None;
         let (why, size) = (why.clone(), half.size());
         Some(Outcome::Cut { why, size })
+    }
+
+    /// Whether nothing holds a body in the modes that the increment starts with, whatever its size.
+    fn starts_loose(&self) -> bool {
+        let start = &self.state.start.nodes;
+        let footing = |s: usize| self.system.footing(s);
+        let found = singular::diagnose(&self.model, &self.system.positions, start, footing);
+        matches!(found, Singular::Rigid { .. })
     }
 
     /// Starts the minor iterations of this major one again, with half the load; false if too little is left of it.

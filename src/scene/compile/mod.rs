@@ -75,7 +75,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         prescribed,
         path: spec.history.path.clone(),
         increment: spec.history.increment,
-        least: spec.history.least(),
+        least: spec.history.least,
         settings,
         monitors,
         length,
