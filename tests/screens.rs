@@ -81,6 +81,7 @@ fn model(slaves: usize) -> Model {
         path: vec![0.0, 1.0],
         increment: 0.1,
         least: None,
+        jumps: Default::default(),
         settings: Settings::default(),
         monitors: vec![],
         length: 4.0,

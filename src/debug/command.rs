@@ -1196,6 +1196,7 @@ mod tests {
             path: vec![0.0, 1.0],
             increment: 0.1,
             least: None,
+            jumps: Default::default(),
             settings: Settings::default(),
             monitors: vec![],
             length: 1.0,

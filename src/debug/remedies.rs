@@ -330,6 +330,7 @@ pub fn end_words(end: &End) -> String {
         End::Failed(Failure::Diverged { .. }) => "diverged".into(),
         End::Failed(Failure::Jammed { .. }) => "jammed".into(),
         End::Failed(Failure::Refused(_)) => "refused".into(),
+        End::Failed(Failure::Leapt { .. }) => "jumps".into(),
         End::Failed(Failure::RoundOff { .. }) => "round-off".into(),
         End::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
         End::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),

@@ -251,7 +251,10 @@ fn pivot(model: &Model, event: &Event) -> String {
 /// What an accepted increment was accepted in spite of; empty where there is nothing.
 pub fn reservations(model: &Model, event: &Event) -> String {
     let Outcome::Increment {
-        unsettled, marked, ..
+        unsettled,
+        marked,
+        jumped,
+        ..
     } = &event.outcome
     else {
         return String::new();
@@ -273,6 +276,9 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     }
     if let Some(found) = marked {
         text += &format!(", although {}", judged::finding(model, found));
+    }
+    if *jumped {
+        text += ", jumped: another branch from here";
     }
     text
 }
@@ -384,6 +390,9 @@ pub fn advice(failure: &Failure) -> &'static str {
         Failure::Refused(_) => {
             "a smaller history.increment or history.least (settings.strategy=ladder cuts by itself), or another mesh of the surface"
         }
+        Failure::Leapt { .. } => {
+            "history.jumps=cut, to go on on the other branch, or a prescribed displacement instead of the load"
+        }
         Failure::RoundOff { .. } => {
             "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid"
         }
@@ -439,6 +448,9 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         Failure::Refused(found) => {
             format!("refused, since {}", judged::finding(model, found))
         }
+        Failure::Leapt { motion, predicted } => format!(
+            "a jump to another branch: it moves by {motion:.3e}, where its tangent and the increments before predict {predicted:.1e}"
+        ),
         Failure::RoundOff { noise } => format!(
             "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
             Norms::LOUDEST

@@ -548,6 +548,28 @@ pub struct History {
     /// `increment`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub least: Option<f64>,
+    /// What an increment does that jumps to another branch of equilibrium (`strategy: ladder`). Default: cut.
+    #[serde(default, skip_serializing_if = "Jumps::is_default")]
+    pub jumps: Jumps,
+}
+
+/// What an increment does that jumps to another branch of equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Jumps {
+    /// It is accepted whole, marked where it moved beyond what its tangent and the increments before it predict.
+    Accept,
+    /// It is cut; where the least increment still jumps, that is accepted, marked.
+    #[default]
+    Cut,
+    /// It is cut; where the least increment still jumps, the history fails.
+    Stop,
+}
+
+impl Jumps {
+    fn is_default(&self) -> bool {
+        *self == Jumps::default()
+    }
 }
 
 impl History {

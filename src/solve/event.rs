@@ -125,12 +125,13 @@ pub enum Outcome {
     /// iteration, and from here on net slip counts.
     Refused { why: Finding, after: Norms },
     /// The increment is accepted. `unsettled` counts minor loops and majors whose limits were accepted instead of
-    /// reached; `marked` is what the judge found against a law, where it was accepted all the same; `last` says that the
-    /// history ends here.
+    /// reached; `marked` is what the judge found against a law, where it was accepted all the same; `jumped` says that it
+    /// ends on another branch of equilibrium; `last` says that the history ends here.
     Increment {
         after: Norms,
         unsettled: u32,
         marked: Option<Finding>,
+        jumped: bool,
         last: bool,
     },
     /// The increment failed.
@@ -158,6 +159,9 @@ pub enum Failure {
     /// The round-off of the stiffest forces is this part of the loads: more than [`Norms::LOUDEST`], so that no residual
     /// tells an answer from none.
     RoundOff { noise: f64 },
+    /// The increment moved beyond what its tangent and the increments before it predict: it may have jumped to another
+    /// branch of equilibrium.
+    Leapt { motion: f64, predicted: f64 },
     /// The residual or the displacements grew out of all bounds.
     Diverged { relative: f64 },
     /// No assumption of what the nodes do is consistent: all were tried. `first` is what Table 2 failed of before, where it

@@ -5,6 +5,7 @@
 //!   bodies condensed; `condensed`: the interface alone; [`singular`]: why there is no solution.
 //! - [`minor`]: a minor iteration at one slave node; [`frozen`]: the interface problem by itself.
 //! - [`census`] and [`lemke`]: what finds a consistent state of it, all nodes together.
+//! - `jump`: increments that end on another branch of equilibrium.
 //! - `place`: where the slave nodes stand; `verdict`: what becomes of a state that the judge refuses.
 //! - `sizes`: what is large, what is nothing, and what double precision leaves.
 //! - [`rounds`]: cycles of major iterations.
@@ -17,6 +18,7 @@ pub mod event;
 pub mod frozen;
 mod interface;
 pub mod intervene;
+mod jump;
 pub mod lemke;
 pub mod minor;
 mod place;

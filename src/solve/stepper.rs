@@ -780,6 +780,9 @@ impl Stepper {
             *u += self.system.increment(&self.model, d);
         }
         self.state.correction = largest / self.model.length;
+        if self.state.next.major == 1 {
+            self.state.pace.predicted = largest;
+        }
         for (s, node) in self.state.nodes.iter_mut().enumerate() {
             let record = &self.event.nodes[s];
             (node.f_n, node.f_t) = (record.f_n, record.f_t);
@@ -883,6 +886,7 @@ impl Stepper {
         after: Norms,
         verdict: Verdict,
         marked: Option<Finding>,
+        jumped: bool,
     ) -> Outcome {
         let unsettled = self.state.unsettled;
         for node in &mut self.state.nodes {
@@ -929,6 +933,7 @@ impl Stepper {
             after,
             unsettled,
             marked,
+            jumped,
             last,
         }
     }

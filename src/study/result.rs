@@ -75,6 +75,7 @@ pub enum Reason {
     NoAnswer,
     NotFound,
     RoundOff,
+    Jump,
 }
 
 impl Reason {
@@ -90,6 +91,7 @@ impl Reason {
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
             Reason::RoundOff => 'r',
+            Reason::Jump => 'b',
         }
     }
 }
@@ -106,6 +108,7 @@ impl From<&Failure> for Reason {
             Failure::Jammed { .. } => Reason::Jammed,
             Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
+            Failure::Leapt { .. } => Reason::Jump,
             Failure::RoundOff { .. } => Reason::RoundOff,
             Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
         }
@@ -126,6 +129,7 @@ impl fmt::Display for Reason {
             Reason::NoAnswer => "no-answer",
             Reason::NotFound => "not-found",
             Reason::RoundOff => "round-off",
+            Reason::Jump => "jump",
         })
     }
 }

@@ -76,6 +76,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         path: spec.history.path.clone(),
         increment: spec.history.increment,
         least: spec.history.least,
+        jumps: spec.history.jumps,
         settings,
         monitors,
         length,
