@@ -48,6 +48,7 @@ fn smooth(m: &[Vec<f64>], gaps: &[f64], touching: &[usize]) -> Scene {
             path: vec![0.0, 1.0],
             increment: 1.0,
             least: None,
+            jumps: Default::default(),
         },
         settings: by_table_2(),
     };
@@ -332,6 +333,7 @@ fn random(n: usize, random: &mut Random) -> Frozen {
             path: vec![0.0, 1.0],
             increment: 1.0,
             least: None,
+            jumps: Default::default(),
         },
         settings: by_table_2(),
     };

@@ -34,6 +34,7 @@ fn problem(contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
             path: vec![0.0, 1.0],
             increment: 0.25,
             least: None,
+            jumps: Default::default(),
         },
         settings: Settings::default(),
     }

@@ -288,8 +288,8 @@ fn each_fault_of_a_solid_has_one_message_with_its_place() {
             "nodes[0].elements[0]: the number of elements is 0",
         ),
         (
-            shaped("corners: [(0, 0), (4, 2)], elements: (900, 900)"),
-            "at most 200000 can be had",
+            shaped("corners: [(0, 0), (4, 2)], elements: (9000, 9000)"),
+            "at most 50000000 can be had",
         ),
         (
             shaped("corners: [(0, 0), (4, 2)], elements: 3"),
@@ -680,13 +680,13 @@ fn each_fault_has_one_message_with_its_place() {
         ("per_element: 5", "per_element: 12", "it must be 2 to 9"),
         (
             "elements: 1",
-            "elements: 100000000",
-            "at most 200000 can be had",
+            "elements: 20000000",
+            "at most 50000000 can be had",
         ),
         (
             "elements: 1",
             "elements: 18446744073709551615",
-            "at most 200000 can be had",
+            "at most 50000000 can be had",
         ),
         // Bodies, slaves, friction.
         (
@@ -1561,9 +1561,24 @@ proptest! {
 }
 
 #[test]
-fn a_large_scene_is_accepted_up_to_the_limit() {
-    let scene = with("refine", "20000").unwrap();
-    assert_eq!(scene.model.nodes.len(), 160_002);
-    let error = with("refine", "40000").unwrap_err().to_string();
-    assert!(error.contains("at most 200000"), "{error}");
+fn a_large_scene_is_accepted_up_to_the_memory_that_it_may_take() {
+    let large = |refine: &str, memory: &str| {
+        let set = [("refine", refine), ("settings.memory", memory)];
+        let set = set.map(|(path, value)| (path.to_string(), value.to_string()));
+        Scene::open(PINNED, &set).map_err(|error| error.to_string())
+    };
+    assert_eq!(large("20000", "2").unwrap().model.nodes.len(), 160_002);
+    // Before a node is made, and once all is counted.
+    for (refine, memory) in [("40000", "0.5"), ("20000", "0.7")] {
+        let error = large(refine, memory).unwrap_err();
+        assert!(
+            error.contains("settings.memory sets what it may take"),
+            "{error}"
+        );
+    }
+    let error = large("1", "0").unwrap_err();
+    assert!(
+        error.contains("must be a positive number of gigabytes"),
+        "{error}"
+    );
 }

@@ -135,7 +135,7 @@ fn a_broken_file_is_refused_with_its_line() {
         (
             dense.replacen("2\n2\n", "2\n0\n", 1),
             2,
-            "it must have 1 to",
+            "it must have 1 at least",
         ),
         (dense.replacen("2\n2\n", "2\nx\n", 1), 2, "whole number"),
         (dense.replacen("2\n2\n0\n", "2\n2\n5\n", 1), 3, "storage 5"),

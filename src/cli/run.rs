@@ -3,13 +3,14 @@
 use super::interrupt::Interrupt;
 use super::sink::{Sent, Sink};
 use super::{Error, Exit, SceneArgs, table, tell};
-use crate::debug::diagnosis::{self, Diagnosis};
+use crate::debug::diagnosis::{self, Cause, Diagnosis};
 use crate::debug::files::Output;
 use crate::debug::report;
+use crate::debug::smaller::smaller;
 use crate::debug::snapshot::Snapshot;
 use crate::scene::{Model, Scene};
 use crate::solve::event::Cycle;
-use crate::solve::{Event, Failure, Outcome, Stepper};
+use crate::solve::{Event, Failure, Norms, Outcome, Stepper};
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -137,6 +138,8 @@ struct Run<'a> {
     doubtful: u32,
     /// How often the strategy changed or the increment was cut.
     notes: u32,
+    /// Norms of the accepted increment whose forces are known the least.
+    noisiest: Norms,
     quiet: bool,
     /// Monitors after the last accepted increment.
     monitors: Vec<f64>,
@@ -163,6 +166,7 @@ impl<'a> Run<'a> {
             majors: 0,
             doubtful: 0,
             notes: 0,
+            noisiest: Norms::default(),
             quiet,
             monitors: Vec::new(),
         }
@@ -228,6 +232,12 @@ impl<'a> Run<'a> {
     /// Tells what the last increment was accepted in spite of.
     fn warn(&mut self) {
         let event = self.stepper.event();
+        let Outcome::Increment { after, .. } = event.outcome else {
+            return;
+        };
+        if after.noise > self.noisiest.noise {
+            self.noisiest = after;
+        }
         let although = report::reservations(&self.scene.model, event);
         if although.is_empty() {
             return;
@@ -249,6 +259,9 @@ impl<'a> Run<'a> {
                 "warning: {} increments in all were accepted like this",
                 self.doubtful
             ));
+        }
+        if let Some(left) = report::accuracy(&self.noisiest) {
+            tell(&format!("warning: {left}"));
         }
         if self.notes > MOST_WARNINGS && !args.quiet {
             tell(&format!(
@@ -285,29 +298,43 @@ impl<'a> Run<'a> {
                     | Failure::LadderEnded { first, .. } => first,
                     failure => failure,
                 };
+                let mut none = matches!(failure, Failure::NoAnswer { .. });
                 if let Failure::Cycle(cycle) = cycle {
-                    self.diagnose(cycle);
+                    none |= self.diagnose(cycle);
+                }
+                if none {
+                    self.look_for_smaller();
                 }
                 Exit::Unconverged
             }
         }
     }
 
-    /// Tells why the minor iterations cycle, and what gets out.
-    fn diagnose(&mut self, cycle: &Cycle) {
+    /// Tells whether a smaller increment has a consistent state, where this one has none.
+    fn look_for_smaller(&mut self) {
+        let state = self.stepper.state().clone();
+        let mut scratch = Stepper::new(self.stepper.model().clone());
+        if let Some(found) = smaller(&mut scratch, &state) {
+            tell(&format!("  {}", found.words()));
+        }
+    }
+
+    /// Tells why the minor iterations cycle, and what gets out; returns whether nothing can.
+    fn diagnose(&mut self, cycle: &Cycle) -> bool {
         let Some(problem) = self.stepper.frozen() else {
-            return;
+            return false;
         };
         let Some(problem) = diagnosis::cycling(problem, cycle) else {
             tell(&format!("  not diagnosed: {}", diagnosis::too_many(cycle)));
-            return;
+            return false;
         };
         let Some(diagnosis) = Diagnosis::of(&problem) else {
-            return;
+            return false;
         };
         for line in diagnosis::words(&self.scene.model, &problem, &diagnosis) {
             tell(&format!("  {line}"));
         }
+        diagnosis.cause == Cause::NoAnswer
     }
 
     fn tell_summary(&self, monitors: bool) {

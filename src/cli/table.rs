@@ -3,7 +3,8 @@
 //! Floats have as many digits as they need to read back to the same bits; those that are no numbers are `NaN`, `inf`
 //! and `-inf`.
 //!
-//! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones.
+//! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
+//! is 1 where it ends on another branch of equilibrium than it began on, else 0.
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
@@ -22,7 +23,7 @@ pub fn csv_header(model: &Model) -> String {
         line.push(',');
         line.push_str(&field(&monitor.name));
     }
-    line.push('\n');
+    line.push_str(",jumped\n");
     line
 }
 
@@ -37,7 +38,8 @@ pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
         // Writing to a string does not fail.
         let _ = write!(line, ",{value:?}");
     }
-    line.push('\n');
+    let jumped = matches!(event.outcome, Outcome::Increment { jumped: true, .. });
+    line.push_str(if jumped { ",1\n" } else { ",0\n" });
     line
 }
 

@@ -373,8 +373,7 @@ fn cause_words<'a>(
             "no state of {nodes} obeys contact and friction as long as all other nodes go on with what they do"
         ),
         Cause::NoAnswer => format!(
-            "no state of {nodes} obeys contact and friction at this increment, so no iteration can find one; \
-             a smaller increment ends before"
+            "no state of {nodes} obeys contact and friction at this increment, so no iteration can find one"
         ),
         Cause::NoWayToSliding(sliding) => {
             let sliding: Vec<&str> = sliding.iter().map(|&place| name(place)).collect();

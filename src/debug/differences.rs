@@ -290,6 +290,8 @@ fn status(status: &Status) -> String {
             interface: 0.0,
         },
         Failure::Diverged { .. } => return "diverged".into(),
+        Failure::Leapt { .. } => return "jumps".into(),
+        Failure::RoundOff { .. } => return "round-off".into(),
         Failure::Jammed { slave, .. } => Failure::Jammed { slave, gap: 0.0 },
         Failure::Singular(Singular::Rigid { motions }) => {
             let motion = |m: &Motion| match m {

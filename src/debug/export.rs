@@ -178,12 +178,6 @@ fn text(
         ));
     }
     let count = problem.nodes.len();
-    if count > limits::MATRIX_NODES {
-        return Err(format!(
-            "{count} nodes are too many for a matrix; it can have {}",
-            limits::MATRIX_NODES
-        ));
-    }
     let mut problem = problem.clone();
     for node in &mut problem.nodes {
         node.state.forced = Forced::No;

@@ -11,12 +11,13 @@
 
 use crate::debug::command::Exported;
 use crate::debug::core::{core, cycle};
-use crate::debug::diagnosis::{self, Diagnosis, MOST_NODES, cycling, started, too_many};
+use crate::debug::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
 use crate::debug::export::{self, Origin};
 use crate::debug::files;
 use crate::debug::influence::{Influence, influences};
 use crate::debug::remedies::{self, Trial};
 use crate::debug::report;
+use crate::debug::smaller::smaller;
 use crate::scene::{Mode, Model};
 use crate::solve::census::{Census, MOST, census};
 use crate::solve::event::Cycle;
@@ -425,8 +426,12 @@ pub fn finding(stepper: &mut Stepper, state: &State) -> Finding {
     if let Some((problem, _)) = round
         && let Some(diagnosis) = Diagnosis::of(&problem)
     {
+        let mut lines = diagnosis::words(model, &problem, &diagnosis);
+        if diagnosis.cause == Cause::NoAnswer {
+            lines.extend(smaller(stepper, state).map(|found| found.words()));
+        }
         return Finding {
-            lines: diagnosis::words(model, &problem, &diagnosis),
+            lines,
             cycles: true,
             problem: Some(diagnosis.problem),
             census: diagnosis.census,

@@ -6,6 +6,7 @@
 //! - [`journal`]: the record of a session, written as it happens, and replayed; [`story`]: it as text to read.
 //! - [`breakpoints`], [`watches`]: where a run stops, and what is looked at.
 //! - [`looks`]: what is found out beside the run: who pushed whom, censuses, and [`remedies`] tried.
+//! - [`smaller`]: whether a smaller increment has a consistent state, where one has none.
 //! - [`snapshot`]: recorded states; [`differences`]: what differs between two; [`files`]: how anything is written.
 //! - [`core`]: the fewest nodes that still cycle; [`export`]: they, or the whole frozen problem, as a scene of their own.
 //! - [`lesson`]: guided lessons, and free mode.
@@ -29,6 +30,7 @@ pub mod looks;
 pub mod remedies;
 pub mod report;
 pub mod session;
+pub mod smaller;
 pub mod snapshot;
 pub mod story;
 pub mod strip;

@@ -10,7 +10,6 @@ use crate::debug::report;
 use crate::debug::strip::Kind;
 use crate::scene::spec::{AtCycle, FrictionLimit, ResidualMethod, Sticking, Strategy};
 use crate::scene::{Mode, Settings};
-use crate::solve::system::condenses;
 use crate::solve::{
     Event, Failure, Forced, Intervention, NodeRecord, Norms, NotFound, Outcome, State, Status,
     Stepper,
@@ -199,7 +198,7 @@ pub fn attempt(
         trial.seconds += began.elapsed().as_secs_f64();
         trial.minors += 1;
         trial.steps.push(None);
-        let uncondensed = !condenses(stepper.model(), &stepper.state().controls.settings);
+        let uncondensed = !stepper.condenses();
         let ends = Kind::of(&event.outcome).ends_major();
         trial.majors += u32::from(ends);
         trial.factorizations += u32::from(ends || uncondensed);
@@ -331,6 +330,8 @@ pub fn end_words(end: &End) -> String {
         End::Failed(Failure::Diverged { .. }) => "diverged".into(),
         End::Failed(Failure::Jammed { .. }) => "jammed".into(),
         End::Failed(Failure::Refused(_)) => "refused".into(),
+        End::Failed(Failure::Leapt { .. }) => "jumps".into(),
+        End::Failed(Failure::RoundOff { .. }) => "round-off".into(),
         End::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
         End::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
         End::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),

@@ -5,7 +5,7 @@ use crate::debug::judged;
 use crate::scene::{Mode, Model};
 use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
 use crate::solve::rounds::{Round, Stop};
-use crate::solve::{Event, Failure, Intervention, NotFound, Outcome, Position, census};
+use crate::solve::{Event, Failure, Intervention, Norms, NotFound, Outcome, Position, census};
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -208,10 +208,11 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: refused: {}; goes on, and from here on net slip counts",
             judged::finding(model, why)
         ),
-        Outcome::Increment { last, .. } => {
+        Outcome::Increment { after, last, .. } => {
             let end = if *last { "; the history is done" } else { "" };
+            let left = accuracy(after).map_or(String::new(), |left| format!("; {left}"));
             format!(
-                "{at}: load {} accepted{}{end}",
+                "{at}: load {} accepted{}{left}{end}",
                 event.load_factor,
                 reservations(model, event)
             )
@@ -250,7 +251,10 @@ fn pivot(model: &Model, event: &Event) -> String {
 /// What an accepted increment was accepted in spite of; empty where there is nothing.
 pub fn reservations(model: &Model, event: &Event) -> String {
     let Outcome::Increment {
-        unsettled, marked, ..
+        unsettled,
+        marked,
+        jumped,
+        ..
     } = &event.outcome
     else {
         return String::new();
@@ -272,6 +276,9 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     }
     if let Some(found) = marked {
         text += &format!(", although {}", judged::finding(model, found));
+    }
+    if *jumped {
+        text += ", jumped: another branch from here";
     }
     text
 }
@@ -364,7 +371,7 @@ pub fn advice(failure: &Failure) -> &'static str {
             "settings.strategy=ladder, or the debugger, to force one of the nodes to its third mode, or another history.increment"
         }
         Failure::NoAnswer { .. } => {
-            "a smaller history.least, other loads or friction, or a prescribed displacement instead of a load"
+            "other loads or friction, or a prescribed displacement instead of a load"
         }
         Failure::LadderEnded { .. } => {
             "a smaller history.least, another history.increment, or the debugger, to see where it stands"
@@ -372,9 +379,7 @@ pub fn advice(failure: &Failure) -> &'static str {
         Failure::NotFound(_) => "settings.strategy=ladder, or a smaller history.increment",
         Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
         Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
-        Failure::MajorCycle(_) => {
-            "a smaller history.increment; at a corner, a rounded one, or two surfaces with the node a slave of each"
-        }
+        Failure::MajorCycle(_) => "a smaller history.increment; at a corner, a rounded one",
         Failure::Singular(Singular::Rigid { .. }) => {
             "a support against that motion, or slave nodes that start sliding or fixed"
         }
@@ -384,6 +389,12 @@ pub fn advice(failure: &Failure) -> &'static str {
         Failure::Diverged { .. } => "a smaller history.increment",
         Failure::Refused(_) => {
             "a smaller history.increment or history.least (settings.strategy=ladder cuts by itself), or another mesh of the surface"
+        }
+        Failure::Leapt { .. } => {
+            "history.jumps=cut, to go on on the other branch, or a prescribed displacement instead of the load"
+        }
+        Failure::RoundOff { .. } => {
+            "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid"
         }
         Failure::Jammed { .. } => {
             "to move the node out of the surface, to free its support, or to turn the surface (reverse)"
@@ -437,6 +448,13 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         Failure::Refused(found) => {
             format!("refused, since {}", judged::finding(model, found))
         }
+        Failure::Leapt { motion, predicted } => format!(
+            "a jump to another branch: it moves by {motion:.3e}, where its tangent and the increments before predict {predicted:.1e}"
+        ),
+        Failure::RoundOff { noise } => format!(
+            "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
+            Norms::LOUDEST
+        ),
         Failure::Jammed { slave: s, gap } => format!(
             "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
             slave(model, *s),
@@ -470,6 +488,16 @@ fn not_found(why: NotFound) -> String {
             if states == 1 { "it" } else { "one" }
         ),
     }
+}
+
+/// What accuracy round-off leaves; none where it leaves enough.
+pub fn accuracy(norms: &Norms) -> Option<String> {
+    (norms.noise > Norms::AUDIBLE).then(|| {
+        format!(
+            "forces are known to about {:.0e} of the loads: that is the round-off of the stiffest ones",
+            norms.noise
+        )
+    })
 }
 
 fn motion(rigid: &RigidMotion) -> String {

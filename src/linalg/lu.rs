@@ -104,10 +104,13 @@ impl Factors {
 
     /// Scales for all matrices to come, until the next call, that differ from this one only in the rows from `first` on. The
     /// rows before these are taken to be about as large as their columns: the matrix is nearly symmetric there.
-    pub fn scale(&mut self, values: &[f64], first: usize) {
+    ///
+    /// `units` are the sizes of the unknowns, powers of two. What is balanced is not the same for every start: where a
+    /// saddle point's constraints are of size one and its stiffness is tiny, equal rows still leave it nearly singular.
+    pub fn scale(&mut self, values: &[f64], first: usize, units: &[f64]) {
         self.used = Used::Neither;
         self.values.copy_from_slice(values);
-        self.equilibrate();
+        self.equilibrate(units);
         if self.first_own != first {
             self.first_own = first;
             let entries = self.pattern.iter().enumerate();
@@ -262,8 +265,8 @@ impl Factors {
     }
 
     /// Ruiz equilibration: row and column i are divided by about the square root of the largest entry, some times.
-    fn equilibrate(&mut self) {
-        self.col_scale.fill(1.0);
+    fn equilibrate(&mut self, units: &[f64]) {
+        self.col_scale.copy_from_slice(units);
         for _ in 0..SWEEPS {
             for (col, size) in self.sizes.iter_mut().enumerate() {
                 let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
@@ -370,6 +373,8 @@ fn power_of_two(exponent: i64) -> f64 {
 mod tests {
     use super::*;
 
+    const ONES: [f64; 3] = [1.0; 3];
+
     fn dense(n: usize, a: &[f64]) -> (Arc<Pattern>, Vec<f64>) {
         let pattern = Pattern::new(n, (0..n * n).map(|k| (k / n, k % n)).collect());
         let values = pattern.iter().map(|(r, c)| a[r * n + c]).collect();
@@ -380,7 +385,7 @@ mod tests {
     fn a_badly_scaled_saddle_point_is_solved_to_round_off() {
         let (pattern, values) = dense(3, &[1.2e7, 3.0, 1.0, 3.0, 1e-3, 1.0, 1.0, 1.0, 0.0]);
         let mut factors = Factors::new(pattern.clone()).unwrap();
-        factors.scale(&values, 2);
+        factors.scale(&values, 2, &ONES[..pattern.size()]);
         factors.factor(&values).unwrap();
         let exact = [1.0, -2.0, 3e5];
         let (mut b, mut x) = ([0.0; 3], [0.0; 3]);
@@ -397,7 +402,7 @@ mod tests {
         let (pattern, first) = dense(3, &[1.2e7, 3.0, 1.0, 3.0, 1e-3, 1.0, 1.0, 1.0, 0.0]);
         let (_, second) = dense(3, &[1.2e7, 3.0, 1.0, 3.0, 1e-3, 1.0, 0.0, 0.0, 4e9]);
         let mut factors = Factors::new(pattern.clone()).unwrap();
-        factors.scale(&first, 2);
+        factors.scale(&first, 2, &ONES[..3]);
         for values in [&first, &second, &first] {
             factors.factor(values).unwrap();
             let exact = [1.0, -2.0, 3.0];
@@ -412,10 +417,38 @@ mod tests {
     }
 
     #[test]
+    fn a_saddle_point_whose_stiffness_is_tiny_beside_its_constraints_is_not_singular() {
+        let tiny = 1e-13;
+        let a = [
+            3.0 * tiny,
+            tiny,
+            1.0,
+            tiny,
+            3.0 * tiny,
+            -1.0,
+            1.0,
+            -1.0,
+            0.0,
+        ];
+        let (pattern, values) = dense(3, &a);
+        let mut factors = Factors::new(pattern).unwrap();
+        let root = power_of_two(-22);
+        factors.scale(&values, 3, &[1.0 / root, 1.0 / root, root]);
+        factors.factor(&values).unwrap();
+        assert!(factors.inverse_norm() < 10.0);
+        factors.scale(&values, 3, &ONES);
+        factors.factor(&values).unwrap();
+        assert!(
+            factors.inverse_norm() > 1e9,
+            "the units make the difference"
+        );
+    }
+
+    #[test]
     fn a_singular_matrix_is_told_by_the_norm_of_its_inverse_or_by_the_solve() {
         let (pattern, values) = dense(2, &[1.0, 2.0, 2.0, 4.0]);
-        let mut factors = Factors::new(pattern).unwrap();
-        factors.scale(&values, 2);
+        let mut factors = Factors::new(pattern.clone()).unwrap();
+        factors.scale(&values, 2, &ONES[..pattern.size()]);
         if factors.factor(&values).is_ok() {
             let mut x = [0.0; 2];
             assert!(factors.inverse_norm() > 1e12 || factors.solve(&[1.0, 1.0], &mut x).is_err());

@@ -13,8 +13,8 @@
 //! y = 0, where u_n = u_y and u_t = −u_x.
 
 use super::spec::{
-    BodySpec, Friction, History, InitialState, LoadSpec, Mode, Nodes, Settings, SlaveSpec, Spec,
-    SurfaceSpec,
+    BodySpec, Friction, History, InitialState, Jumps, LoadSpec, Mode, Nodes, Settings, SlaveSpec,
+    Spec, SurfaceSpec,
 };
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -93,6 +93,7 @@ pub fn at_once() -> History {
         path: vec![0.0, 1.0],
         increment: 1.0,
         least: None,
+        jumps: Jumps::default(),
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::Scene;
 use super::compile::increments;
+use super::effort::Estimate;
 use super::model::{Beam, Body, BodyKind, Elastic, Form, Linear, Model, Solid, Surface};
-use super::spec::Update;
+use super::spec::{Solver, Update};
 use std::fmt;
 
 /// What a scene costs. It prints as a table for a person who is to decide whether that is what was meant.
@@ -31,6 +32,8 @@ pub struct Cost {
     pub slaves: String,
     /// Increments, with the path that they follow.
     pub history: String,
+    /// What each solver takes, estimated, the chosen one first.
+    pub solvers: Vec<String>,
     /// What the scene does not have, and hence does not pay for.
     pub without: Vec<String>,
 }
@@ -73,6 +76,7 @@ impl Cost {
             surfaces: model.surfaces.iter().map(surface_line).collect(),
             slaves: slaves_line(model),
             history: history_line(model),
+            solvers: solver_lines(model),
             without: without(model),
         }
     }
@@ -215,6 +219,25 @@ fn history_line(model: &Model) -> String {
     )
 }
 
+/// What each solver takes, the chosen one first.
+fn solver_lines(model: &Model) -> Vec<String> {
+    let estimate = Estimate::of(model);
+    let chosen = estimate.with(model.settings.solver);
+    let other = if chosen.1 == "condensed" {
+        (estimate.augmented, "augmented")
+    } else {
+        (estimate.condensed, "condensed")
+    };
+    let auto = match model.settings.solver {
+        Solver::Auto => " (auto)",
+        _ => "",
+    };
+    vec![
+        format!("{}{auto}, estimated: {}", chosen.1, chosen.0),
+        format!("not {}: {}", other.1, other.0),
+    ]
+}
+
 /// What a scene does without, each with what would bring it in.
 fn without(model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
@@ -304,6 +327,7 @@ impl fmt::Display for Cost {
         section(f, "surfaces", &self.surfaces)?;
         section(f, "slaves", std::slice::from_ref(&self.slaves))?;
         section(f, "history", std::slice::from_ref(&self.history))?;
+        section(f, "solver", &self.solvers)?;
         section(f, "without", &self.without)
     }
 }

@@ -1,22 +1,22 @@
 //! How large a scene may be, and checks of single numbers.
 //!
-//! The limits keep a slip of the finger (`elements: 100000000`) from taking the machine; nothing that can be looked at
-//! on a terminal comes near them.
+//! The limits keep a slip of the finger (`elements: 100000000`) from taking the machine. What a large scene may have is a
+//! matter of the memory that it takes ([`super::memory`], [`super::effort`]).
 
 use super::error::{Fault, Path};
 
-/// Most bytes of a scene file.
-pub const FILE_BYTES: usize = 8 << 20;
-/// Most nodes of a scene, after refinement.
-pub const NODES: usize = 200_000;
-/// Most nodes of all elements of all bodies together, and of all surfaces; a node counts once for each element.
-pub const ELEMENT_NODES: usize = 4 * NODES;
+/// Most bytes of a scene file: a dense matrix of 2,500 contacts to the last digit.
+pub const FILE_BYTES: usize = 512 << 20;
+/// Most nodes of a scene, after refinement: places in its stiffness have 32 bits.
+pub const NODES: usize = 50_000_000;
+/// Least bytes that a node takes, with its share of elements and stiffness.
+pub const NODE_BYTES: f64 = 2000.0;
 /// Most entries of a list of named things (materials, surfaces, monitors, ...).
 pub const ENTRIES: usize = 1_000;
-/// Most slave nodes.
-pub const SLAVES: usize = 10_000;
-/// Most nodes of a body that is given by a matrix, which is dense.
-pub const MATRIX_NODES: usize = 1_000;
+/// Bytes that a node takes of a chain that it is in.
+pub const NAMED_BYTES: f64 = 64.0;
+/// Bytes that an entry of a body's matrix takes, whether it is zero or not.
+pub const ENTRY_BYTES: f64 = 100.0;
 /// Most increments of a history.
 pub const INCREMENTS: f64 = 1e6;
 /// Most minor or major iterations that the settings may allow.
@@ -84,13 +84,26 @@ pub(crate) fn entries(list: &str, length: usize) -> Result<(), Fault> {
     Err(Fault::new(super::error::at![list], message))
 }
 
-/// Refuses more element nodes in all, so that a chain that is used over and over does not fill the memory.
-pub(crate) fn element_nodes(path: &Path, total: usize) -> Result<(), Fault> {
-    if total <= ELEMENT_NODES {
+/// What does not fit, if this many bytes are wanted at least; `setting` is `settings.memory`.
+pub(crate) fn memory(wanted: f64, setting: Option<f64>) -> Result<(), String> {
+    let budget = super::memory::budget(setting);
+    if wanted <= budget {
         return Ok(());
     }
-    let message = format!("with this, the elements have more than {ELEMENT_NODES} nodes together");
-    Err(Fault::new(path.clone(), message))
+    Err(format!(
+        "{} of memory at least, and {} are free; settings.memory sets what it may take (GB)",
+        super::memory::bytes(wanted),
+        super::memory::bytes(budget)
+    ))
+}
+
+/// Refuses more element nodes in all, so that a chain that is used over and over does not fill the memory.
+pub(crate) fn element_nodes(path: &Path, total: usize, setting: Option<f64>) -> Result<(), Fault> {
+    memory(total as f64 * NODE_BYTES / 4.0, setting).map_err(|why| {
+        let message =
+            format!("with this, the elements have {total} nodes together, which take {why}");
+        Fault::new(path.clone(), message)
+    })
 }
 
 /// Refuses names that could not be told apart in a command line, a CSV column or a message.

@@ -3,16 +3,19 @@
 //! - [`spec`]: the file as its author writes it; [`read`]: from text to that, [`locate`]: from that back to a line.
 //! - [`paths`]: every scalar of a scene by its path, to list and to set.
 //! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
-//! - [`cost`]: what a scene costs, and what it does without.
+//! - [`cost`]: what a scene costs, and what it does without; [`effort`]: its time and memory, estimated; [`memory`]: what
+//!   there is of that.
 //! - [`condensed`]: interface problems without bodies, as scenes; [`siconos`]: those of another code.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod builtin;
 pub mod condensed;
 pub mod cost;
+pub mod effort;
 pub mod error;
 pub mod limits;
 pub mod locate;
+pub mod memory;
 pub mod model;
 pub mod nodes;
 pub mod paths;
@@ -98,7 +101,12 @@ impl Scene {
         text: &str,
         overrides: &[(String, String)],
     ) -> Result<Scene, SceneError> {
-        let problem = siconos::read(text).map_err(|broken| SceneError {
+        let memory = overrides
+            .iter()
+            .rev()
+            .find(|(path, _)| path == "settings.memory");
+        let memory = memory.and_then(|(_, value)| value.parse().ok());
+        let problem = siconos::read_within(text, memory).map_err(|broken| SceneError {
             at: Some((broken.line, 1)),
             ..SceneError::whole(name, broken.message)
         })?;

@@ -8,7 +8,9 @@
 //! whose equations are lengths, all of them. `equation[d]` is the number of the unknown of degree of freedom d, or
 //! none where it is restrained or prescribed.
 
-use super::spec::{Axis, Component, Friction, InitialState, Law, Mode, Plane, Settings, Update};
+use super::spec::{
+    Axis, Component, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
+};
 
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +29,10 @@ pub struct Model {
     pub path: Vec<f64>,
     /// Increment of the load factor, positive.
     pub increment: f64,
-    /// Size below which an increment that fails is not cut.
-    pub least: f64,
+    /// Size below which an increment that fails is not cut; none stands for a 64th of the increment in force.
+    pub least: Option<f64>,
+    /// What increments do that jump.
+    pub jumps: Jumps,
     pub settings: Settings,
     pub monitors: Vec<Monitor>,
     /// Diagonal of the bounding box of all bodies' nodes: the scene's unit of length for tolerances.

@@ -123,7 +123,7 @@ impl Names {
                 per_element,
             } = nodes
             {
-                names.share(at, id, of, *per_element)?;
+                names.share(at, id, of, *per_element, spec.settings.memory)?;
             }
         }
         Ok(names)
@@ -630,6 +630,7 @@ impl Names {
         id: &str,
         of: &[String],
         per_element: usize,
+        memory: Option<f64>,
     ) -> Result<(), Fault> {
         let here = at!["nodes", at];
         check_per_element(&here, per_element)?;
@@ -638,12 +639,12 @@ impl Names {
         for (k, name) in of.iter().enumerate() {
             let fault = |message: String| Fault::new(here.then("of").then(k), message);
             let found = self.nodes(name).map_err(fault)?;
-            if before + shared.len() + found.len() > 2 * limits::NODES {
-                return Err(fault(format!(
-                    "with this, all chains have more than {} nodes together",
-                    2 * limits::NODES
-                )));
-            }
+            let total = before + shared.len() + found.len();
+            limits::memory(total as f64 * limits::NAMED_BYTES, memory).map_err(|why| {
+                fault(format!(
+                    "with this, all chains have {total} nodes together, which take {why}"
+                ))
+            })?;
             if found.len() > 1 && shared.last().is_some() && shared.last() == found.first() {
                 shared.pop();
             } else if shared.last().is_some() && shared.last() == found.first() {
@@ -750,14 +751,18 @@ fn check_total(spec: &Spec) -> Result<(), Fault> {
             }
             Nodes::Mesh { .. } | Nodes::Chain { .. } => 0.0,
         };
-        if total > limits::NODES as f64 {
-            let message = format!(
-                "up to here the scene has about {total} nodes (refine: {}); at most {} can be had",
-                spec.refine,
-                limits::NODES
-            );
-            return Err(Fault::new(at!["nodes", k], message));
-        }
+        let why = if total > limits::NODES as f64 {
+            format!("at most {} can be had", limits::NODES)
+        } else {
+            match limits::memory(total * limits::NODE_BYTES, spec.settings.memory) {
+                Ok(()) => continue,
+                Err(why) => format!("they take {why}"),
+            }
+        };
+        let refine = spec.refine;
+        let message =
+            format!("up to here the scene has about {total} nodes (refine: {refine}); {why}");
+        return Err(Fault::new(at!["nodes", k], message));
     }
     Ok(())
 }

@@ -6,7 +6,7 @@
 use super::error::{Path, at, nearest, quoted};
 use super::spec::{
     AtCycle, AtLimit, Axis, Bar, BodySpec, Component, Friction, FrictionLimit, Geometry,
-    InitialState, Law, LoadSpec, Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity,
+    InitialState, Jumps, Law, LoadSpec, Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity,
     Region, ResidualMethod, Scale, Settings, Side, Sides, SlipCount, Solver, Spec, Sticking,
     Strategy, Ties, Touch, Update,
 };
@@ -308,6 +308,7 @@ choices! {
     Mode { "free" => Mode::Free, "sliding" => Mode::Sliding, "fixed" => Mode::Fixed }
     Component { "x" => Component::X, "y" => Component::Y, "rotation" => Component::Rotation }
     Axis { "x" => Axis::X, "y" => Axis::Y }
+    Jumps { "accept" => Jumps::Accept, "cut" => Jumps::Cut, "stop" => Jumps::Stop }
     ResidualMethod { "accumulate" => ResidualMethod::Accumulate, "stress" => ResidualMethod::Stress }
     Solver { "auto" => Solver::Auto, "augmented" => Solver::Augmented, "condensed" => Solver::Condensed }
     Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
@@ -405,6 +406,10 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
     if after != before {
         spec.history.least = Some(after);
     }
+    visit(
+        &root("history").field("jumps"),
+        Scalar::Choice(&mut spec.history.jumps),
+    );
     settings(&root("settings"), &mut spec.settings, visit);
     for (k, entry) in spec.monitors.iter_mut().enumerate() {
         monitor(&root("monitors").called(&entry.name, k), entry, visit);
@@ -748,6 +753,10 @@ fn settings(place: &Place, settings: &mut Settings, visit: &mut Visit<'_>) {
     visit(
         &place.field("tolerance"),
         Scalar::Number(&mut settings.tolerance),
+    );
+    visit(
+        &place.field("memory"),
+        Scalar::Optional(&mut settings.memory),
     );
 }
 

@@ -59,6 +59,14 @@ pub fn is_one(text: &str) -> bool {
 /// # Errors
 /// What is wrong, and in which line.
 pub fn read(text: &str) -> Result<Friction2d, Broken> {
+    read_within(text, None)
+}
+
+/// Reads such a file, which may take so much memory (GB; none: what is free).
+///
+/// # Errors
+/// As [`read`].
+pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken> {
     let mut words = Words::new(text);
     match words.count("the dimension")? {
         2 => {}
@@ -75,12 +83,15 @@ pub fn read(text: &str) -> Result<Friction2d, Broken> {
         }
     }
     let contacts = words.count("the number of contacts")?;
-    if !(1..=limits::MATRIX_NODES).contains(&contacts) {
-        let most = limits::MATRIX_NODES;
-        return Err(words.broken(&format!(
-            "the problem has {contacts} contacts; it must have 1 to {most}"
-        )));
+    if contacts == 0 {
+        return Err(words.broken("the problem has 0 contacts; it must have 1 at least"));
     }
+    let entries = 4.0 * (contacts as f64).powi(2);
+    limits::memory(entries * limits::ENTRY_BYTES, memory).map_err(|why| {
+        words.broken(&format!(
+            "the problem has {contacts} contacts; its matrix takes {why}"
+        ))
+    })?;
     let size = 2 * contacts;
     let matrix = match words.count("the storage of W")? {
         0 => dense,

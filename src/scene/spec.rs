@@ -548,13 +548,40 @@ pub struct History {
     /// `increment`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub least: Option<f64>,
+    /// What an increment does that jumps to another branch of equilibrium (`strategy: ladder`). Default: cut.
+    #[serde(default, skip_serializing_if = "Jumps::is_default")]
+    pub jumps: Jumps,
+}
+
+/// What an increment does that jumps to another branch of equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Jumps {
+    /// It is accepted whole, marked where it moved beyond what its tangent and the increments before it predict.
+    Accept,
+    /// It is cut; where the least increment still jumps, that is accepted, marked.
+    #[default]
+    Cut,
+    /// It is cut; where the least increment still jumps, the history fails.
+    Stop,
+}
+
+impl Jumps {
+    fn is_default(&self) -> bool {
+        *self == Jumps::default()
+    }
 }
 
 impl History {
     /// Size below which an increment is not cut.
     pub fn least(&self) -> f64 {
-        self.least.unwrap_or(self.increment / LEAST)
+        least(self.least, self.increment)
     }
+}
+
+/// Size below which an increment of this size is not cut, if `given` does not say.
+pub fn least(given: Option<f64>, increment: f64) -> f64 {
+    given.unwrap_or(increment / LEAST)
 }
 
 /// How many times smaller than an increment the smallest is that it is cut to, where the scene does not say.
@@ -594,6 +621,9 @@ pub struct Settings {
     pub at_major_limit: AtLimit,
     /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
     pub tolerance: f64,
+    /// Memory that the scene may take, in GB. Default: what is free.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub memory: Option<f64>,
 }
 
 impl Default for Settings {
@@ -614,6 +644,7 @@ impl Default for Settings {
             at_cycle: AtCycle::default(),
             at_major_limit: AtLimit::default(),
             tolerance: 1e-11,
+            memory: None,
         }
     }
 }
@@ -713,7 +744,8 @@ pub enum ResidualMethod {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Solver {
-    /// Condensed where the bodies have many times more unknowns than the interface, else augmented.
+    /// Condensed where the bodies have many times more unknowns than the interface and their displacements there are few
+    /// enough for it to be cheaper, else augmented; the other one where only that fits the memory.
     #[default]
     Auto,
     /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.

@@ -25,7 +25,7 @@
 //! and only the masters' block K'_mm has to be factored: the relation of `condensed` in the limit of stiff springs.
 
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
-use crate::scene::model::{Body, BodyKind, Form, Model};
+use crate::scene::model::{Body, BodyKind, Model};
 use crate::solve::condensed::Relation;
 use crate::solve::interface::Interface;
 use std::sync::Arc;
@@ -69,17 +69,6 @@ pub struct Bodies {
     /// u_c of the last solve, less that of `free`, and the force that it takes.
     offset: Vec<f64>,
     pull: Vec<f64>,
-}
-
-/// Whether all bodies of a scene have a stiffness that can be factored without pivoting. Shear-rigid beams have not:
-/// their shear forces are unknowns of a saddle point. So are the forces on a body that is given by its compliance, and a
-/// given stiffness may be unsymmetric.
-pub fn condensable(model: &Model) -> bool {
-    model.bodies.iter().all(|body| match &body.kind {
-        BodyKind::Beam(beam) => beam.first_shear.is_none(),
-        BodyKind::Solid(_) => true,
-        BodyKind::Linear(linear) => linear.form == Form::Stiffness && linear.is_symmetric(),
-    })
 }
 
 impl Bodies {

@@ -93,6 +93,17 @@ pub struct Norms {
     /// What `relative` must not exceed to be in balance: the tolerance, or the round-off of the stiffest forces
     /// where that is larger.
     pub limit: f64,
+    /// Round-off of the stiffest forces over the loads and contact forces: what part of these is not known. Also of
+    /// lengths that are to vanish, over the length scale.
+    #[serde(default)]
+    pub noise: f64,
+}
+
+impl Norms {
+    /// Noise above which no answer is accepted.
+    pub const LOUDEST: f64 = 1e-3;
+    /// Noise from which on a run says what accuracy is left.
+    pub const AUDIBLE: f64 = 1e-6;
 }
 
 /// What follows.
@@ -114,12 +125,13 @@ pub enum Outcome {
     /// iteration, and from here on net slip counts.
     Refused { why: Finding, after: Norms },
     /// The increment is accepted. `unsettled` counts minor loops and majors whose limits were accepted instead of
-    /// reached; `marked` is what the judge found against a law, where it was accepted all the same; `last` says that the
-    /// history ends here.
+    /// reached; `marked` is what the judge found against a law, where it was accepted all the same; `jumped` says that it
+    /// ends on another branch of equilibrium; `last` says that the history ends here.
     Increment {
         after: Norms,
         unsettled: u32,
         marked: Option<Finding>,
+        jumped: bool,
         last: bool,
     },
     /// The increment failed.
@@ -144,6 +156,12 @@ pub enum Failure {
     MajorCycle(Round),
     /// The equations have no unique solution.
     Singular(Singular),
+    /// The round-off of the stiffest forces is this part of the loads: more than [`Norms::LOUDEST`], so that no residual
+    /// tells an answer from none.
+    RoundOff { noise: f64 },
+    /// The increment moved beyond what its tangent and the increments before it predict: it may have jumped to another
+    /// branch of equilibrium.
+    Leapt { motion: f64, predicted: f64 },
     /// The residual or the displacements grew out of all bounds.
     Diverged { relative: f64 },
     /// No assumption of what the nodes do is consistent: all were tried. `first` is what Table 2 failed of before, where it

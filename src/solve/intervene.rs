@@ -1,7 +1,8 @@
 //! What a user does to a run: force a mode, change the increment, friction or settings.
 
 use crate::contact::table1::t_max;
-use crate::scene::spec::{Friction, Settings, Touch};
+use crate::scene::effort::Estimate;
+use crate::scene::spec::{Friction, Settings, Touch, least};
 use crate::scene::{Mode, Model};
 use crate::solve::event::Forced;
 use crate::solve::state::{NodeState, Piece, Search, State, Status};
@@ -54,7 +55,7 @@ impl State {
             Intervention::Release { slave } => self.node_mut(*slave)?.forced = Forced::No,
             Intervention::Increment(increment) => self.retry(model, *increment)?,
             Intervention::Friction(friction) => self.rub(friction)?,
-            Intervention::Settings(settings) => self.set(settings)?,
+            Intervention::Settings(settings) => self.set(model, settings)?,
         }
         self.search = Search::default();
         self.forget_trail();
@@ -145,9 +146,14 @@ impl State {
         Ok(())
     }
 
-    fn set(&mut self, settings: &Settings) -> Result<(), String> {
+    fn set(&mut self, model: &Model, settings: &Settings) -> Result<(), String> {
         if settings.minors == 0 || settings.majors == 0 {
             return Err("limits of iterations are at least 1".into());
+        }
+        if settings.solver != self.controls.settings.solver
+            && let Some(why) = Estimate::of(model).too_large(settings.solver)
+        {
+            return Err(why);
         }
         Arc::make_mut(&mut self.controls).settings = *settings;
         Ok(())
@@ -161,7 +167,7 @@ impl State {
         }
         let controls = Arc::make_mut(&mut self.controls);
         controls.increment = increment;
-        controls.least = controls.least.min(increment);
+        controls.least = least(model.least, increment).min(increment);
         self.piece = Piece::whole(model, &self.start, increment);
         self.start_again();
         Ok(())

@@ -5,7 +5,9 @@
 //!   bodies condensed; `condensed`: the interface alone; [`singular`]: why there is no solution.
 //! - [`minor`]: a minor iteration at one slave node; [`frozen`]: the interface problem by itself.
 //! - [`census`] and [`lemke`]: what finds a consistent state of it, all nodes together.
+//! - `jump`: increments that end on another branch of equilibrium.
 //! - `place`: where the slave nodes stand; `verdict`: what becomes of a state that the judge refuses.
+//! - `sizes`: what is large, what is nothing, and what double precision leaves.
 //! - [`rounds`]: cycles of major iterations.
 //! - [`intervene`]: what a user changes in between; [`event`]: what a minor iteration did, typed.
 
@@ -16,11 +18,13 @@ pub mod event;
 pub mod frozen;
 mod interface;
 pub mod intervene;
+mod jump;
 pub mod lemke;
 pub mod minor;
 mod place;
 pub mod rounds;
 pub mod singular;
+mod sizes;
 pub mod state;
 pub mod stepper;
 pub mod system;

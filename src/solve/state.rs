@@ -8,9 +8,10 @@ use crate::contact::judge::Verdict;
 use crate::contact::projection::Spot;
 use crate::contact::strategy::{LADDER, limit};
 use crate::fem::assembly::history_len;
-use crate::scene::spec::{FrictionLimit, InitialState, SlipCount, Sticking, Strategy};
+use crate::scene::spec::{FrictionLimit, InitialState, SlipCount, Sticking, Strategy, least};
 use crate::scene::{Friction, Mode, Model, Settings};
 use crate::solve::event::{Cycle, Failure, Forced, Position};
+use crate::solve::jump::Pace;
 use crate::solve::rounds::Rounds;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -52,6 +53,9 @@ pub struct State {
     pub net: bool,
     /// Largest displacement change in the last major iteration over the length scale.
     pub correction: f64,
+    /// How fast the scene moves.
+    #[serde(default)]
+    pub pace: Pace,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -335,7 +339,7 @@ impl State {
         let load_factor = model.path[0];
         let controls = Controls {
             increment: model.increment,
-            least: model.least,
+            least: least(model.least, model.increment),
             friction: model.slaves.iter().map(|s| s.friction).collect(),
             settings: model.settings,
         };
@@ -371,6 +375,7 @@ impl State {
             unsettled: 0,
             net: false,
             correction: 0.0,
+            pace: Pace::default(),
             status: Status::Running,
         }
     }

@@ -118,6 +118,11 @@ impl Stepper {
         self.linearise().then(|| self.system.norms())
     }
 
+    /// Whether the minor iterations are solved on the condensed interface.
+    pub fn condenses(&self) -> bool {
+        self.system.condenses(&self.state.controls.settings)
+    }
+
     /// The frozen interface problem of the present major iteration; none where the bodies cannot be condensed.
     pub fn frozen(&mut self) -> Option<Frozen> {
         if !self.linearise() {
@@ -625,10 +630,11 @@ impl Stepper {
     /// is at its smallest.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
         let controls = &self.state.controls;
-        let helps = !matches!(
-            why,
-            Failure::Singular(Singular::Rigid { .. }) | Failure::Jammed { .. }
-        );
+        let helps = match why {
+            Failure::Jammed { .. } | Failure::RoundOff { .. } => false,
+            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
+            _ => true,
+        };
         let half = self.state.piece.halved();
         let least = controls.least * (1.0 - ROUNDING);
         if controls.settings.strategy != Strategy::Ladder
@@ -644,6 +650,14 @@ impl Stepper {
         self.lemke = None;
         let (why, size) = (why.clone(), half.size());
         Some(Outcome::Cut { why, size })
+    }
+
+    /// Whether nothing holds a body in the modes that the increment starts with, whatever its size.
+    fn starts_loose(&self) -> bool {
+        let start = &self.state.start.nodes;
+        let footing = |s: usize| self.system.footing(s);
+        let found = singular::diagnose(&self.model, &self.system.positions, start, footing);
+        matches!(found, Singular::Rigid { .. })
     }
 
     /// Starts the minor iterations of this major one again, with half the load; false if too little is left of it.
@@ -697,20 +711,19 @@ impl Stepper {
         let Some(after) = norms else {
             return self.fail(Failure::Singular(Singular::Unexplained));
         };
-        // The bodies' own unknowns, which come last, are forces.
-        let nodal = self.model.dofs.len() - self.model.dofs.inner;
-        let motions = &self.state.u[..nodal];
-        let size = motions.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let size = self.system.sizes.largest_motion(&self.state.u);
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
         let exact = after.relative <= settings.tolerance;
         let balanced = self.state.reached == self.state.load_factor
             && (exact || (after.relative <= after.limit && after.correction <= STILL))
             && after.interface <= after.limit.max(settings.tolerance);
         let at_limit = self.state.next.major.is_multiple_of(settings.majors);
-        if settled && balanced {
+        let drowned = after.noise > Norms::LOUDEST;
+        if settled && balanced && !drowned {
             return self.finish(after);
         }
-        if at_limit && bounded && settings.at_major_limit == AtLimit::Accept {
+        let accepts = settings.at_major_limit == AtLimit::Accept && !drowned;
+        if at_limit && bounded && accepts {
             self.state.unsettled += 1;
             return self.finish(after);
         }
@@ -720,6 +733,9 @@ impl Stepper {
             return self.fail(Failure::Diverged {
                 relative: after.relative,
             });
+        }
+        if drowned && (at_limit || settled && balanced) {
+            return self.fail(Failure::RoundOff { noise: after.noise });
         }
         if settings.at_major_limit == AtLimit::Stop
             && let Some(round) = self.find_round()
@@ -764,6 +780,9 @@ impl Stepper {
             *u += self.system.increment(&self.model, d);
         }
         self.state.correction = largest / self.model.length;
+        if self.state.next.major == 1 {
+            self.state.pace.predicted = largest;
+        }
         for (s, node) in self.state.nodes.iter_mut().enumerate() {
             let record = &self.event.nodes[s];
             (node.f_n, node.f_t) = (record.f_n, record.f_t);
@@ -867,6 +886,7 @@ impl Stepper {
         after: Norms,
         verdict: Verdict,
         marked: Option<Finding>,
+        jumped: bool,
     ) -> Outcome {
         let unsettled = self.state.unsettled;
         for node in &mut self.state.nodes {
@@ -913,6 +933,7 @@ impl Stepper {
             after,
             unsettled,
             marked,
+            jumped,
             last,
         }
     }

@@ -9,15 +9,17 @@ use crate::contact::table1::{Equation, Motion};
 use crate::contact::turning::{Variation, turning};
 use crate::fem::assembly::{Assembled, Assembly, Moved};
 use crate::linalg::{Factors, Pattern, SolveError};
-use crate::scene::model::{Beam, Body, BodyKind, Form, Model};
-use crate::scene::spec::{Component, Geometry, Solver, Sticking};
+use crate::scene::effort::{Estimate, condensable};
+use crate::scene::model::{Beam, BodyKind, Model};
+use crate::scene::spec::{Component, Geometry, Sticking};
 use crate::scene::{Mode, Settings};
-use crate::solve::bodies::{Bodies, condensable};
+use crate::solve::bodies::Bodies;
 use crate::solve::condensed::Condensed;
 use crate::solve::event::Norms;
 use crate::solve::frozen::{Frozen, FrozenNode};
 use crate::solve::interface::{Interface, Link};
 use crate::solve::minor::{self, Given, Site};
+use crate::solve::sizes::{ROUND_OFF, Sizes};
 use crate::solve::state::{NodeState, State};
 use std::sync::Arc;
 
@@ -25,10 +27,6 @@ use std::sync::Arc;
 /// the interface, where the springs that hold a loose body cost digits before they drop out.
 const SUSPICIOUS_WHOLE: f64 = 1e12;
 const SUSPICIOUS_INTERFACE: f64 = 1e9;
-/// Round-off of an internal force, in units of the machine precision times |K| |u|.
-const ROUND_OFF: f64 = 8.0;
-/// How many times more unknowns than the interface the bodies must have for condensing to pay (measured: README).
-const MANY_TIMES: usize = 8;
 /// An equation whose coefficients are all smaller than this (the largest is one) is empty.
 const EMPTY: f64 = 1e-12;
 
@@ -41,16 +39,6 @@ pub enum Solved {
     Suspicious,
     /// There is no solution, or none that can be computed.
     Not,
-}
-
-/// What the equation of a degree of freedom balances.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    /// Forces, or moments, which count as forces over this lever.
-    Force { lever: f64 },
-    /// Lengths: the shear of a shear-rigid beam, or how far a body that is given by its compliance is from where its
-    /// forces put it.
-    Length,
 }
 
 /// What the stiffness is laid out for.
@@ -71,17 +59,15 @@ pub struct System {
     /// Whether `whole` is scaled for the present linearisation.
     scaled: bool,
     bodies: Option<Bodies>,
+    estimate: Estimate,
     /// Whether the scene's bodies may be condensed by [`Bodies`].
     condensable: bool,
     /// The elements that `whole` has places for.
     pairing: Vec<Option<(usize, usize)>>,
     /// n and t of every slave node in the last condensation.
     frames: Vec<[[f64; 2]; 2]>,
-    kind: Vec<Kind>,
-    /// Largest force that the loads reach over the history.
-    reference: f64,
-    /// Stiffness of the softest body as a whole.
-    softest: f64,
+    /// Sizes that the scene gives.
+    pub sizes: Sizes,
     /// Current position of every node.
     pub positions: Vec<[f64; 2]>,
     interfaces: Vec<Interface>,
@@ -111,19 +97,17 @@ impl System {
         let (dofs, equations) = (model.dofs.len(), model.dofs.equations);
         let interfaces: Vec<Interface> =
             model.slaves.iter().map(|_| Interface::default()).collect();
-        let kind = kinds(model);
         System {
             assembly: Assembly::new(model),
             layout: None,
             whole: None,
             scaled: false,
             bodies: None,
+            estimate: Estimate::of(model),
             condensable: condensable(model),
             pairing: Vec::new(),
             frames: Vec::new(),
-            reference: reference_force(model, &kind),
-            softest: softest_body(model),
-            kind,
+            sizes: Sizes::new(model),
             positions: vec![[0.0; 2]; model.nodes.len()],
             condensed: Condensed::new(interfaces.len()),
             interfaces,
@@ -144,6 +128,11 @@ impl System {
         }
     }
 
+    /// Whether the minor iterations are solved on the condensed interface with these settings.
+    pub fn condenses(&self, settings: &Settings) -> bool {
+        self.estimate.is_condensed(settings.solver)
+    }
+
     /// Current positions of all nodes at displacements u.
     pub fn place(&mut self, model: &Model, u: &[f64]) {
         for (n, position) in self.positions.iter_mut().enumerate() {
@@ -160,7 +149,7 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, state: &State) -> Result<(), SolveError> {
-        if condenses(model, &state.controls.settings) && self.condensable {
+        if self.condenses(&state.controls.settings) && self.condensable {
             self.linearise_in(Layout::Bodies, model, state)
         } else {
             self.linearise_in(Layout::Whole, model, state)
@@ -424,12 +413,14 @@ impl System {
                 self.interaction[link.dof] -= link.weight * force[link.axis];
             }
         }
-        let (mut force, mut scale, mut length) = (0.0_f64, self.reference, 0.0_f64);
+        let tolerance = state.controls.settings.tolerance;
+        let mut scale = self.sizes.reference.max(self.sizes.least_scale(tolerance));
+        let (mut force, mut length) = (0.0_f64, 0.0_f64);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
             let balance = self.external[d] + self.interaction[d] - self.force[d];
-            match self.kind[d] {
-                Kind::Length => length = length.max(balance.abs() / model.length),
-                Kind::Force { lever } => {
+            match self.sizes.lever(d) {
+                None => length = length.max(balance.abs() / model.length),
+                Some(lever) => {
                     scale = scale
                         .max(self.size[d] / lever)
                         .max(self.external[d].abs() / lever);
@@ -442,9 +433,10 @@ impl System {
                 self.residual[*equation] = balance;
             }
         }
-        let tolerance = state.controls.settings.tolerance;
         let [floor, length_floor] = self.round_off(model, &state.u);
         let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
+        let wanted = self.sizes.wanted(model, state, |dof| self.nodal_force(dof));
+        let noise = if floor > 0.0 { floor / wanted } else { 0.0 };
         self.norms = Norms {
             force,
             relative: relative(force).max(length),
@@ -454,6 +446,7 @@ impl System {
             limit: tolerance
                 .max(relative(floor))
                 .max(length_floor / model.length),
+            noise: noise.max(length_floor / model.length),
         };
         self.norms.interface = self.violation(model, state);
     }
@@ -477,11 +470,11 @@ impl System {
         let half = self.layout == Some(Layout::Bodies);
         pattern.multiply_abs(&self.stiffness, &self.x, &mut self.work, half);
         let mut worst = [0.0_f64; 2];
-        for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
-            match (kind, equation) {
-                (Kind::Force { lever }, Some(e)) => worst[0] = worst[0].max(self.work[*e] / lever),
-                (Kind::Length, Some(e)) => worst[1] = worst[1].max(self.work[*e]),
-                _ => {}
+        for (d, equation) in model.dofs.equation.iter().enumerate() {
+            let Some(e) = *equation else { continue };
+            match self.sizes.lever(d) {
+                Some(lever) => worst[0] = worst[0].max(self.work[e] / lever),
+                None => worst[1] = worst[1].max(self.work[e]),
             }
         }
         worst.map(|worst| ROUND_OFF * f64::EPSILON * worst)
@@ -560,7 +553,7 @@ impl System {
     /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
     /// bodies after [`System::recover`].
     pub fn solve(&mut self, model: &Model, state: &State) -> Solved {
-        if condenses(model, &state.controls.settings) {
+        if self.condenses(&state.controls.settings) {
             self.solve_condensed(model, state)
         } else {
             self.solve_augmented(model, state)
@@ -600,8 +593,9 @@ impl System {
                 self.place_row(s, k, row, frame);
             }
         }
+        self.sizes.units(model, self.spring(model), &mut self.work);
         if let Some(factors) = &mut self.whole {
-            factors.scale(&self.values, model.dofs.equations);
+            factors.scale(&self.values, model.dofs.equations, &self.work);
         }
     }
 
@@ -684,6 +678,9 @@ impl System {
     /// [`SolveError`] where the bodies cannot be condensed.
     pub fn frozen(&mut self, model: &Model, state: &State) -> Result<Frozen, SolveError> {
         if !self.condensed.fresh {
+            if self.estimate.condensed.bytes > self.estimate.budget {
+                return Err(SolveError::OutOfMemory);
+            }
             self.condensed.norm = self.condense(model, state)?;
             self.condensed.fresh = true;
         }
@@ -800,9 +797,9 @@ impl System {
             .filter_map(|l| model.dofs.equation[l.dof]);
         let stiffest = slaves.map(diagonal).fold(0.0, f64::max);
         if stiffest > 0.0 {
-            (stiffest * self.softest).sqrt()
+            (stiffest * self.sizes.softest).sqrt()
         } else {
-            self.softest
+            self.sizes.softest
         }
     }
 
@@ -934,63 +931,4 @@ fn pairing(model: &Model, node: &NodeState) -> Option<(usize, usize)> {
     node.spot
         .filter(|s| !model.surfaces[s.surface].rigid)
         .map(|s| (s.surface, s.element))
-}
-
-/// Whether the minor iterations of a scene are solved on the condensed interface with these settings.
-pub fn condenses(model: &Model, settings: &Settings) -> bool {
-    match settings.solver {
-        Solver::Augmented => false,
-        Solver::Condensed => true,
-        Solver::Auto => 2 * model.slaves.len() * MANY_TIMES <= model.dofs.equations,
-    }
-}
-
-/// What the equation of each degree of freedom balances.
-fn kinds(model: &Model) -> Vec<Kind> {
-    let mut kinds = vec![Kind::Length; model.dofs.len()];
-    for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
-        for k in 0..count as usize {
-            let lever = if k == Component::Rotation as usize {
-                model.length
-            } else {
-                1.0
-            };
-            kinds[first + k] = Kind::Force { lever };
-        }
-    }
-    kinds
-}
-
-/// Order of magnitude of the softest body's stiffness as a whole: that of a beam in bending, of a solid by itself.
-fn softest_body(model: &Model) -> f64 {
-    let of = |body: &Body| match &body.kind {
-        BodyKind::Beam(beam) => beam.ei / model.length.powi(3),
-        BodyKind::Solid(solid) => {
-            let stiffness = solid.materials.iter().map(|m| m.young * m.thickness);
-            stiffness.fold(f64::INFINITY, f64::min)
-        }
-        BodyKind::Linear(linear) => {
-            let largest = linear.entries.iter().fold(0.0_f64, |m, e| m.max(e.2.abs()));
-            match linear.form {
-                Form::Stiffness => largest,
-                Form::Compliance { .. } => 1.0 / largest,
-            }
-        }
-    };
-    let softest = model.bodies.iter().map(of).fold(f64::INFINITY, f64::min);
-    if softest.is_normal() { softest } else { 1.0 }
-}
-
-/// Largest force that the scene's loads reach over its history.
-fn reference_force(model: &Model, kinds: &[Kind]) -> f64 {
-    model.loads.iter().fold(0.0, |most, load| {
-        let peak = model
-            .path
-            .iter()
-            .fold(0.0_f64, |m, &p| m.max(load.scale.at(p).abs()));
-        match kinds[load.dof] {
-            Kind::Force { lever } => most.max(peak * load.value.abs() / lever),
-            Kind::Length => most,
-        }
-    })
 }

@@ -55,10 +55,10 @@ impl Stepper {
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
         let verdict = self.judge_state(&after);
         let Some(worst) = worst_of(&verdict) else {
-            return self.accept(after, verdict, None);
+            return self.land(after, verdict);
         };
         if self.only_marks() {
-            return self.accept(after, verdict, Some(worst));
+            return self.accept(after, verdict, Some(worst), false);
         }
         if worst.law == Law::Slip && !self.state.net {
             self.count_net_slip();
@@ -67,7 +67,7 @@ impl Stepper {
         let why = Failure::Refused(worst);
         match self.cut(&why) {
             Some(cut) => cut,
-            None if worst.law == Law::Touch => self.accept(after, verdict, Some(worst)),
+            None if worst.law == Law::Touch => self.accept(after, verdict, Some(worst), false),
             None => {
                 self.state.next.major += 1;
                 self.state.next.minor = 1;

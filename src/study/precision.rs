@@ -17,8 +17,8 @@ use super::reference::{self, Reference};
 use super::result::{End, Run};
 use super::run::{Watch, one};
 use crate::scene::SceneError;
+use crate::scene::effort::Estimate;
 use crate::scene::model::Model;
-use crate::solve::system::condenses;
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -242,7 +242,7 @@ fn measured(
         let load = super::figure::short(failed.load);
         format!("{} at load {load}", failed.verdict)
     });
-    let factorizations = match condenses(&model, &model.settings) {
+    let factorizations = match Estimate::of(&model).is_condensed(model.settings.solver) {
         true => run.begun,
         false => run.minors(),
     };

@@ -74,6 +74,8 @@ pub enum Reason {
     Refused,
     NoAnswer,
     NotFound,
+    RoundOff,
+    Jump,
 }
 
 impl Reason {
@@ -88,6 +90,8 @@ impl Reason {
             Reason::Jammed => 'j',
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
+            Reason::RoundOff => 'r',
+            Reason::Jump => 'b',
         }
     }
 }
@@ -104,6 +108,8 @@ impl From<&Failure> for Reason {
             Failure::Jammed { .. } => Reason::Jammed,
             Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
+            Failure::Leapt { .. } => Reason::Jump,
+            Failure::RoundOff { .. } => Reason::RoundOff,
             Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
         }
     }
@@ -122,6 +128,8 @@ impl fmt::Display for Reason {
             Reason::Refused => "refused",
             Reason::NoAnswer => "no-answer",
             Reason::NotFound => "not-found",
+            Reason::RoundOff => "round-off",
+            Reason::Jump => "jump",
         })
     }
 }

@@ -164,6 +164,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         Outcome::Increment {
             unsettled: 0,
             marked: None,
+            jumped: false,
             ..
         } => ("✓", theme.good),
         Outcome::Increment { .. } => ("✓", theme.warning),

@@ -111,7 +111,7 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
                     .mesh(mesh)
                     .map_err(|message| Fault::new(path.clone(), message))?;
                 total += 8 * mesh.elements.len();
-                limits::element_nodes(&path, total)?;
+                limits::element_nodes(&path, total, spec.settings.memory)?;
                 Ok(Body {
                     name: id.clone(),
                     nodes: mesh.nodes.clone(),
@@ -130,13 +130,14 @@ pub(super) fn elements(
     names: &Names,
     along: &str,
     total: &mut usize,
+    memory: Option<f64>,
 ) -> Result<Vec<Vec<usize>>, Fault> {
     let chain = names
         .chain(along)
         .map_err(|message| Fault::new(here.clone(), message))?;
     // An element has at most twice as many nodes as it adds to its chain.
     *total += 2 * chain.nodes.len();
-    limits::element_nodes(here, *total)?;
+    limits::element_nodes(here, *total, memory)?;
     Ok(chain.elements())
 }
 
@@ -161,7 +162,13 @@ fn beam(
     names: &Names,
     total: &mut usize,
 ) -> Result<Body, Fault> {
-    let elements = elements(&here.then("along"), names, along, total)?;
+    let elements = elements(
+        &here.then("along"),
+        names,
+        along,
+        total,
+        spec.settings.memory,
+    )?;
     let here = here.then("material");
     let Material::Section { EA, EI, GA, .. } = material(&here, spec, of)? else {
         let message = format!("material {of:?} is a continuum's; a beam needs a Section");

@@ -69,6 +69,17 @@ pub(crate) fn increments(path: &[f64], increment: f64) -> f64 {
     path.windows(2).map(leg).sum()
 }
 
+/// Refuses what is no size of a memory.
+pub(super) fn memory(settings: &Settings) -> Result<(), Fault> {
+    match settings.memory {
+        Some(memory) if !(memory > 0.0 && memory.is_finite()) => Err(Fault::new(
+            at!["settings", "memory"],
+            format!("the memory is {memory:?}; it must be a positive number of gigabytes"),
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Refuses settings with which no solve could end.
 pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
     let here = at!["settings"];

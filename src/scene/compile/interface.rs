@@ -16,7 +16,13 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Su
     let mut total = 0;
     for (k, surface) in spec.surfaces.iter().enumerate() {
         let here = at!["surfaces", k, "along"];
-        let mut elements = elements(&here, names, &surface.along, &mut total)?;
+        let mut elements = elements(
+            &here,
+            names,
+            &surface.along,
+            &mut total,
+            spec.settings.memory,
+        )?;
         check_chain(names, &surface.along, &elements, length)?;
         if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
             let message = "only a straight surface can be endless";
@@ -85,9 +91,6 @@ pub(super) fn slaves(
                 let fresh = taken.insert(node);
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;
                 made.push(slave);
-                if made.len() > limits::SLAVES {
-                    return Err(fault(format!("more than {} slave nodes", limits::SLAVES)));
-                }
             }
             ends.extend(own_ends);
         }

@@ -5,7 +5,7 @@ use super::super::limits;
 use super::super::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load};
 use super::super::nodes::Names;
 use super::super::spec::{Bar, BodySpec, Spec};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// A body given by a stiffness or a compliance. Where the forces of a compliance stand is found later, with the other
 /// degrees of freedom.
@@ -62,22 +62,16 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
 
 /// The nodes of a matrix, each once.
 fn distinct(here: &Path, list: &[String], names: &Names) -> Result<Vec<usize>, Fault> {
-    let mut nodes = Vec::new();
+    let (mut nodes, mut known) = (Vec::new(), HashSet::new());
     for (k, name) in list.iter().enumerate() {
         let fault = |message| Fault::new(here.then(k), message);
         for node in names.nodes(name).map_err(fault)? {
-            if nodes.contains(&node) {
+            if !known.insert(node) {
                 let name = &names.nodes[node].name;
                 return Err(fault(format!("node {name:?} is in the matrix already")));
             }
             nodes.push(node);
         }
-        limits::count(
-            here,
-            nodes.len(),
-            1..=limits::MATRIX_NODES,
-            "the number of nodes",
-        )?;
     }
     if nodes.is_empty() {
         let message = "the list is empty; name at least one node";
@@ -121,7 +115,7 @@ pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Res
         let message = "the list is empty; name at least one bar";
         return Err(Fault::new(here.then("bars"), message));
     }
-    let mut nodes: Vec<usize> = Vec::new();
+    let (mut nodes, mut known) = (Vec::new(), HashMap::new());
     let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     let mut joined = Vec::new();
     for (k, bar) in bars.iter().enumerate() {
@@ -129,9 +123,10 @@ pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Res
         limits::stiffness(&here.then("stiffness"), bar.stiffness, "the stiffness")?;
         limits::finite(&here.then("angle"), bar.angle, "the angle")?;
         let ends = ends(&here.then("nodes"), bar, names)?;
-        let numbers: Vec<usize> = ends.iter().map(|&n| number(&mut nodes, n)).collect();
-        let most = 1..=limits::MATRIX_NODES;
-        limits::count(&here, nodes.len(), most, "the number of nodes of all bars")?;
+        let numbers: Vec<usize> = ends
+            .iter()
+            .map(|&n| number(&mut nodes, &mut known, n))
+            .collect();
         let angle = bar.angle.to_radians();
         let direction = [angle.cos(), angle.sin()];
         for (i, &row) in numbers.iter().enumerate() {
@@ -174,9 +169,8 @@ fn ends(here: &Path, bar: &Bar, names: &Names) -> Result<Vec<usize>, Fault> {
 }
 
 /// The number of a node in a list, to which it is added where it is new.
-fn number(nodes: &mut Vec<usize>, node: usize) -> usize {
-    let found = nodes.iter().position(|&other| other == node);
-    found.unwrap_or_else(|| {
+fn number(nodes: &mut Vec<usize>, known: &mut HashMap<usize, usize>, node: usize) -> usize {
+    *known.entry(node).or_insert_with(|| {
         nodes.push(node);
         nodes.len() - 1
     })

@@ -11,6 +11,7 @@ mod linear;
 mod monitors;
 mod tractions;
 
+use super::effort::Estimate;
 use super::error::{Fault, at};
 use super::geometry;
 use super::limits;
@@ -22,6 +23,7 @@ use layout::Layout;
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
+    history::memory(&spec.settings)?;
     check_texts(spec)?;
     check_lengths(spec)?;
     let names = Names::of(spec)?;
@@ -73,12 +75,16 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         prescribed,
         path: spec.history.path.clone(),
         increment: spec.history.increment,
-        least: spec.history.least(),
+        least: spec.history.least,
+        jumps: spec.history.jumps,
         settings,
         monitors,
         length,
     };
-    Ok((model, names))
+    match Estimate::of(&model).too_large(model.settings.solver) {
+        Some(message) => Err(Fault::new(at!["settings", "memory"], message)),
+        None => Ok((model, names)),
+    }
 }
 
 /// Where a node is held that touches: what `auto` stands for in a scene of these bodies.
