@@ -493,6 +493,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
         after,
         unsettled,
         marked: None,
+        jumped: false,
         last: false,
     };
     assert_eq!(say(done(0)), " ✓ load 0.3 accepted");

@@ -7,7 +7,7 @@ use common::{run, scene};
 use std::sync::Arc;
 use stickslip::contact::decision::Rule;
 use stickslip::scene::condensed::{Contact, Matrix, Problem};
-use stickslip::scene::spec::{History, InitialState, Strategy};
+use stickslip::scene::spec::{History, InitialState, Jumps, Strategy};
 use stickslip::scene::{Friction, Mode, Model, Scene, Settings};
 use stickslip::solve::census::{Census, census};
 use stickslip::solve::event::Singular;
@@ -81,6 +81,7 @@ fn problem(seed: u64) -> Problem {
             path: vec![0.0, 1.0],
             increment: 1.0,
             least: Some(1.0),
+            jumps: Jumps::default(),
         },
         settings: Settings::default(),
     }
