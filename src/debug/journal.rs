@@ -8,19 +8,19 @@
 
 use crate::debug::command::Command;
 use crate::debug::session::Session;
+use crate::outside::input::{self, RECORD_BYTES, Unreadable};
+use crate::outside::shown;
 use crate::scene::{Scene, SceneError, Spec, read};
 use crate::solve::State;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Write as _};
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The format that this program writes, and the only one that it reads.
 pub const FORMAT: u32 = 1;
-/// Most bytes of a journal that is read.
-const MOST_BYTES: u64 = 256 << 20;
 /// How the names of journals end.
 const EXTENSION: &str = "journal";
 
@@ -76,6 +76,8 @@ pub enum JournalError {
         doing: &'static str,
         source: io::Error,
     },
+    #[error("{}: the journal cannot be read: {why}", file.display())]
+    Unread { file: PathBuf, why: Unreadable },
     #[error("{}: the file exists already; `stickslip resume` goes on with a journal", .0.display())]
     Exists(PathBuf),
     #[error("{}: another session is writing this journal", .0.display())]
@@ -283,17 +285,10 @@ impl Record {
     /// # Errors
     /// If the file cannot be read or is damaged, with the line.
     pub fn read(path: &Path) -> Result<Record, JournalError> {
-        let failed = |source| failure(path, "read", source);
-        let mut bytes = Vec::new();
-        File::open(path)
-            .and_then(|open| open.take(MOST_BYTES + 1).read_to_end(&mut bytes))
-            .map_err(failed)?;
-        if bytes.len() as u64 > MOST_BYTES {
-            let most = MOST_BYTES >> 20;
-            return Err(failed(io::Error::other(format!(
-                "it has more than {most} MiB"
-            ))));
-        }
+        let bytes = input::bytes(path, RECORD_BYTES, "no journal has").map_err(|why| {
+            let file = path.to_owned();
+            JournalError::Unread { file, why }
+        })?;
         Record::from_bytes(&path.display().to_string(), &bytes)
     }
 
@@ -306,8 +301,12 @@ impl Record {
             .iter()
             .rposition(|byte| *byte == b'\n')
             .map_or(0, |at| at + 1);
-        let text = str::from_utf8(&bytes[..whole]).map_err(|e| {
-            let good = &bytes[..e.valid_up_to()];
+        let marked = match bytes.starts_with(input::MARK.to_string().as_bytes()) {
+            true => input::MARK.len_utf8().min(whole),
+            false => 0,
+        };
+        let text = str::from_utf8(&bytes[marked..whole]).map_err(|e| {
+            let good = &bytes[..marked + e.valid_up_to()];
             let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
             damaged(file, line, 1, "the line is not text in UTF-8")
         })?;
@@ -416,7 +415,7 @@ fn parsed<T: for<'de> Deserialize<'de>>(
             file,
             number,
             column,
-            &format!("the line is no entry of a journal: {}", e.code),
+            &format!("the line is no entry of a journal: {}", read::plainly(&e.code)),
         )
     })
 }

@@ -1,5 +1,6 @@
 //! What is wrong with a scene, and where.
 
+use crate::outside::shown;
 use std::fmt;
 
 /// One step from a value of the scene file to a value inside it.
@@ -203,21 +204,20 @@ pub(crate) fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     text
 }
 
+/// Most characters that a message repeats of a text from outside.
+const MOST: usize = 60;
+
 /// A text from outside for a message: quoted, and not longer than a line can bear.
 pub(crate) fn quoted(text: &str) -> String {
-    format!("{:?}", shortened(text))
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{:?}…", &text[..end]),
+        None => format!("{text:?}"),
+    }
 }
 
 /// A text from outside, on one line and not longer than a line can bear.
 pub(crate) fn shortened(text: &str) -> String {
-    const MOST: usize = 60;
-    let plain = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    let short: String = text.chars().take(MOST).map(plain).collect();
-    if short.len() < text.len() {
-        short + "…"
-    } else {
-        short
-    }
+    shown::cut(text, MOST)
 }
 
 #[cfg(test)]
