@@ -103,6 +103,7 @@ fn done(model: &Model, entry: &Entry) -> String {
         | Command::Census(_)
         | Command::Remedies
         | Command::Export { .. }
+        | Command::Journal(_)
         | Command::Snapshot { .. } => "Looked around.".into(),
     }
 }

@@ -121,7 +121,10 @@ pub fn kind(found: FileType) -> Option<&'static str> {
         (found.is_dir(), "a directory"),
         (found.is_fifo(), "a pipe"),
         (found.is_socket(), "a socket"),
-        (found.is_char_device() || found.is_block_device(), "a device"),
+        (
+            found.is_char_device() || found.is_block_device(),
+            "a device",
+        ),
         (!found.is_file(), "no file"),
     ];
     kinds.into_iter().find(|(is, _)| *is).map(|(_, kind)| kind)
@@ -143,7 +146,10 @@ mod tests {
             (Path::new("/dev/zero"), "a device"),
         ] {
             let refused = bytes(path, 10, "").unwrap_err();
-            assert!(matches!(refused, Unreadable::NoFile(k) if k == kind), "{refused}");
+            assert!(
+                matches!(refused, Unreadable::NoFile(k) if k == kind),
+                "{refused}"
+            );
         }
         let missing = bytes(&directory.path().join("none"), 10, "").unwrap_err();
         assert!(matches!(missing, Unreadable::Failed(_)));
@@ -155,7 +161,10 @@ mod tests {
         let path = directory.path().join("file");
         std::fs::write(&path, "\u{feff}ten bytes").unwrap();
         assert_eq!(text(&path, 12, "").unwrap(), "ten bytes");
-        assert!(matches!(text(&path, 11, ""), Err(Unreadable::TooLarge { .. })));
+        assert!(matches!(
+            text(&path, 11, ""),
+            Err(Unreadable::TooLarge { .. })
+        ));
         std::fs::write(&path, b"a\nb\xc3\xbc\xff").unwrap();
         let place = text(&path, 12, "").unwrap_err();
         assert!(matches!(place, Unreadable::NoText { line: 2, column: 3 }));

@@ -62,9 +62,15 @@ mod tests {
     #[test]
     fn orders_are_shown_and_letters_stay() {
         assert_eq!(line("\u{1b}]0;x\u{7}"), "\\u{1b}]0;x\\u{7}");
-        assert_eq!(line("a\u{202e}b\u{9b}31m\r\n\t"), "a\\u{202e}b\\u{9b}31m\\u{d}\\u{a}\\u{9}");
+        assert_eq!(
+            line("a\u{202e}b\u{9b}31m\r\n\t"),
+            "a\\u{202e}b\\u{9b}31m\\u{d}\\u{a}\\u{9}"
+        );
         assert_eq!(text("one\n\ttwo\r\n"), "one\n\ttwo\\u{d}\n");
-        assert_eq!(line("φ → 90°, “Wörter”, 日本, עברית"), "φ → 90°, “Wörter”, 日本, עברית");
+        assert_eq!(
+            line("φ → 90°, “Wörter”, 日本, עברית"),
+            "φ → 90°, “Wörter”, 日本, עברית"
+        );
         assert_eq!(cut("abc\u{1b}def", 4), "abc\\u{1b}…");
         assert_eq!(cut("abcd", 4), "abcd");
     }

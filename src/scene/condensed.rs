@@ -123,7 +123,8 @@ impl Problem {
             ("slaves", "nodes") => contact(number).then("id"),
             ("slaves", field) => after(contact(number).then(field), rest),
             ("loads", _) => {
-                let mut loaded = (0..self.contacts.len()).filter(|&k| load(&self.contacts[k]).is_some());
+                let mut loaded =
+                    (0..self.contacts.len()).filter(|&k| load(&self.contacts[k]).is_some());
                 contact(loaded.nth(number).unwrap_or(0)).then("load")
             }
             ("bodies", "free") => after(at!["free"], &turned),

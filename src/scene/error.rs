@@ -47,8 +47,8 @@ impl fmt::Display for Path {
         for (k, step) in self.0.iter().enumerate() {
             match step {
                 Step::Index(index) => write!(f, "[{index}]")?,
-                Step::Key(key) if k == 0 => f.write_str(key)?,
-                Step::Key(key) => write!(f, ".{key}")?,
+                Step::Key(key) if k == 0 => f.write_str(&shortened(key))?,
+                Step::Key(key) => write!(f, ".{}", shortened(key))?,
             }
         }
         Ok(())
@@ -112,7 +112,7 @@ impl SceneError {
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file)?;
+        f.write_str(&shown::cut(&self.file, LONGEST_NAME))?;
         if let Some((line, column)) = self.at {
             write!(f, ":{line}:{column}")?;
         }
@@ -204,6 +204,8 @@ pub(crate) fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     text
 }
 
+/// Most characters of a file's name in a message.
+const LONGEST_NAME: usize = 300;
 /// Most characters that a message repeats of a text from outside.
 const MOST: usize = 60;
 

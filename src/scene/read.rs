@@ -57,7 +57,10 @@ pub(crate) fn shallow(file: &str, text: &str, what: &str) -> Result<(), SceneErr
         None => Ok(()),
         Some(byte) => Err(SceneError {
             at: Some(line_and_column(text, byte)),
-            ..SceneError::whole(file, format!("brackets are nested far too deep for a {what}"))
+            ..SceneError::whole(
+                file,
+                format!("brackets are nested far too deep for a {what}"),
+            )
         }),
     }
 }
@@ -119,7 +122,9 @@ pub(crate) fn text(file: &str) -> Result<String, SceneError> {
 /// Why a file with a scene is not read.
 pub(crate) fn unread(file: &str, error: Unreadable) -> SceneError {
     let (at, more) = match error {
-        Unreadable::NoText { line, column } => (Some((line, column)), "; a scene is written in RON"),
+        Unreadable::NoText { line, column } => {
+            (Some((line, column)), "; a scene is written in RON")
+        }
         _ => (None, ""),
     };
     SceneError {

@@ -170,7 +170,10 @@ impl Log {
         let size = file.metadata().map_err(failed)?.len();
         if size > MOST_BYTES {
             let what = "no file of kept results is read that has";
-            let why = Unreadable::TooLarge { most: MOST_BYTES, what };
+            let why = Unreadable::TooLarge {
+                most: MOST_BYTES,
+                what,
+            };
             return Err(LogError::Unread {
                 path: path.to_owned(),
                 why,

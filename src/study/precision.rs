@@ -17,6 +17,7 @@ use super::reference::{self, Reference};
 use super::result::{End, Run};
 use super::run::{Watch, one};
 use crate::outside::input::{self, MARK, TABLE_BYTES};
+use crate::outside::shown;
 use crate::scene::SceneError;
 use crate::scene::error::quoted;
 use crate::scene::model::Model;
@@ -28,6 +29,9 @@ use std::path::Path;
 
 /// Most characters of a name in a table that is read.
 const MOST_NAME: usize = 200;
+/// Most comments of a table that are kept, and most characters of one.
+const MOST_COMMENTS: usize = 40;
+const MOST_COMMENT: usize = 2000;
 /// Most runs of a table that is read.
 const MOST_RUNS: usize = 20_000;
 /// Runs that take this long altogether (seconds) are not repeated any more.
@@ -524,7 +528,8 @@ pub fn read(
 ) -> Result<Vec<Precision>, String> {
     let text = text.strip_prefix(MARK).unwrap_or(text);
     let comments = text.lines().filter_map(|line| line.strip_prefix('#'));
-    let about: Vec<String> = comments.map(|line| line.trim().to_owned()).collect();
+    let about = comments.map(|line| shown::cut(line.trim(), MOST_COMMENT));
+    let about: Vec<String> = about.take(MOST_COMMENTS).collect();
     let lines = text
         .lines()
         .enumerate()
@@ -572,7 +577,10 @@ pub fn read(
                 let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
                 let wrong = || {
                     let word = quoted(word);
-                    format!("{}: {word} under {head} is no number that can be drawn", at(head))
+                    format!(
+                        "{}: {word} under {head} is no number that can be drawn",
+                        at(head)
+                    )
                 };
                 value.map(Some).ok_or_else(wrong)
             }
@@ -662,7 +670,10 @@ pub fn csv(charts: &[Precision]) -> String {
             &settings.join(" "),
             status,
         ];
-        let words: Vec<String> = words.into_iter().map(|word| super::csv::field(word)).collect();
+        let words: Vec<String> = words
+            .into_iter()
+            .map(|word| super::csv::field(word))
+            .collect();
         // Writing to a string does not fail.
         let _ = writeln!(
             text,

@@ -16,7 +16,7 @@
 
 use super::builtin;
 use crate::scene::error::{Path, SceneError, Step, did_you_mean, quoted};
-use crate::scene::locate::locate;
+use crate::scene::locate::{locate, too_deep};
 use crate::scene::read::{options, plainly, shallow, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
@@ -355,6 +355,10 @@ fn plain(path: &serde_path_to_error::Path) -> Path {
 
 /// Whether a text is a study: it names scenes, or varies something, which no scene does. It need not be sound.
 fn is_study(text: &str) -> bool {
+    if too_deep(text).is_some() {
+        // It is neither, and whoever reads it says so.
+        return true;
+    }
     let whole = locate(text, &Path::default());
     ["scene", "scenes", "vary"]
         .iter()

@@ -87,11 +87,10 @@ impl Reference {
             .ok_or_else(|| format!("{name}:1:1: there is no header"))?;
         let heads: Vec<&str> = header.split(',').map(str::trim).collect();
         let place = |wanted: &str| heads.iter().position(|head| *head == wanted);
-        let load = place("load")
-            .ok_or_else(|| {
-                let header = quoted(header.trim());
-                format!("{name}:{first}:1: the header has no column load: {header}")
-            })?;
+        let load = place("load").ok_or_else(|| {
+            let header = quoted(header.trim());
+            format!("{name}:{first}:1: the header has no column load: {header}")
+        })?;
         let leg = place("leg");
         let words = ["load", "leg", "increment", "majors", "minors"];
         let columns: Vec<usize> = (0..heads.len())

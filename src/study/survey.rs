@@ -125,7 +125,9 @@ impl Survey {
                     "{},{k},{nodes},{form},{cohesive},{answers},{},{word},{detail},{},{},{:?}",
                     self.population.seed,
                     super::csv::field(&variant.name),
-                    trial.majors, trial.minors, trial.violation
+                    trial.majors,
+                    trial.minors,
+                    trial.violation
                 );
             }
         }
