@@ -23,7 +23,7 @@ fn kept(scene: &str) -> Kept {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("a.journal");
     let mut session = Session::new(Scene::open(scene, &[]).expect("a built-in scene"));
-    session.keep(Journal::create(&path, session.scene()).expect("a journal"));
+    session.keep(Journal::create(&path, session.scene(), &[]).expect("a journal"));
     Kept {
         session,
         path,
@@ -142,7 +142,7 @@ fn a_journal_that_goes_on_replays_as_a_whole() {
     type_lines(&mut session, &["continue", "force beam.5 sliding"]);
     assert!(matches!(Journal::open(&path), Err(JournalError::Busy(_))));
     assert!(matches!(
-        Journal::create(&path, session.scene()),
+        Journal::create(&path, session.scene(), &[]),
         Err(JournalError::Exists(_))
     ));
     drop(session);
