@@ -529,8 +529,13 @@ fn stamp(seconds: u64) -> String {
     format!("{year:04}{month:02}{day:02}-{hour:02}{minute:02}{second:02}")
 }
 
-/// Year, month, day, hour, minute and second of a time since 1970, UTC.
+/// The last second of the year 9999.
+const LAST_SECOND: u64 = 253_402_300_799;
+
+/// Year, month, day, hour, minute and second of a time since 1970, UTC; no later than the year 9999.
 pub(super) fn date(seconds: u64) -> [u64; 6] {
+    // A file may claim any time; years are counted one by one here.
+    let seconds = seconds.min(LAST_SECOND);
     let (mut days, rest) = (seconds / 86_400, seconds % 86_400);
     let leap = |year: u64| {
         (year.is_multiple_of(4) && !year.is_multiple_of(100)) || year.is_multiple_of(400)
@@ -571,5 +576,6 @@ mod tests {
         assert_eq!(stamp(1_709_251_200), "20240301-000000");
         assert_eq!(stamp(1_735_689_599), "20241231-235959");
         assert_eq!(stamp(4_107_542_400), "21000301-000000");
+        assert_eq!(stamp(u64::MAX), "99991231-235959");
     }
 }

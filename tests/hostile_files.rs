@@ -281,6 +281,7 @@ const READERS: &[&str] = &[
     "lesson --check FILE",
     "story FILE",
     "resume --check FILE",
+    "audit FILE",
     "replay FILE",
     "diff FILE FILE",
     "chart --from FILE",
