@@ -515,7 +515,7 @@ impl Session {
                 "it leads to step {cursor} of branch b{}, and led to step {} of b{}",
                 branch + 1,
                 entry.cursor,
-                entry.branch + 1
+                entry.branch.saturating_add(1)
             ));
         }
         let digest = journal::digest(&self.frame().state);
@@ -595,6 +595,10 @@ impl Session {
         let strips = self.strips();
         let (mut at, mut hits) = (self.cursor, Vec::new());
         for _ in 0..count {
+            if at == 0 {
+                // However much farther it was to go.
+                break;
+            }
             let here = |k: usize| match k {
                 0 => Vec::new(),
                 k => breakpoints::hits(&self.breakpoints, &strips[k - 1], &strips[k]),

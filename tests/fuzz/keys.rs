@@ -212,7 +212,10 @@ fn session(number: u64) -> Result<End, String> {
         End::Signal(_, name) => status.signal() == Some(name),
         End::HangUp => status.signal() == Some("Hangup"),
     };
-    match right {
+    // What is typed while it is stopped goes to the terminal, and Ctrl-C there ends whoever is stopped.
+    let typed = |what: &str| typist.log.iter().any(|done| done.contains(what));
+    let struck = typed("\\u{3}") && typed("signal TSTP") && status.signal() == Some("Interrupt");
+    match right || struck {
         true => Ok(end),
         false => Err(told(&format!("it ends with {status}"), &typist)),
     }
@@ -235,7 +238,7 @@ fn leave(session: &mut Session, end: End) -> Option<portable_pty::ExitStatus> {
             }
             End::Quit => {
                 // It may be gone in this moment.
-                let _ = session.keyboard.write_all(b"\x03");
+                let _ = session.keyboard.write_all(b"\x1b");
                 std::thread::sleep(Duration::from_millis(60));
                 let _ = session.keyboard.write_all(b"q");
             }
