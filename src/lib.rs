@@ -2,6 +2,7 @@
 //!
 //! The map of the house, from the ground up; an arrow of use only ever points down this list.
 //!
+//! - [`outside`]: what comes from outside: files that are read, and texts of them that are shown.
 //! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
 //! - [`linalg`]: the only place that knows faer, a package of its own. Sparsity patterns, factors, checked solves.
 //! - [`fem`]: the bodies. Shape functions, beams, quadrilaterals, materials, assembly of internal forces and tangent.
@@ -15,6 +16,7 @@ pub mod cli;
 pub mod contact;
 pub mod debug;
 pub mod fem;
+pub mod outside;
 pub mod scene;
 pub mod solve;
 pub mod study;

@@ -233,7 +233,7 @@ fn wrong_usage_is_refused_with_2() {
         (vec![CIRCLE, "--over", "nonsense=1"], "no value"),
         (
             vec![BEAM, "--over", "increment=0.05", "--reference", "bad.csv"],
-            "bad.csv:2: \"x\" under u_x",
+            "bad.csv:2:3: \"x\" under u_x",
         ),
         (
             vec![BEAM, "--over", "increment=0.05", "--reference", "none.csv"],
@@ -300,11 +300,11 @@ fn a_table_is_drawn_again_as_it_was_and_tables_of_other_programs_too() {
         ("scene,series,run,status,error,seconds\n", "no rows"),
         (
             "scene,series,run,status,error,seconds\nA,b,c,whole,x,1\n",
-            "c.csv:2: \"x\" under error",
+            "c.csv:2:13: \"x\" under error",
         ),
         (
             "scene,series,run,status,error,seconds\nA,b,c\n",
-            "c.csv:2: the row has 3 fields",
+            "c.csv:2:1: the row has 3 fields",
         ),
     ] {
         std::fs::write(directory.path().join("c.csv"), text).unwrap();

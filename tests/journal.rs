@@ -23,7 +23,7 @@ fn kept(scene: &str) -> Kept {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("a.journal");
     let mut session = Session::new(Scene::open(scene, &[]).expect("a built-in scene"));
-    session.keep(Journal::create(&path, session.scene()).expect("a journal"));
+    session.keep(Journal::create(&path, session.scene(), &[]).expect("a journal"));
     Kept {
         session,
         path,
@@ -142,7 +142,7 @@ fn a_journal_that_goes_on_replays_as_a_whole() {
     type_lines(&mut session, &["continue", "force beam.5 sliding"]);
     assert!(matches!(Journal::open(&path), Err(JournalError::Busy(_))));
     assert!(matches!(
-        Journal::create(&path, session.scene()),
+        Journal::create(&path, session.scene(), &[]),
         Err(JournalError::Exists(_))
     ));
     drop(session);
@@ -371,4 +371,56 @@ fn resume_and_story_on_the_command_line_end_as_they_should() {
         2,
         "other:5:",
     );
+}
+
+#[test]
+fn numbers_without_measure_keep_nobody_waiting() {
+    let mut kept = kept(OSCILLATES);
+    type_lines(
+        &mut kept.session,
+        &["step 2", "reverse-step 4294967295", "step 4294967295"],
+    );
+    // A year that nobody counts up to.
+    let text = changed(&kept.path, 1, |line| {
+        let (before, after) = line.split_once("began:").expect("a time");
+        let (_, after) = after.split_once(',').expect("more");
+        format!("{before}began:{},{after}", u64::MAX)
+    });
+    let record = Record::from_bytes("j", &text).expect("a journal");
+    assert!(story(&record).expect("a story").contains("9999-12-31"));
+}
+
+#[test]
+fn a_command_that_writes_files_is_not_done_on_the_word_of_a_journal() {
+    let mut kept = kept(OSCILLATES);
+    type_lines(&mut kept.session, &["step", "rename x"]);
+    let file = kept.directory.path().join("written.ron");
+    let text = changed(&kept.path, 4, |line| {
+        let command = format!(
+            "command:Snapshot(file:{:?},overwrite:true)",
+            file.to_str().expect("a name")
+        );
+        line.replace("command:Rename(\"x\")", &command)
+    });
+    let text = String::from_utf8(text).expect("text");
+    assert!(text.contains("Snapshot("), "{text}");
+    let record = Record::from_bytes("j", text.as_bytes()).expect("a journal");
+    let told = record.replay().map(|_| ()).expect_err("a refusal");
+    assert!(told.to_string().contains("no journal has such a command"));
+    assert!(!file.exists());
+}
+
+#[test]
+fn places_that_no_session_has_are_told_and_no_panic() {
+    let mut kept = kept(OSCILLATES);
+    type_lines(&mut kept.session, &["step"]);
+    for (from, to) in [
+        ("branch:0", format!("branch:{}", usize::MAX)),
+        ("cursor:1", format!("cursor:{}", usize::MAX)),
+    ] {
+        let text = changed(&kept.path, 3, |line| line.replacen(from, &to, 1));
+        let record = Record::from_bytes("j", &text).expect("a journal");
+        story(&record).expect("a story");
+        assert!(record.replay().is_err());
+    }
 }

@@ -356,7 +356,7 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a.journal");
     let mut session = session("osc-two6");
-    session.keep(Journal::create(&path, session.scene()).unwrap());
+    session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
     session.wait_for_looks();
@@ -478,7 +478,8 @@ fn what_no_chart_can_be_made_of_is_told() {
         ("chart refine=", "refine"),
         ("chart no-such-file.csv", "no-such-file.csv"),
     ] {
-        let debugger = measuring(line);
+        let mut debugger = measuring(line);
+        debugger.settle();
         let shown = debugger.text(120, 40);
         assert!(
             shown.contains(told) && !shown.contains("Work and precision"),

@@ -14,8 +14,12 @@ mod common;
 
 use common::scene;
 use proptest::prelude::*;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::Rng;
 use std::path::PathBuf;
 use std::sync::Arc;
+use stickslip::debug::command::{Action, Command, Context, parse};
+use stickslip::debug::session::Session;
 use stickslip::debug::snapshot::{Applied, Snapshot, SnapshotError, compare};
 use stickslip::scene::Mode;
 use stickslip::solve::{Intervention, Outcome, Stepper};
@@ -79,6 +83,98 @@ fn numbers_that_are_none_and_extreme_ones_survive() {
         assert_eq!(bits(&read), bits(&snapshot), "{value:?}");
         assert!(compare(&read, &snapshot).is_empty(), "{value:?}");
     }
+}
+
+/// A session of random lines on a scene; the lines, and the snapshot after each that changed anything.
+fn random_session(scene_name: &str, seed: u64, file: &std::path::Path) -> Vec<(String, Snapshot)> {
+    const MODES: [&str; 3] = ["free", "sliding", "fixed"];
+    const STRATEGIES: [&str; 6] = ["table2", "ladder", "newton", "lemke", "least", "block"];
+    let mut random = Pcg64::new(u128::from(seed), 1);
+    let mut pick = |count: usize| (random.next_u64() % count as u64) as usize;
+    let mut session = Session::new(scene(scene_name, &[]));
+    let slaves = session.model().slaves.len();
+    let (mut lines, mut taken) = (Vec::new(), Vec::new());
+    for _ in 0..24 {
+        let slave = session.model().slaves[pick(slaves)].node;
+        let node = session.model().nodes[slave].name.clone();
+        let mode = MODES[pick(3)];
+        let line = match pick(16) {
+            0..=2 => format!("step {}", 1 + pick(3)),
+            3 => "next".into(),
+            4..=5 => "finish".into(),
+            6 => "continue".into(),
+            7 => format!("reverse-step {}", 1 + pick(3)),
+            8 => format!("goto {}", pick(session.frames().len())),
+            9 => format!("force {node} {mode}"),
+            10 => format!("hold {node} {mode}"),
+            11 => format!("release {node}"),
+            12 => format!("increment {}", [0.01, 0.1, 0.3][pick(3)]),
+            13 => format!("friction {}", 5 + pick(40)),
+            14 => format!("set settings.strategy {}", STRATEGIES[pick(6)]),
+            _ => "branch-next".into(),
+        };
+        let context = Context {
+            model: Some(session.model()),
+            ..Context::default()
+        };
+        let Ok(Action::Session(command)) = parse(&line, &context) else {
+            panic!("{line}")
+        };
+        // A history that is done takes no change: that is a line without effect.
+        let done = session.submit(command).is_ok();
+        session.wait();
+        lines.push(line);
+        if done {
+            let write = Command::Snapshot {
+                file: Some(file.to_owned()),
+                overwrite: true,
+            };
+            session.submit(write).unwrap();
+            taken.push((lines.join(", "), Snapshot::read(file).unwrap()));
+        }
+    }
+    taken
+}
+
+/// What the session writes does not depend on how it came there: every snapshot replays.
+#[test]
+#[ignore = "the residual at the start of a major iteration is lost where a session goes on in its midst: it is no part of the state"]
+fn every_snapshot_that_a_session_of_random_lines_writes_replays() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("snapshot.ron");
+    let scenes = [
+        "osc-three10",
+        "osc-two6",
+        "osc-inclined-cantilever",
+        "osc-zig3",
+        "osc-touch2",
+        "osc-block-slide",
+        "04-cantilever-rigid-circle",
+    ];
+    let (mut wrong, mut all) = (Vec::new(), 0);
+    for (k, name) in scenes.iter().enumerate() {
+        for seed in 0..6 {
+            for (lines, snapshot) in random_session(name, 100 * k as u64 + seed, &file) {
+                all += 1;
+                let again = snapshot
+                    .replay()
+                    .unwrap_or_else(|e| panic!("{name}: {lines}: {e}"));
+                let differences = compare(&snapshot, &again);
+                if !differences.is_empty() {
+                    wrong.push(format!("{name}: {lines}\n{differences}"));
+                    // What comes after it is wrong for the same reason.
+                    break;
+                }
+            }
+        }
+    }
+    assert!(all > 500, "{all}");
+    assert!(
+        wrong.is_empty(),
+        "{} of {all}:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }
 
 /// The tip forced to sliding once, then the increment halved: what the debugger's user does on this scene.

@@ -172,7 +172,13 @@ fn a_broken_file_is_refused_with_its_line() {
         let error = Scene::from_text("x.dat", &text, &[])
             .unwrap_err()
             .to_string();
-        assert!(error.starts_with(&format!("x.dat:{line}:1: ")), "{error}");
+        let place = format!("x.dat:{line}:{}: ", broken.column);
+        assert!(error.starts_with(&place), "{error}");
+    }
+    // The column is that of the word.
+    for (wrong, column) in [("3,0e-01", 20), ("nan", 20)] {
+        let broken = read(&dense.replacen("3.0e-01", wrong, 1)).unwrap_err();
+        assert_eq!(broken.column, column);
     }
 }
 

@@ -65,8 +65,7 @@ fn cost(text: &str) -> Result<Cost, String> {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(file) = &args.from {
         let name = file.display().to_string();
-        let text =
-            std::fs::read_to_string(file).map_err(|e| Error::Usage(format!("{name}: {e}")))?;
+        let text = precision::open(file).map_err(Error::Usage)?;
         let charts = precision::read(&name, &text, args.cost, args.target).map_err(Error::Usage)?;
         let outputs = Outputs::open(&args.out)?;
         return finish(args, outputs, &charts);

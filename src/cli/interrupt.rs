@@ -6,6 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The signals that ask a program to end.
 const SIGNALS: [i32; 2] = [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM];
 
+/// Lets a write beyond the limit of a file's size fail like any other that fails, instead of ending the program in its midst.
+pub fn let_large_writes_fail() {
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
 /// Makes Ctrl-C end the program with the code that says so.
 pub fn end_at_once() {
     let always = Arc::new(AtomicBool::new(true));

@@ -27,6 +27,7 @@ mod table;
 use crate::debug::files::FileError;
 use crate::debug::journal::JournalError;
 use crate::debug::snapshot::SnapshotError;
+use crate::outside::shown;
 use crate::scene::{Scene, SceneError};
 use crate::study::origin;
 use clap::{Parser, Subcommand};
@@ -164,10 +165,15 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help is an error for clap, too; where it cannot be printed there is nobody to tell.
-            let _ = error.print();
+            let told = error.render().to_string();
+            match error.use_stderr() {
+                true => tell(told.trim_end_matches('\n')),
+                false => drop(say(&told)),
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    interrupt::let_large_writes_fail();
     if !matches!(
         cli.command,
         None | Some(
@@ -212,11 +218,12 @@ pub fn main() -> ExitCode {
 
 /// A message to the user. Unlike `eprintln`, it survives a standard error that nobody reads.
 fn tell(message: &str) {
-    let _ = writeln!(io::stderr(), "{message}");
+    let _ = writeln!(io::stderr(), "{}", shown::text(message));
 }
 
 /// Data to standard output. A reader that has seen enough is no fault.
 fn say(text: &str) -> Result<(), Error> {
+    let text = shown::text(text);
     let mut out = io::stdout().lock();
     let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     match written {

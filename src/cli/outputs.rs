@@ -3,6 +3,7 @@
 use super::Error;
 use super::sink::{Sent, Sink};
 use crate::debug::files::Output;
+use crate::outside::shown;
 use crate::study::plot::PlotError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
@@ -123,8 +124,13 @@ fn write(mut output: Output, bytes: &[u8]) -> Result<(), Error> {
     Ok(output.finish()?)
 }
 
+/// Most characters of a cell of a table for people.
+const MOST_CELL: usize = 200;
+
 /// Lines of a table: the first columns, so many, and the last one to the left, numbers to the right.
 pub fn aligned(table: &[Vec<String>], first: usize) -> Vec<String> {
+    let harmless = |row: &Vec<String>| row.iter().map(|cell| shown::cut(cell, MOST_CELL)).collect();
+    let table: Vec<Vec<String>> = table.iter().map(harmless).collect();
     let columns = table.first().map_or(0, Vec::len);
     let width = |k: usize| table.iter().map(|row| row[k].width()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();

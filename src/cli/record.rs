@@ -2,14 +2,14 @@
 
 use super::interrupt::Interrupt;
 use super::{Error, Exit, SceneArgs, say, tell};
-use crate::debug::files::Output;
+use crate::debug::files::{self, Output};
 use crate::debug::report;
 use crate::debug::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::solve::{Event, Failure, Outcome, Stepper};
 use std::fmt;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -59,8 +59,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 }
 
 fn default_name(scene: &Scene, at: At) -> PathBuf {
-    let stem = Path::new(&scene.name).file_stem().unwrap_or_default();
-    PathBuf::from(format!("{}-{at}.ron", stem.to_string_lossy()))
+    PathBuf::from(format!("{}-{at}.ron", files::stem(&scene.name)))
 }
 
 /// A place in a run.

@@ -2,6 +2,7 @@
 
 use super::Error;
 use crate::debug::files::Output;
+use crate::outside::shown;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -32,6 +33,7 @@ impl Sink {
 
     /// Sends whole lines.
     pub fn send(&mut self, lines: &str) -> Result<Sent, Error> {
+        let lines = shown::text(lines);
         match self {
             Sink::File(output) => match output.write_all(lines.as_bytes()) {
                 Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),

@@ -14,6 +14,7 @@
 use crate::debug::report;
 use crate::scene::Model;
 use crate::solve::{Event, Failure, Outcome};
+use crate::study::csv::field;
 use std::fmt::Write;
 
 /// The first line of `--csv`.
@@ -84,15 +85,6 @@ fn residual(event: &Event) -> f64 {
             *relative
         }
         _ => event.before.relative,
-    }
-}
-
-/// A text as a field of a CSV file.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
     }
 }
 

@@ -81,6 +81,8 @@ pub enum Command {
         file: Option<PathBuf>,
         overwrite: bool,
     },
+    /// Begin a journal in a new file, with all that was done; none tells where it is.
+    Journal(Option<PathBuf>),
 }
 
 /// What can be written as a scene of its own.
@@ -396,6 +398,7 @@ enum Verb {
     /// A command without arguments.
     Plain(Command),
     Census,
+    Journal,
     Export {
         what: Exported,
         overwrite: bool,
@@ -517,6 +520,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "core!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Core, overwrite: true }),
     entry(Group::Program, "export", "FILE", &[], "", "Write the frozen interface problem of all nodes as a scene of its own", Verb::Export { what: Exported::Whole, overwrite: false }),
     entry(Group::Program, "export!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Whole, overwrite: true }),
+    entry(Group::Program, "journal", "[FILE]", &[], "", "Keep the journal in this new file, with all that was done; or tell where it is", Verb::Journal),
     entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one", Verb::Open),
     entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
     entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
@@ -541,8 +545,15 @@ pub fn by_key(key: &str) -> Option<&'static Entry> {
     ACTIONS.iter().find(|entry| entry.keys.contains(&key))
 }
 
+/// Most characters of an action's name, and of what follows it.
+const LONGEST_NAME: usize = 40;
+const LONGEST_REST: usize = 1000;
+
 /// The entry that a word names: its name, its one-letter key, or the beginning of one name only.
 pub fn by_name(word: &str) -> Result<&'static Entry, String> {
+    if word.chars().count() > LONGEST_NAME {
+        return Err("no action's name is so long; ? lists them all".into());
+    }
     if let Some(entry) = ACTIONS.iter().find(|entry| entry.name == word) {
         return Ok(entry);
     }
@@ -587,6 +598,12 @@ pub fn parse(line: &str, context: &Context) -> Result<Action, String> {
 impl Entry {
     /// The action that this entry is with these arguments.
     pub fn act(&self, rest: &str, context: &Context) -> Result<Action, String> {
+        if rest.chars().count() > LONGEST_REST {
+            return Err(format!(
+                "what follows {} is longer than {LONGEST_REST} characters",
+                self.name
+            ));
+        }
         let words: Vec<&str> = rest.split_whitespace().collect();
         if words.len() > self.most_words() {
             return Err(self.usage());
@@ -656,6 +673,7 @@ impl Entry {
                     overwrite: *overwrite,
                 }
             }
+            Verb::Journal => Command::Journal((!rest.is_empty()).then(|| PathBuf::from(rest))),
             Verb::Node if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Node))),
             Verb::Node => return Ok(Action::Ui(Ui::Select(find(rest, context)?))),
             Verb::Open if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Scene))),
@@ -702,7 +720,7 @@ impl Entry {
     fn most_words(&self) -> usize {
         match self.verb {
             Verb::Snapshot { .. } | Verb::Open | Verb::Monitor => usize::MAX,
-            Verb::Lesson | Verb::Chart => usize::MAX,
+            Verb::Lesson | Verb::Chart | Verb::Journal => usize::MAX,
             Verb::Export { .. } | Verb::Census => usize::MAX,
             Verb::Branch(None) | Verb::Rename | Verb::Compare => usize::MAX,
             Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,

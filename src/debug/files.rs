@@ -1,8 +1,15 @@
 //! The one way in which files are written: whole or not at all, and never over another one unasked.
 
+use crate::outside::input;
+use rustix::fs::{FlockOperation, OFlags, flock};
+use rustix::io::Errno;
+use rustix::process::{Pid, test_kill_process};
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
+use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use tempfile::NamedTempFile;
 
 /// Why a file could not be written.
@@ -43,22 +50,22 @@ impl Output {
             && !found.is_file()
             && !found.is_dir()
         {
-            let open = File::options().write(true).open(path).map_err(failed)?;
+            let open = straight(path).map_err(failed)?;
             return Ok(Output {
                 target: path.to_owned(),
                 overwrite,
                 to: To::Straight(BufWriter::new(open)),
             });
         }
+        if found.as_ref().is_some_and(|found| found.is_dir()) {
+            return Err(failed(io::Error::other("it is a directory")));
+        }
         // A dangling link has no metadata, and is still not ours to replace.
         if (found.is_some() || path.is_symlink()) && !overwrite {
             return Err(FileError::Exists(path.to_owned()));
         }
-        if found.is_some_and(|found| found.is_dir()) {
-            return Err(failed(io::Error::other("it is a directory")));
-        }
-        // Where the name is a link, what it points to is replaced, and not the link.
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        // Where the name is a link, what it points to is replaced or made, and not the link.
+        let target = followed(path).map_err(failed)?;
         let to = beside(&target).map_err(failed)?;
         Ok(Output {
             target,
@@ -107,6 +114,58 @@ impl Output {
     }
 }
 
+/// A device or a pipe, to be written to as it is; a pipe that nobody reads is not waited for.
+fn straight(path: &Path) -> io::Result<File> {
+    let unwaiting = OFlags::NONBLOCK | OFlags::NOCTTY;
+    let mut options = File::options();
+    options.write(true).custom_flags(unwaiting.bits() as i32);
+    let open = options
+        .open(path)
+        .map_err(|error| match Errno::from_io_error(&error) {
+            Some(Errno::NXIO) => io::Error::other("it is a pipe that nobody reads"),
+            _ => error,
+        })?;
+    // Who reads it may take his time.
+    let flags = rustix::fs::fcntl_getfl(&open)?;
+    rustix::fs::fcntl_setfl(&open, flags - OFlags::NONBLOCK)?;
+    Ok(open)
+}
+
+/// Refuses what exists and is no regular file: whoever must not wait cannot write there.
+///
+/// # Errors
+/// That it is none.
+pub fn regular(path: &Path) -> Result<(), FileError> {
+    let found = std::fs::metadata(path).ok();
+    match found.and_then(|found| input::kind(found.file_type())) {
+        None => Ok(()),
+        Some(kind) => Err(FileError::Failed {
+            path: path.to_owned(),
+            source: io::Error::other(format!("it is {kind}")),
+        }),
+    }
+}
+
+/// What a name stands for in the end: links are followed, whether there is anything at their end or not.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    /// As many as systems follow.
+    const MOST_LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match std::fs::read_link(&target) {
+            Ok(next) => target = target.parent().unwrap_or(Path::new("")).join(next),
+            Err(_) => return Ok(target),
+        }
+    }
+    Err(Errno::LOOP.into())
+}
+
+/// How temporary files are called: this, the number of the process that writes, and something random.
+const PREFIX: &str = ".stickslip-";
+const SUFFIX: &str = ".tmp";
+/// Held where temporary files are made, locked and swept, so that no thread takes another's new one for abandoned.
+static MAKING: Mutex<()> = Mutex::new(());
+
 /// A nameless file in the target's directory, so that it can take the target's name in one step.
 fn beside(target: &Path) -> io::Result<NamedTempFile> {
     let directory = match target.parent() {
@@ -116,12 +175,56 @@ fn beside(target: &Path) -> io::Result<NamedTempFile> {
     if target.file_name().is_none() {
         return Err(io::Error::other("it is no name of a file"));
     }
+    let prefix = format!("{PREFIX}{}-", std::process::id());
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".stickslip-");
     // Temporary files are private unless told otherwise; results are as public as other files are.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(directory)
+    builder
+        .prefix(&prefix)
+        .suffix(SUFFIX)
+        .permissions(PermissionsExt::from_mode(0o666));
+    let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
+    sweep(directory);
+    let made = builder.tempfile_in(directory)?;
+    // Where a file system knows no locks, the process's number has to do.
+    let _ = flock(made.as_file(), FlockOperation::NonBlockingLockExclusive);
+    Ok(made)
+}
+
+/// Removes what killed runs have left in a directory: temporary files of processes that are no more, and that nobody holds.
+/// What cannot be removed is left: it is not ours.
+fn sweep(directory: &Path) {
+    let Ok(entries) = std::fs::read_dir(directory) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let abandoned = writer(&entry.file_name()).is_some_and(is_gone)
+            && entry.file_type().is_ok_and(|kind| kind.is_file());
+        if !abandoned {
+            continue;
+        }
+        let free = File::open(entry.path())
+            .is_ok_and(|file| flock(&file, FlockOperation::NonBlockingLockExclusive).is_ok());
+        if free {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// The number of the process that a temporary file of ours was made by.
+fn writer(name: &OsStr) -> Option<i32> {
+    let name = name.to_str()?.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
+    let (number, random) = name.split_once('-')?;
+    let is_random = !random.is_empty() && random.chars().all(|c| c.is_ascii_alphanumeric());
+    number.parse().ok().filter(|_| is_random)
+}
+
+/// Whether there is no such process any more. Our own number may have been another's before: whether a file with it is held
+/// tells.
+fn is_gone(process: i32) -> bool {
+    let Some(pid) = Pid::from_raw(process) else {
+        return false;
+    };
+    process as u32 == std::process::id() || test_kill_process(pid) == Err(Errno::SRCH)
 }
 
 impl Write for Output {
@@ -138,6 +241,21 @@ impl Write for Output {
             To::Straight(file) => file.flush(),
         }
     }
+}
+
+/// What the name of a file begins with that is called after a scene: letters, digits, `-`, `_` and `.` of the scene's own.
+pub fn stem(scene: &str) -> String {
+    const MOST: usize = 64;
+    let stem = Path::new(scene).file_stem().unwrap_or_default();
+    let plain = |c: char| match c.is_alphanumeric() || "-_.".contains(c) {
+        true => c,
+        false => '_',
+    };
+    stem.to_string_lossy()
+        .chars()
+        .take(MOST)
+        .map(plain)
+        .collect()
 }
 
 /// Writes a whole text.
@@ -175,6 +293,80 @@ mod tests {
         write(&path, "whole", false).unwrap();
         assert_eq!(names(directory.path()), ["a.csv"]);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "whole");
+    }
+
+    #[test]
+    fn a_dangling_link_is_made_good_where_that_is_asked_for_and_stays_a_link() {
+        use std::os::unix::fs::symlink;
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        std::fs::create_dir(at("sub")).unwrap();
+        symlink("sub/there.csv", at("first")).unwrap();
+        symlink("first", at("link")).unwrap();
+        assert!(matches!(
+            write(&at("link"), "a", false),
+            Err(FileError::Exists(_))
+        ));
+        for text in ["a", "b"] {
+            write(&at("link"), text, true).unwrap();
+            assert_eq!(std::fs::read_to_string(at("sub/there.csv")).unwrap(), text);
+            assert!(at("link").is_symlink() && at("first").is_symlink());
+        }
+        symlink("nowhere/x", at("lost")).unwrap();
+        assert!(write(&at("lost"), "a", true).is_err());
+        symlink("loop", at("loop")).unwrap();
+        assert!(write(&at("loop"), "a", true).is_err());
+    }
+
+    #[test]
+    fn what_killed_runs_have_left_is_swept_up_and_nothing_else() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut dead = std::process::Command::new("true").spawn().unwrap();
+        dead.wait().unwrap();
+        let ours = std::process::id();
+        let abandoned = [
+            format!(".stickslip-{}-aB3xYz.tmp", dead.id()),
+            format!(".stickslip-{ours}-aB3xYz.tmp"),
+        ];
+        let others = [
+            ".stickslip-1-aB3xYz.tmp".to_owned(),
+            format!(".stickslip-{}-.tmp", dead.id()),
+            format!(".stickslip-{}-a/b.tmp", dead.id()).replace('/', "."),
+            ".stickslip-notes".to_owned(),
+        ];
+        let held = Output::create(&directory.path().join("held.csv"), false).unwrap();
+        for name in abandoned.iter().chain(&others) {
+            std::fs::write(directory.path().join(name), "half").unwrap();
+        }
+        write(&directory.path().join("a.csv"), "whole", false).unwrap();
+        held.finish().unwrap();
+        let mut left = names(directory.path());
+        left.sort();
+        let mut wanted = others.to_vec();
+        wanted.extend(["a.csv".to_owned(), "held.csv".to_owned()]);
+        wanted.sort();
+        assert_eq!(left, wanted);
+    }
+
+    #[test]
+    fn a_pipe_that_nobody_reads_is_not_waited_for() {
+        let directory = tempfile::tempdir().unwrap();
+        let pipe = directory.path().join("pipe");
+        let mode = rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR;
+        rustix::fs::mkfifoat(rustix::fs::CWD, &pipe, mode).unwrap();
+        assert!(
+            write(&pipe, "a", false)
+                .unwrap_err()
+                .to_string()
+                .contains("nobody reads")
+        );
+        assert!(regular(&pipe).is_err() && regular(directory.path()).is_err());
+        let reading = pipe.clone();
+        let reader = std::thread::spawn(move || std::fs::read_to_string(reading).unwrap());
+        while write(&pipe, "to a reader", false).is_err() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        assert_eq!(reader.join().unwrap(), "to a reader");
     }
 
     #[test]

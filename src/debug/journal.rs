@@ -7,20 +7,21 @@
 //! A last line without its end is what a kill leaves of an entry; it is dropped, and told.
 
 use crate::debug::command::Command;
+use crate::debug::files;
 use crate::debug::session::Session;
+use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::scene::{Scene, SceneError, Spec, read};
 use crate::solve::State;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Write as _};
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The format that this program writes, and the only one that it reads.
 pub const FORMAT: u32 = 1;
-/// Most bytes of a journal that is read.
-const MOST_BYTES: u64 = 256 << 20;
 /// How the names of journals end.
 const EXTENSION: &str = "journal";
 
@@ -76,6 +77,8 @@ pub enum JournalError {
         doing: &'static str,
         source: io::Error,
     },
+    #[error("{}: the journal cannot be read: {why}", file.display())]
+    Unread { file: PathBuf, why: Unreadable },
     #[error("{}: the file exists already; `stickslip resume` goes on with a journal", .0.display())]
     Exists(PathBuf),
     #[error("{}: another session is writing this journal", .0.display())]
@@ -127,7 +130,7 @@ impl Keep {
             Keep::Nowhere => {}
             Keep::Default => session.keep_at_default_place(),
             Keep::File(path) => {
-                let journal = Journal::create(path, session.scene())?;
+                let journal = Journal::create(path, session.scene(), &[])?;
                 session.keep(journal);
             }
         }
@@ -139,14 +142,16 @@ impl Keep {
 pub struct Journal {
     path: PathBuf,
     file: File,
+    /// Bytes of all whole lines.
+    whole: u64,
 }
 
 impl Journal {
-    /// Begins a journal of a session on a scene.
+    /// Begins a journal of a session on a scene, with what was done until now. Nobody else may read it.
     ///
     /// # Errors
-    /// If the file exists, or cannot be written.
-    pub fn create(path: &Path, scene: &Scene) -> Result<Journal, JournalError> {
+    /// If the file exists, or cannot be written; it is not left behind half written.
+    pub fn create(path: &Path, scene: &Scene, done: &[Entry]) -> Result<Journal, JournalError> {
         let failed = |source: io::Error| match source.kind() {
             io::ErrorKind::AlreadyExists => JournalError::Exists(path.to_owned()),
             _ => failure(path, "written", source),
@@ -154,13 +159,26 @@ impl Journal {
         let file = File::options()
             .append(true)
             .create_new(true)
+            .mode(0o600)
             .open(path)
             .map_err(failed)?;
         let mut journal = Journal {
             path: path.to_owned(),
             file,
+            whole: 0,
         };
-        journal.lock()?;
+        match journal.open_with(scene, done) {
+            Ok(()) => Ok(journal),
+            Err(error) => {
+                // It is ours, and of no use to anybody.
+                let _ = std::fs::remove_file(path);
+                Err(error)
+            }
+        }
+    }
+
+    fn open_with(&mut self, scene: &Scene, done: &[Entry]) -> Result<(), JournalError> {
+        self.lock()?;
         let header = Header {
             format: FORMAT,
             version: env!("CARGO_PKG_VERSION").into(),
@@ -168,8 +186,11 @@ impl Journal {
             name: scene.name.clone(),
             scene: scene.spec.clone(),
         };
-        journal.write(&header, true)?;
-        Ok(journal)
+        self.write(&header, done.is_empty())?;
+        for (k, entry) in done.iter().enumerate() {
+            self.write(&Line::Done(entry.clone()), k + 1 == done.len())?;
+        }
+        Ok(())
     }
 
     /// Begins a journal in the user's directory for journals, with a name from the scene and the time.
@@ -179,11 +200,7 @@ impl Journal {
     pub fn create_default(scene: &Scene) -> Result<Journal, JournalError> {
         let directory = directory()?;
         std::fs::create_dir_all(&directory).map_err(|e| failure(&directory, "written", e))?;
-        let stem = Path::new(&scene.name)
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy();
-        let stem = format!("{stem}-{}", stamp(now()));
+        let stem = format!("{}-{}", files::stem(&scene.name), stamp(now()));
         let name = |k: u32| match k {
             0 => directory.join(format!("{stem}.{EXTENSION}")),
             k => directory.join(format!("{stem}-{k}.{EXTENSION}")),
@@ -192,7 +209,7 @@ impl Journal {
         const MOST: u32 = 100;
         let mut k = 0;
         loop {
-            match Journal::create(&name(k), scene) {
+            match Journal::create(&name(k), scene, &[]) {
                 Err(JournalError::Exists(_)) if k < MOST => k += 1,
                 made => return made,
             }
@@ -206,9 +223,11 @@ impl Journal {
     pub fn open(path: &Path) -> Result<Journal, JournalError> {
         let failed = |e| failure(path, "written", e);
         let file = File::options().append(true).open(path).map_err(failed)?;
+        let whole = file.metadata().map_err(failed)?.len();
         let journal = Journal {
             path: path.to_owned(),
             file,
+            whole,
         };
         journal.lock()?;
         Ok(journal)
@@ -220,7 +239,9 @@ impl Journal {
     /// If it cannot be written.
     pub fn cut(&mut self, whole_bytes: u64) -> Result<(), JournalError> {
         let failed = |e| failure(&self.path, "written", e);
-        self.file.set_len(whole_bytes).map_err(failed)
+        self.file.set_len(whole_bytes).map_err(failed)?;
+        self.whole = whole_bytes;
+        Ok(())
     }
 
     /// Where it is.
@@ -253,11 +274,17 @@ impl Journal {
         let failed = |source| failure(&self.path, "written", source);
         let text = read::options().to_string(line);
         let text = text.map_err(|e| failed(io::Error::other(e)))? + "\n";
-        self.file.write_all(text.as_bytes()).map_err(failed)?;
-        match sync {
-            true => self.file.sync_data().map_err(failed),
+        let written = self.file.write_all(text.as_bytes());
+        let written = written.and_then(|()| match sync {
+            true => self.file.sync_data(),
             false => Ok(()),
+        });
+        match written {
+            Ok(()) => self.whole += text.len() as u64,
+            // What there is of the line is of no use; a device has no length to cut.
+            Err(_) => drop(self.file.set_len(self.whole)),
         }
+        written.map_err(failed)
     }
 }
 
@@ -283,17 +310,10 @@ impl Record {
     /// # Errors
     /// If the file cannot be read or is damaged, with the line.
     pub fn read(path: &Path) -> Result<Record, JournalError> {
-        let failed = |source| failure(path, "read", source);
-        let mut bytes = Vec::new();
-        File::open(path)
-            .and_then(|open| open.take(MOST_BYTES + 1).read_to_end(&mut bytes))
-            .map_err(failed)?;
-        if bytes.len() as u64 > MOST_BYTES {
-            let most = MOST_BYTES >> 20;
-            return Err(failed(io::Error::other(format!(
-                "it has more than {most} MiB"
-            ))));
-        }
+        let bytes = input::bytes(path, RECORD_BYTES, "no journal has").map_err(|why| {
+            let file = path.to_owned();
+            JournalError::Unread { file, why }
+        })?;
         Record::from_bytes(&path.display().to_string(), &bytes)
     }
 
@@ -306,8 +326,12 @@ impl Record {
             .iter()
             .rposition(|byte| *byte == b'\n')
             .map_or(0, |at| at + 1);
-        let text = str::from_utf8(&bytes[..whole]).map_err(|e| {
-            let good = &bytes[..e.valid_up_to()];
+        let marked = match bytes.starts_with(input::MARK.to_string().as_bytes()) {
+            true => input::MARK.len_utf8().min(whole),
+            false => 0,
+        };
+        let text = str::from_utf8(&bytes[marked..whole]).map_err(|e| {
+            let good = &bytes[..marked + e.valid_up_to()];
             let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
             damaged(file, line, 1, "the line is not text in UTF-8")
         })?;
@@ -359,6 +383,7 @@ impl Record {
     /// If the scene is unsound, or at the first entry that leads elsewhere.
     pub fn replay(&self) -> Result<Session, JournalError> {
         let mut session = Session::new(self.scene()?);
+        session.keep_entries();
         for (line, entry) in &self.entries {
             session.replay(entry).map_err(|message| {
                 let other = match self.header.version.as_str() {
@@ -416,7 +441,10 @@ fn parsed<T: for<'de> Deserialize<'de>>(
             file,
             number,
             column,
-            &format!("the line is no entry of a journal: {}", e.code),
+            &format!(
+                "the line is no entry of a journal: {}",
+                read::plainly(&e.code)
+            ),
         )
     })
 }
@@ -501,8 +529,13 @@ fn stamp(seconds: u64) -> String {
     format!("{year:04}{month:02}{day:02}-{hour:02}{minute:02}{second:02}")
 }
 
-/// Year, month, day, hour, minute and second of a time since 1970, UTC.
+/// The last second of the year 9999.
+const LAST_SECOND: u64 = 253_402_300_799;
+
+/// Year, month, day, hour, minute and second of a time since 1970, UTC; no later than the year 9999.
 pub(super) fn date(seconds: u64) -> [u64; 6] {
+    // A file may claim any time; years are counted one by one here.
+    let seconds = seconds.min(LAST_SECOND);
     let (mut days, rest) = (seconds / 86_400, seconds % 86_400);
     let leap = |year: u64| {
         (year.is_multiple_of(4) && !year.is_multiple_of(100)) || year.is_multiple_of(400)
@@ -543,5 +576,6 @@ mod tests {
         assert_eq!(stamp(1_709_251_200), "20240301-000000");
         assert_eq!(stamp(1_735_689_599), "20241231-235959");
         assert_eq!(stamp(4_107_542_400), "21000301-000000");
+        assert_eq!(stamp(u64::MAX), "99991231-235959");
     }
 }

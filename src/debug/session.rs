@@ -24,6 +24,7 @@ use crate::debug::strip::{Kind, Strip};
 use crate::debug::tree::{self, Tree};
 use crate::debug::watches::Watch;
 use crate::debug::worker::{Job, Message, Worker};
+use crate::outside::shown;
 use crate::scene::{Model, Scene, paths};
 use crate::solve::{Event, Intervention, Norms, State, Status, Stepper};
 use std::path::{Path, PathBuf};
@@ -69,6 +70,10 @@ pub struct Session {
     watches: Vec<Watch>,
     looks: Looks,
     journal: Kept,
+    /// What was done so far, where a journal is wanted: another file can be begun with it.
+    entries: Vec<Entry>,
+    /// That the journal was lost, until it is said.
+    trouble: String,
     /// The command that the worker is at.
     pending: Option<Command>,
     /// Minor iterations solved by the present command, and increments accepted among them.
@@ -79,9 +84,13 @@ pub struct Session {
 /// Where the journal of a session is.
 enum Kept {
     Nowhere,
+    /// In memory only, so that it can be written yet.
+    Memory,
     /// At the default place, once there is something to write.
     Due,
     Open(Journal),
+    /// It could not be written, and why.
+    Lost(String),
 }
 
 /// What the worker is at.
@@ -119,6 +128,8 @@ impl Session {
             watches: Vec::new(),
             looks: Looks::new(model),
             journal: Kept::Nowhere,
+            entries: Vec::new(),
+            trouble: String::new(),
             pending: None,
             solved: 0,
             accepted: 0,
@@ -133,6 +144,19 @@ impl Session {
     /// Keeps a journal at the default place, which is made when there is something to write.
     pub fn keep_at_default_place(&mut self) {
         self.journal = Kept::Due;
+    }
+
+    /// Keeps what is done in memory, so that a journal can be begun later.
+    pub(super) fn keep_entries(&mut self) {
+        self.journal = Kept::Memory;
+    }
+
+    /// Why there is no journal any more although one was wanted.
+    pub fn lost_journal(&self) -> Option<&str> {
+        match &self.journal {
+            Kept::Lost(why) => Some(why),
+            _ => None,
+        }
     }
 
     /// Where the journal is, if there is one.
@@ -253,9 +277,9 @@ impl Session {
         let kept = command.clone();
         let reply = self.carry_out(command)?;
         if self.is_running() {
-            let begun = self.begin(&kept);
+            self.begin(&kept);
             self.pending = Some(kept);
-            return Ok(Reply(reply.0 + &begun));
+            return Ok(reply);
         }
         Ok(self.note(kept, reply))
     }
@@ -296,6 +320,7 @@ impl Session {
             Command::Watch(watch) => self.watch(watch),
             Command::Unwatch(name) => self.unwatch(&name),
             Command::Snapshot { file, overwrite } => self.snapshot(file, overwrite),
+            Command::Journal(file) => self.begin_journal(file),
         }
     }
 
@@ -393,28 +418,17 @@ impl Session {
         }
     }
 
-    /// Notes in the journal that a motion begins to solve; what is to be said where that fails.
-    fn begin(&mut self, command: &Command) -> String {
-        if !matches!(self.task, Some(Task::Run)) {
-            return String::new();
+    /// Notes in the journal that a motion begins to solve.
+    fn begin(&mut self, command: &Command) {
+        if matches!(self.task, Some(Task::Run)) {
+            self.journal_with(|journal| journal.begun(command));
         }
-        self.journal_with(|journal| journal.begun(command))
     }
 
     /// Notes in the journal what a command led to.
     fn note(&mut self, command: Command, Reply(said): Reply) -> Reply {
-        let looks = matches!(
-            command,
-            Command::Branches
-                | Command::Census(_)
-                | Command::Remedies
-                | Command::Export { .. }
-                | Command::Compare(_)
-                | Command::Breakpoints
-                | Command::Snapshot { .. }
-        );
-        if looks || matches!(self.journal, Kept::Nowhere) {
-            return Reply(said);
+        if is_look(&command) || matches!(self.journal, Kept::Nowhere) {
+            return Reply(said + &std::mem::take(&mut self.trouble));
         }
         let changes = self.solved > 0 || !is_motion(&command);
         let entry = Entry {
@@ -427,34 +441,57 @@ impl Session {
             digest: journal::digest(&self.frame().state),
             said: said.clone(),
         };
-        let trouble = self.journal_with(|journal| journal.done(entry, changes));
-        Reply(said + &trouble)
+        self.entries.push(entry.clone());
+        self.journal_with(|journal| journal.done(entry, changes));
+        Reply(said + &std::mem::take(&mut self.trouble))
     }
 
-    /// Writes to the journal, if there is one. Where that fails it ends, and a message says so.
-    fn journal_with(
-        &mut self,
-        write: impl FnOnce(&mut Journal) -> Result<(), JournalError>,
-    ) -> String {
+    /// Writes to the journal, if there is one. Where that fails it ends, and the next reply says so.
+    fn journal_with(&mut self, write: impl FnOnce(&mut Journal) -> Result<(), JournalError>) {
         if matches!(self.journal, Kept::Due) {
             match Journal::create_default(&self.scene) {
                 Ok(journal) => self.journal = Kept::Open(journal),
-                Err(error) => {
-                    self.journal = Kept::Nowhere;
-                    return format!("; there is no journal: {error}");
-                }
+                Err(error) => return self.lose("there is no journal", &error),
             }
         }
         let Kept::Open(journal) = &mut self.journal else {
-            return String::new();
+            return;
         };
-        match write(journal) {
-            Ok(()) => String::new(),
-            Err(error) => {
-                self.journal = Kept::Nowhere;
-                format!("; the journal ends here: {error}")
-            }
+        if let Err(error) = write(journal) {
+            self.lose("the journal ends here", &error);
         }
+    }
+
+    fn lose(&mut self, what: &str, error: &JournalError) {
+        self.journal = Kept::Lost(error.to_string());
+        self.trouble =
+            format!("; {what}: {error}; :journal FILE begins one with all that was done");
+    }
+
+    /// Begins a journal with all that was done, and goes on there; without a file, tells where it is.
+    fn begin_journal(&mut self, file: Option<PathBuf>) -> Result<Reply, String> {
+        let Some(file) = file else {
+            return Ok(Reply(match (&self.journal, self.journal()) {
+                (_, Some(path)) => format!("the journal is {}", path.display()),
+                (Kept::Lost(why), _) => {
+                    format!("the journal is lost: {why}; :journal FILE begins one")
+                }
+                _ => "there is no journal yet; :journal FILE begins one".into(),
+            }));
+        };
+        if matches!(self.journal, Kept::Nowhere) && self.tree.len(self.tree.current()) > 1 {
+            return Err(
+                "this session keeps no journal, and what it did is not known any more".into(),
+            );
+        }
+        let journal =
+            Journal::create(&file, &self.scene, &self.entries).map_err(|e| e.to_string())?;
+        self.journal = Kept::Open(journal);
+        let count = self.entries.len();
+        Ok(Reply(format!(
+            "the journal is {} from now on; {count} entries are in it already",
+            file.display()
+        )))
     }
 
     /// Does what an entry of a journal says.
@@ -463,6 +500,8 @@ impl Session {
     /// A message where it leads elsewhere than it did.
     pub(super) fn replay(&mut self, entry: &Entry) -> Result<(), String> {
         match &entry.command {
+            // Those that write files must not be done on the word of a file.
+            command if is_look(command) => return Err("no journal has such a command".into()),
             command if is_motion(command) => self.travel(entry.solved, entry.cursor)?,
             command => {
                 self.submit(command.clone())?;
@@ -476,12 +515,21 @@ impl Session {
                 "it leads to step {cursor} of branch b{}, and led to step {} of b{}",
                 branch + 1,
                 entry.cursor,
-                entry.branch + 1
+                entry.branch.saturating_add(1)
             ));
         }
         let digest = journal::digest(&self.frame().state);
         if digest != entry.digest {
-            return Err(format!("the state is {digest}, and was {}", entry.digest));
+            return Err(format!(
+                "the state is {digest}, and was {}",
+                shown::cut(&entry.digest, 40)
+            ));
+        }
+        // A motion is replayed as far as it went, and not as it was told.
+        if is_motion(&entry.command) {
+            self.entries.push(entry.clone());
+        } else if let Some(own) = self.entries.last_mut() {
+            *own = entry.clone();
         }
         Ok(())
     }
@@ -547,6 +595,10 @@ impl Session {
         let strips = self.strips();
         let (mut at, mut hits) = (self.cursor, Vec::new());
         for _ in 0..count {
+            if at == 0 {
+                // However much farther it was to go.
+                break;
+            }
             let here = |k: usize| match k {
                 0 => Vec::new(),
                 k => breakpoints::hits(&self.breakpoints, &strips[k - 1], &strips[k]),
@@ -662,7 +714,7 @@ impl Session {
             self.strips()[self.cursor].clone(),
         );
         self.tree.fork(self.cursor);
-        self.tree.rename(label, false);
+        self.tree.rename(shown::line(&label).into_owned(), false);
         self.task = Some(Task::Run);
         self.worker.start(Job::Follow {
             state: Box::new(state),
@@ -751,6 +803,7 @@ impl Session {
     /// [`Session::exported`].
     fn export(&mut self, what: Exported, file: PathBuf, overwrite: bool) -> Result<Reply, String> {
         // Sooner rather than later; it leaves nothing behind.
+        files::regular(&file).map_err(|e| e.to_string())?;
         drop(files::Output::create(&file, overwrite).map_err(|e| e.to_string())?);
         let frame = self.frame();
         let at = match &frame.event {
@@ -820,7 +873,7 @@ impl Session {
             .branches()
             .iter()
             .any(|branch| branch.label == label);
-        if label.is_empty() || label.chars().any(char::is_control) {
+        if label.is_empty() || label.contains(shown::is_order) {
             return Err("a branch's name is one line of text".into());
         } else if taken {
             return Err(format!("another branch is called '{label}'"));
@@ -980,6 +1033,7 @@ impl Session {
             frame.event.as_deref(),
         );
         let file = file.unwrap_or_else(|| self.free_name());
+        files::regular(&file).map_err(|e| e.to_string())?;
         snapshot
             .write(&file, overwrite)
             .map_err(|e| e.to_string())?;
@@ -988,11 +1042,7 @@ impl Session {
 
     /// `SCENE-INC.MAJOR.MINOR.ron` in the working directory, with a number where that exists.
     fn free_name(&self) -> PathBuf {
-        let scene = Path::new(self.scene_name())
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
+        let scene = files::stem(self.scene_name());
         let at = match &self.frame().event {
             Some(event) => event.position,
             None => self.frame().state.next,
@@ -1046,6 +1096,21 @@ impl Session {
             Some(event) => report::outcome(self.model(), event),
         }
     }
+}
+
+/// Whether a command changes nothing, and is in no journal.
+fn is_look(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Branches
+            | Command::Census(_)
+            | Command::Remedies
+            | Command::Export { .. }
+            | Command::Compare(_)
+            | Command::Breakpoints
+            | Command::Snapshot { .. }
+            | Command::Journal(_)
+    )
 }
 
 /// Whether a command only goes along a branch.

@@ -7,17 +7,15 @@
 use crate::contact::decision::Rule;
 use crate::debug::differences::Differences;
 use crate::debug::files::{self, FileError};
+use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::scene::{Mode, Model, Scene, SceneError, Spec, read};
 use crate::solve::{Event, Forced, Intervention, Norms, Outcome, Position, State, Status, Stepper};
 use serde::{Deserialize, Serialize};
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
 /// The format that this program writes, and the only one that it reads.
 pub const FORMAT: u32 = 1;
-/// Most bytes of a snapshot; the largest scenes need a tenth of it.
-const MOST_BYTES: u64 = 256 << 20;
 /// Bytes that tell a snapshot from a scene.
 const READ_TO_TELL: u64 = 4096;
 
@@ -121,13 +119,10 @@ pub struct Displacement {
 pub enum SnapshotError {
     #[error(transparent)]
     File(#[from] FileError),
-    #[error("{file}: the file cannot be read: {source}")]
-    Unreadable {
-        file: String,
-        source: std::io::Error,
-    },
-    #[error("{file}: the file has more than {} MiB; no snapshot has", MOST_BYTES >> 20)]
-    TooLarge { file: String },
+    #[error("{}", why.of(file))]
+    Unreadable { file: String, why: Unreadable },
+    #[error(transparent)]
+    Deep(SceneError),
     #[error("{file}:{line}:{column}: {message}")]
     Syntax {
         file: String,
@@ -197,30 +192,19 @@ impl Snapshot {
     /// If the file cannot be read, is damaged, or has a format that this program does not know.
     pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
         let file = path.display().to_string();
-        let unreadable = |source| SnapshotError::Unreadable {
-            file: file.clone(),
-            source,
-        };
-        let mut bytes = Vec::new();
-        std::fs::File::open(path)
-            .and_then(|open| open.take(MOST_BYTES + 1).read_to_end(&mut bytes))
-            .map_err(unreadable)?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(SnapshotError::TooLarge { file });
-        }
-        let text = String::from_utf8(bytes)
-            .map_err(|_| unreadable(std::io::Error::other("it is not text in UTF-8")))?;
+        let text = input::text(path, RECORD_BYTES, "no snapshot has").map_err(|why| {
+            let file = file.clone();
+            SnapshotError::Unreadable { file, why }
+        })?;
         Snapshot::from_text(&file, &text)
     }
 
     /// Whether a file begins as a snapshot does, and as no scene: with its format.
     pub fn is_one(path: &Path) -> bool {
-        let mut start = Vec::new();
-        let read = std::fs::File::open(path)
-            .and_then(|open| open.take(READ_TO_TELL).read_to_end(&mut start));
+        let start = input::start(path, READ_TO_TELL).unwrap_or_default();
         let text = String::from_utf8_lossy(&start);
-        let first = text.trim_start_matches(['\u{feff}', '(', ' ', '\t', '\r', '\n']);
-        read.is_ok() && first.starts_with("format")
+        let first = text.trim_start_matches([input::MARK, '(', ' ', '\t', '\r', '\n']);
+        first.starts_with("format")
     }
 
     /// Reads a snapshot from a text; `file` is what messages call it.
@@ -233,6 +217,8 @@ impl Snapshot {
         struct Header {
             format: u32,
         }
+        let text = text.strip_prefix(input::MARK).unwrap_or(text);
+        read::shallow(file, text, "snapshot").map_err(SnapshotError::Deep)?;
         if let Ok(header) = read::options().from_str::<Header>(text)
             && header.format != FORMAT
         {
@@ -247,7 +233,7 @@ impl Snapshot {
                 file: file.to_owned(),
                 line: e.span.start.line,
                 column: e.span.start.col,
-                message: e.code.to_string(),
+                message: read::plainly(&e.code),
             })
     }
 

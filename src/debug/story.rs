@@ -103,6 +103,7 @@ fn done(model: &Model, entry: &Entry) -> String {
         | Command::Census(_)
         | Command::Remedies
         | Command::Export { .. }
+        | Command::Journal(_)
         | Command::Snapshot { .. } => "Looked around.".into(),
     }
 }
@@ -148,7 +149,7 @@ fn end(record: &Record) -> String {
     if let Some((_, last)) = record.entries.last() {
         text += &format!(
             "\nIt ended in branch b{} at step {}, state {}",
-            last.branch + 1,
+            last.branch.saturating_add(1),
             last.cursor,
             last.digest
         );

@@ -12,6 +12,7 @@
 //! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless floor
 //! y = 0, where u_n = u_y and u_t = −u_x.
 
+use super::error::{Path, Step, at};
 use super::spec::{
     BodySpec, Friction, History, InitialState, Jumps, LoadSpec, Mode, Nodes, Settings, SlaveSpec,
     Spec, SurfaceSpec,
@@ -98,6 +99,47 @@ pub fn at_once() -> History {
 }
 
 impl Problem {
+    /// Where a value of the scene that it is comes from: the path in the problem's own file.
+    pub(crate) fn origin(&self, of_scene: &Path) -> Path {
+        let Some((Step::Key(list), rest)) = of_scene.0.split_first() else {
+            return Path::default();
+        };
+        let (number, rest) = match rest.split_first() {
+            Some((Step::Index(number), rest)) => (*number, rest),
+            _ => (0, rest),
+        };
+        let (key, rest) = match rest.split_first() {
+            Some((Step::Key(key), rest)) => (key.as_str(), rest),
+            _ => ("", rest),
+        };
+        let after = |path: Path, rest: &[Step]| Path([&path.0[..], rest].concat());
+        let contact = |k: usize| at!["contacts", k];
+        // Rows and components come as (n, t) there and as (x, y) = (-t, n) here.
+        let turned: Vec<Step> = rest.iter().map(other_of_pair).collect();
+        match (list.as_str(), key) {
+            ("nodes", _) if number >= self.contacts.len() => at!["spacing"],
+            ("nodes", "id") => contact(number).then("id"),
+            ("nodes", "at") => contact(number).then("gap"),
+            ("nodes" | "slaves", "" | "on") => contact(number),
+            ("slaves", "nodes") => contact(number).then("id"),
+            ("slaves", field) => after(contact(number).then(field), rest),
+            ("loads", _) => {
+                let mut loaded =
+                    (0..self.contacts.len()).filter(|&k| load(&self.contacts[k]).is_some());
+                contact(loaded.nth(number).unwrap_or(0)).then("load")
+            }
+            ("bodies", "free") => after(at!["free"], &turned),
+            ("bodies", "nodes") => match rest.first() {
+                Some(Step::Index(k)) => contact(*k).then("id"),
+                _ => at!["contacts"],
+            },
+            ("bodies", "") => at!["matrix"],
+            ("bodies", _) => after(at!["matrix"], &turned),
+            ("surfaces" | "friction" | "materials" | "supports" | "monitors", _) => Path::default(),
+            _ => of_scene.clone(),
+        }
+    }
+
     /// The scene that it is; it is checked when it is compiled.
     pub fn spec(&self) -> Spec {
         let spacing = self.length();
@@ -304,6 +346,14 @@ fn turned_row(row: &[f64], sign: f64) -> Vec<f64> {
         x.into_iter().chain(y)
     });
     pairs.collect()
+}
+
+/// The other one of a pair, where the step is a number.
+fn other_of_pair(step: &Step) -> Step {
+    match step {
+        Step::Index(k) => Step::Index(k ^ 1),
+        key => key.clone(),
+    }
 }
 
 /// −x, and 0 for 0.

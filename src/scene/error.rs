@@ -1,5 +1,6 @@
 //! What is wrong with a scene, and where.
 
+use crate::outside::shown;
 use std::fmt;
 
 /// One step from a value of the scene file to a value inside it.
@@ -46,8 +47,8 @@ impl fmt::Display for Path {
         for (k, step) in self.0.iter().enumerate() {
             match step {
                 Step::Index(index) => write!(f, "[{index}]")?,
-                Step::Key(key) if k == 0 => f.write_str(key)?,
-                Step::Key(key) => write!(f, ".{key}")?,
+                Step::Key(key) if k == 0 => f.write_str(&shortened(key))?,
+                Step::Key(key) => write!(f, ".{}", shortened(key))?,
             }
         }
         Ok(())
@@ -111,7 +112,7 @@ impl SceneError {
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file)?;
+        f.write_str(&shown::cut(&self.file, LONGEST_NAME))?;
         if let Some((line, column)) = self.at {
             write!(f, ":{line}:{column}")?;
         }
@@ -203,21 +204,22 @@ pub(crate) fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     text
 }
 
+/// Most characters of a file's name in a message.
+const LONGEST_NAME: usize = 300;
+/// Most characters that a message repeats of a text from outside.
+const MOST: usize = 60;
+
 /// A text from outside for a message: quoted, and not longer than a line can bear.
 pub(crate) fn quoted(text: &str) -> String {
-    format!("{:?}", shortened(text))
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{:?}…", &text[..end]),
+        None => format!("{text:?}"),
+    }
 }
 
 /// A text from outside, on one line and not longer than a line can bear.
 pub(crate) fn shortened(text: &str) -> String {
-    const MOST: usize = 60;
-    let plain = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    let short: String = text.chars().take(MOST).map(plain).collect();
-    if short.len() < text.len() {
-        short + "…"
-    } else {
-        short
-    }
+    shown::cut(text, MOST)
 }
 
 #[cfg(test)]

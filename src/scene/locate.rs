@@ -31,6 +31,33 @@ pub fn head(text: &str) -> Option<&str> {
     scan.word()
 }
 
+/// Deepest nesting of brackets that a file may have; no file of ours has more than a fifth of it.
+pub const DEEPEST: usize = 64;
+
+/// The byte of the first bracket that is nested too deep. Whoever reads by recursion, or looks for places, asks this first.
+pub fn too_deep(text: &str) -> Option<usize> {
+    let mut scan = Scan::new(text);
+    let mut depth = 0usize;
+    while let Some(c) = scan.peek() {
+        match c {
+            '(' | '[' | '{' if depth == DEEPEST => return Some(scan.at),
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        match c {
+            '\'' => scan.skip_char(),
+            _ => match scan.starts_string() {
+                Some((opening, raw)) => scan.skip_string(opening, raw),
+                None if scan.word().is_some() => {}
+                None => scan.bump(),
+            },
+        }
+        scan.skip_blanks();
+    }
+    None
+}
+
 /// Line and column of a byte, both from 1; columns count characters.
 pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let mut byte = byte.min(text.len());
@@ -223,9 +250,9 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Moves past the opening bracket of the value that starts here, past its name and any `Some(`; tells which
-    /// bracket it is.
-    fn open(&mut self) -> Option<char> {
+    /// Moves past the opening bracket of the value that starts here, past its name and any `Some(`; tells whether it has a
+    /// name, and which bracket it is.
+    fn open(&mut self) -> Option<(bool, char)> {
         loop {
             self.skip_blanks();
             let name = self.word();
@@ -233,17 +260,21 @@ impl<'a> Scan<'a> {
             let bracket = self.peek().filter(|c| matches!(c, '(' | '[' | '{'))?;
             self.bump();
             if name != Some("Some") {
-                return Some(bracket);
+                return Some((name.is_some(), bracket));
             }
         }
     }
 
     /// Finds the start of an inner value of the value that starts here.
     fn enter(&mut self, step: &Step) -> Option<usize> {
-        loop {
-            let bracket = self.open()?;
+        // More layers than these no value has, and a text of nothing but brackets would take for ever.
+        const LAYERS: usize = 4;
+        for _ in 0..LAYERS {
+            let (named, bracket) = self.open()?;
             let first = self.at;
             let found = match step {
+                // A list in a variant, `Name([...])`.
+                Step::Index(_) if named && bracket == '(' && self.is_list() => None,
                 Step::Index(index) => self.nth(*index),
                 Step::Key(key) => self.keyed(key),
             };
@@ -253,10 +284,24 @@ impl<'a> Scan<'a> {
             // A newtype, `Name((...))`: its only value stands for it.
             self.at = first;
             self.skip_blanks();
-            if bracket != '(' || !matches!(step, Step::Key(_)) || !self.is_newtype() {
+            let inner = match step {
+                Step::Index(_) => named && bracket == '(' && self.is_list(),
+                Step::Key(_) => bracket == '(' && self.is_newtype(),
+            };
+            if !inner {
                 return None;
             }
         }
+        None
+    }
+
+    /// Whether what follows an opening bracket is a list. Leaves the place as it is.
+    fn is_list(&mut self) -> bool {
+        let start = self.at;
+        self.skip_blanks();
+        let list = self.peek() == Some('[');
+        self.at = start;
+        list
     }
 
     /// Whether what follows an opening bracket is a single value without a key. Leaves the place as it is.
@@ -384,6 +429,39 @@ mod tests {
         assert_eq!(found(text, at!["f", "angle"]), "Some(7)");
         assert_eq!(found(text, at!["type"]), "8");
         assert_eq!(found(text, at!["g", "angle"]), "None");
+    }
+
+    #[test]
+    fn a_list_in_a_variant_is_entered() {
+        let text = "Contacts(matrix: Stiffness( [[1, 2], [3, 4]]), at: P(5, 6), l: Name([7], [8]))";
+        assert_eq!(found(text, at!["matrix", 1, 0]), "3");
+        assert_eq!(found(text, at!["matrix", 0, 1]), "2");
+        assert_eq!(found(text, at!["at", 1]), "6");
+    }
+
+    #[test]
+    fn too_deep_nesting_is_seen_at_once_and_what_is_no_bracket_is_not_counted() {
+        let deep = |k: usize| format!("{}1{}", "[(".repeat(k), ")]".repeat(k));
+        assert_eq!(too_deep(&deep(DEEPEST / 2)), None);
+        assert_eq!(too_deep(&deep(DEEPEST / 2 + 1)), Some(DEEPEST));
+        let hidden = format!(
+            "[\"{0}\", r#\"{0}\"#, /* {0} */ '(', '[', // {0}\n]",
+            "(".repeat(99)
+        );
+        assert_eq!(too_deep(&hidden), None);
+        for piece in [
+            "(", "[", "{", "Scene((", "Some(", "a:(", "'", "r#", "/*", "r\"", "\"\\",
+        ] {
+            let text = piece.repeat(1 << 17);
+            let begun = std::time::Instant::now();
+            let _ = (
+                too_deep(&text),
+                locate(&text, &at!["a", 1, "b"]),
+                head(&text),
+            );
+            let took = begun.elapsed();
+            assert!(took.as_secs() < 5, "{piece}: {took:?}");
+        }
     }
 
     #[test]

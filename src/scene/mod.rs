@@ -88,9 +88,17 @@ impl Scene {
             return Scene::from_siconos(name, text, overrides);
         }
         if locate::head(text) == Some(condensed::HEAD) {
-            // Its text is no scene's: no value of it could be found there.
-            let spec = read::problem(name, text)?.spec();
-            return Scene::assemble(name, "", spec, overrides, Vec::new());
+            let problem = read::problem(name, text)?;
+            let place = |overrides: &[Override], fault: Fault| {
+                let own = Fault::new(problem.origin(&fault.path), fault.message.clone());
+                match placed(name, "", overrides, fault) {
+                    set if set.set.is_some() => set,
+                    _ => placed(name, text, &[], own),
+                }
+            };
+            // Its text is no scene's: no value that is set later could be found there.
+            let (spec, overrides) = changed(name, problem.spec(), overrides, Vec::new())?;
+            return Scene::compiled(name, "", spec, overrides, place);
         }
         let spec = read::spec(name, text)?;
         Scene::assemble(name, text, spec, overrides, Vec::new())
@@ -107,7 +115,7 @@ impl Scene {
             .find(|(path, _)| path == "settings.memory");
         let memory = memory.and_then(|(_, value)| value.parse().ok());
         let problem = siconos::read_within(text, memory).map_err(|broken| SceneError {
-            at: Some((broken.line, 1)),
+            at: Some((broken.line, broken.column)),
             ..SceneError::whole(name, broken.message)
         })?;
         let file = std::path::Path::new(name).file_name();
@@ -187,20 +195,23 @@ impl Scene {
     fn assemble(
         name: &str,
         text: &str,
-        mut spec: Spec,
+        spec: Spec,
         changes: &[(String, String)],
-        mut overrides: Vec<Override>,
+        overrides: Vec<Override>,
     ) -> Result<Scene, SceneError> {
-        for (path, value) in changes {
-            let change = paths::set(&mut spec, path, value).map_err(|message| SceneError {
-                set: Some(error::shortened(&format!("{path}={value}"))),
-                ..SceneError::whole(name, message)
-            })?;
-            overrides.retain(|earlier| earlier.at != change.at);
-            overrides.push(change);
-        }
-        let (model, names) =
-            compile::compile(&spec).map_err(|fault| placed(name, text, &overrides, fault))?;
+        let (spec, overrides) = changed(name, spec, changes, overrides)?;
+        let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
+        Scene::compiled(name, text, spec, overrides, place)
+    }
+
+    fn compiled(
+        name: &str,
+        text: &str,
+        spec: Spec,
+        overrides: Vec<Override>,
+        place: impl Fn(&[Override], Fault) -> SceneError,
+    ) -> Result<Scene, SceneError> {
+        let (model, names) = compile::compile(&spec).map_err(|fault| place(&overrides, fault))?;
         Ok(Scene {
             name: name.to_owned(),
             text: text.to_owned(),
@@ -212,6 +223,24 @@ impl Scene {
     }
 }
 
+/// A scene's file with more set from outside.
+fn changed(
+    name: &str,
+    mut spec: Spec,
+    changes: &[(String, String)],
+    mut overrides: Vec<Override>,
+) -> Result<(Spec, Vec<Override>), SceneError> {
+    for (path, value) in changes {
+        let change = paths::set(&mut spec, path, value).map_err(|message| SceneError {
+            set: Some(error::shortened(&format!("{path}={value}"))),
+            ..SceneError::whole(name, message)
+        })?;
+        overrides.retain(|earlier| earlier.at != change.at);
+        overrides.push(change);
+    }
+    Ok((spec, overrides))
+}
+
 /// Finds out where a fault comes from: a setting from outside, or a line of the file.
 pub(crate) fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> SceneError {
     let Fault { path, message } = fault;
@@ -221,7 +250,7 @@ pub(crate) fn placed(file: &str, text: &str, overrides: &[Override], fault: Faul
         .iter()
         .rev()
         .find(blamed)
-        .map(|o| format!("{}={}", o.path, o.value));
+        .map(|o| error::shortened(&format!("{}={}", o.path, o.value)));
     let at = (set.is_none() && !text.is_empty())
         .then(|| locate::line_and_column(text, locate::locate(text, &path).start));
     SceneError {

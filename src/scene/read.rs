@@ -1,15 +1,16 @@
 //! From the text of a file to a [`Spec`]: syntax and types, with the place of what is wrong.
 
 use super::condensed::Problem;
-use super::error::{Path, SceneError, Step, did_you_mean, shortened};
+use super::error::{Path, SceneError, Step, did_you_mean, quoted, shortened};
 use super::limits;
-use super::locate::{line_and_column, locate};
+use super::locate::{line_and_column, locate, too_deep};
 use super::spec::Spec;
+use crate::outside::input::{self, Unreadable};
+use crate::outside::shown;
 use ron::error::SpannedError;
 use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 use serde_path_to_error::Segment;
-use std::io::Read;
 
 /// How scene files are read and written: `Some` may be left out.
 pub fn options() -> ron::Options {
@@ -35,6 +36,7 @@ pub(crate) fn value<T: DeserializeOwned>(
     text: &str,
     what: &str,
 ) -> Result<T, SceneError> {
+    shallow(file, text, what)?;
     let options = options();
     let unread = |error: SpannedError, path: &Path| unreadable(file, text, what, &error, path);
     let mut reader = ron::Deserializer::from_str_with_options(text, &options)
@@ -47,6 +49,20 @@ pub(crate) fn value<T: DeserializeOwned>(
         .end()
         .map_err(|e| unread(reader.span_error(e), &Path::default()))?;
     Ok(value)
+}
+
+/// Refuses a text whose brackets are nested deeper than those of any file; messages call it a `what`.
+pub(crate) fn shallow(file: &str, text: &str, what: &str) -> Result<(), SceneError> {
+    match too_deep(text) {
+        None => Ok(()),
+        Some(byte) => Err(SceneError {
+            at: Some(line_and_column(text, byte)),
+            ..SceneError::whole(
+                file,
+                format!("brackets are nested far too deep for a {what}"),
+            )
+        }),
+    }
 }
 
 /// ron's error in our form.
@@ -98,40 +114,23 @@ fn wanted(error: &ron::Error) -> Option<&'static str> {
 
 /// The text of a scene file.
 pub(crate) fn text(file: &str) -> Result<String, SceneError> {
-    let whole = |message: String| SceneError::whole(file, message);
-    let mut bytes = Vec::new();
     let most = limits::FILE_BYTES as u64;
-    std::fs::File::open(file)
-        .and_then(|open| open.take(most + 1).read_to_end(&mut bytes))
-        .map_err(|e| whole(format!("the file cannot be read: {e}")))?;
-    from_bytes(file, bytes)
+    input::text(std::path::Path::new(file), most, "a scene is a page or two")
+        .map_err(|error| unread(file, error))
 }
 
-/// A scene's text from the bytes of its file.
-pub(crate) fn from_bytes(file: &str, bytes: Vec<u8>) -> Result<String, SceneError> {
-    if bytes.len() > limits::FILE_BYTES {
-        let most = limits::FILE_BYTES >> 20;
-        return Err(SceneError::whole(
-            file,
-            format!("the file has more than {most} MiB; a scene is a page or two"),
-        ));
-    }
-    let text = String::from_utf8(bytes).map_err(|e| {
-        let good =
-            String::from_utf8_lossy(&e.as_bytes()[..e.utf8_error().valid_up_to()]).into_owned();
-        SceneError {
-            at: Some(line_and_column(&good, good.len())),
-            ..SceneError::whole(
-                file,
-                "the file is not text in UTF-8; a scene is written in RON",
-            )
+/// Why a file with a scene is not read.
+pub(crate) fn unread(file: &str, error: Unreadable) -> SceneError {
+    let (at, more) = match error {
+        Unreadable::NoText { line, column } => {
+            (Some((line, column)), "; a scene is written in RON")
         }
-    })?;
-    // Some editors begin a file with a mark that RON does not know.
-    Ok(text
-        .strip_prefix('\u{feff}')
-        .map(str::to_owned)
-        .unwrap_or(text))
+        _ => (None, ""),
+    };
+    SceneError {
+        at,
+        ..SceneError::whole(file, format!("{error}{more}"))
+    }
 }
 
 /// The path without names of variants.
@@ -151,14 +150,16 @@ fn message(error: &ron::Error, what: &str) -> String {
         E::NoSuchStructField {
             expected, found, ..
         } => format!(
-            "there is no field {found:?} here{} (fields: {})",
+            "there is no field {} here{} (fields: {})",
+            quoted(found),
             did_you_mean(found, expected.iter().copied()),
             expected.join(", ")
         ),
         E::NoSuchEnumVariant {
             expected, found, ..
         } => format!(
-            "{found:?} is none of the choices{} (choices: {})",
+            "{} is none of the choices{} (choices: {})",
+            quoted(found),
             did_you_mean(found, expected.iter().copied()),
             expected.join(", ")
         ),
@@ -176,7 +177,8 @@ fn message(error: &ron::Error, what: &str) -> String {
             if found.starts_with(|c: char| c.is_ascii_digit()) =>
         {
             format!(
-                "{found:?} stands where a field's name should; decimals have a point, not a comma"
+                "{} stands where a field's name should; decimals have a point, not a comma",
+                quoted(found)
             )
         }
         E::ExceededRecursionLimit => format!("brackets are nested far too deep for a {what}"),
@@ -184,12 +186,16 @@ fn message(error: &ron::Error, what: &str) -> String {
         E::TrailingCharacters => {
             format!("something follows the end of the {what}, its closing bracket")
         }
-        other => {
-            let text = other.to_string();
-            let mut letters = text.chars();
-            letters.next().map_or_else(String::new, |first| {
-                first.to_lowercase().chain(letters).collect()
-            })
-        }
+        other => plainly(other),
     }
+}
+
+/// ron's own message, not longer than one can read.
+pub(crate) fn plainly(error: &ron::Error) -> String {
+    const MOST: usize = 300;
+    let text = shown::cut(&error.to_string(), MOST);
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_lowercase().chain(letters).collect()
+    })
 }

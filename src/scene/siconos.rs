@@ -20,6 +20,7 @@
 
 use super::condensed::{Contact, Matrix, Problem, at_once};
 use super::limits;
+use super::locate::line_and_column;
 use super::spec::{Friction, InitialState, Mode, Settings, Solver};
 
 /// A friction problem in the plane.
@@ -36,8 +37,10 @@ pub struct Friction2d {
 /// What is wrong with a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Broken {
-    /// Line, from 1; the last one where the file ends too early.
+    /// Line, from 1; that of the last word where the file ends too early.
     pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
     pub message: String,
 }
 
@@ -218,27 +221,29 @@ fn columns(words: &mut Words<'_>, size: usize) -> Result<Vec<Vec<f64>>, Broken> 
     Ok(w)
 }
 
-/// The words of a text, with their lines.
+/// The words of a text, with their places.
 struct Words<'t> {
+    whole: &'t str,
+    /// What is not read yet.
     text: &'t str,
-    /// Line of the last word.
-    line: usize,
-    /// Line at which `text` begins.
-    here: usize,
+    /// Where the last word stands.
+    last: usize,
 }
 
 impl<'t> Words<'t> {
     fn new(text: &'t str) -> Self {
         Words {
+            whole: text,
             text,
-            line: 1,
-            here: 1,
+            last: 0,
         }
     }
 
     fn broken(&self, message: &str) -> Broken {
+        let (line, column) = line_and_column(self.whole, self.last);
         Broken {
-            line: self.line,
+            line,
+            column,
             message: message.to_owned(),
         }
     }
@@ -250,13 +255,11 @@ impl<'t> Words<'t> {
 
     fn next(&mut self, what: &str) -> Result<&'t str, Broken> {
         let trimmed = self.text.trim_start();
-        let skipped = &self.text[..self.text.len() - trimmed.len()];
-        self.here += skipped.matches('\n').count();
         let end = trimmed.find(char::is_whitespace).unwrap_or(trimmed.len());
         if end == 0 {
             return Err(self.broken(&format!("the file ends where {what} should stand")));
         }
-        self.line = self.here;
+        self.last = self.whole.len() - trimmed.len();
         self.text = &trimmed[end..];
         Ok(&trimmed[..end])
     }

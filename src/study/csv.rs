@@ -10,6 +10,7 @@
 
 use super::plan::Plan;
 use super::result::{End, Run};
+use crate::outside::shown;
 use std::fmt::Write;
 
 /// The table, header first.
@@ -80,12 +81,18 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
 }
 
 /// A text as a field of a CSV file.
-pub(super) fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
+pub fn field(text: &str) -> String {
+    let text = shown::line(text);
+    match text.contains([',', '"']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.into_owned(),
     }
+}
+
+/// Lines before a table that say what it is.
+pub fn comments<'a>(lines: impl IntoIterator<Item = &'a String>) -> String {
+    let comment = |line: &'a String| format!("# {}\n", shown::line(line));
+    lines.into_iter().map(comment).collect()
 }
 
 /// The fields of a line of a CSV file; quoted ones may have commas, and quotes twice.
@@ -108,6 +115,23 @@ pub fn split(line: &str) -> Vec<String> {
     fields
 }
 
+/// The column, from 1 and in characters, at which field number `wanted` (from 0) of a line begins; behind the line where it
+/// has fewer.
+pub fn column(line: &str, wanted: usize) -> usize {
+    let (mut field, mut quoted) = (0, false);
+    for (k, letter) in line.chars().enumerate() {
+        if field == wanted {
+            return k + 1;
+        }
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => field += 1,
+            _ => {}
+        }
+    }
+    line.chars().count() + 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,5 +141,7 @@ mod tests {
         let fields = ["a", "b,c", "", "say \"no\"", "✗"];
         let line: Vec<String> = fields.iter().map(|f| field(f)).collect();
         assert_eq!(split(&line.join(",")), fields);
+        let places: Vec<usize> = (0..6).map(|k| column(&line.join(","), k)).collect();
+        assert_eq!(places, [1, 3, 9, 10, 23, 24]);
     }
 }

@@ -4,12 +4,14 @@
 //! and a result as RON; the key is a hash of all that the result depends on, so that whatever is asked for next time, what
 //! is there already is not computed again. A line that a kill has cut off has no end, and is taken away.
 
+use crate::outside::input::{self, Unreadable};
+use crate::scene::read::plainly;
 use rustix::fs::{FlockOperation, flock};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -18,23 +20,119 @@ use std::sync::Mutex;
 pub enum LogError {
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: io::Error },
+    #[error("{}", why.of(&path.display().to_string()))]
+    Unread { path: PathBuf, why: Unreadable },
     #[error("{}: another run writes to it at present", .0.display())]
     Busy(PathBuf),
-    #[error("{}: this is no file of kept results (it would begin with {ours:?}); it is left alone", path.display())]
+    #[error("{}:1:1: this is no file of kept results (it would begin with {ours:?}); it is left alone", path.display())]
     Foreign { path: PathBuf, ours: String },
-    #[error("{}:{line}: this result cannot be read: {message}", path.display())]
+    #[error("{}:{line}:{column}: this result cannot be read: {message}", path.display())]
     Broken {
         path: PathBuf,
         line: usize,
+        column: usize,
         message: String,
     },
 }
+
+/// Most bytes of a file that is taken up.
+const MOST_BYTES: u64 = 2 << 30;
+/// Most bytes of a line of it.
+const MOST_LINE: usize = 1 << 20;
 
 /// Where results are kept.
 #[derive(Debug)]
 pub struct Log {
     path: PathBuf,
     file: Mutex<File>,
+}
+
+/// A result that was there, and its line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found<T> {
+    pub line: usize,
+    pub value: T,
+}
+
+/// The lines of a file that is read, one in memory at a time.
+struct Lines<'a> {
+    from: BufReader<&'a File>,
+    path: &'a Path,
+    /// Number of the last line.
+    number: usize,
+    /// Bytes of all whole lines so far.
+    whole: u64,
+}
+
+impl Lines<'_> {
+    /// Reads the first line; false where there is none yet, or only a part of ours.
+    fn head(&mut self) -> Result<bool, LogError> {
+        let foreign = || LogError::Foreign {
+            path: self.path.to_owned(),
+            ours: head(),
+        };
+        // Were it longer, it would not be ours.
+        let bytes = self.bytes(head().len() + 8)?;
+        let mark = input::MARK.to_string();
+        let text = bytes.strip_prefix(mark.as_bytes()).unwrap_or(&bytes);
+        match text.strip_suffix(b"\n") {
+            Some(line) if line == head().as_bytes() => {
+                (self.number, self.whole) = (1, bytes.len() as u64);
+                Ok(true)
+            }
+            None if head().as_bytes().starts_with(text) => Ok(false),
+            _ => Err(foreign()),
+        }
+    }
+
+    /// The next whole line, without its end.
+    fn next(&mut self) -> Result<Option<String>, LogError> {
+        if self.number == 0 {
+            return Ok(None);
+        }
+        let mut bytes = self.bytes(MOST_LINE)?;
+        let broken = |message: &str| LogError::Broken {
+            path: self.path.to_owned(),
+            line: self.number + 1,
+            column: 1,
+            message: message.to_owned(),
+        };
+        let length = bytes.len();
+        if bytes.pop_if(|last| *last == b'\n').is_none() {
+            return match length < MOST_LINE {
+                true => Ok(None),
+                false => Err(broken("the line is longer than any result")),
+            };
+        }
+        let text = String::from_utf8(bytes).map_err(|_| broken("it is not text in UTF-8"))?;
+        self.number += 1;
+        self.whole += length as u64;
+        Ok(Some(text))
+    }
+
+    /// The bytes up to the end of a line, that included, or so many.
+    fn bytes(&mut self, most: usize) -> Result<Vec<u8>, LogError> {
+        let mut bytes = Vec::new();
+        let read = (&mut self.from)
+            .take(most as u64)
+            .read_until(b'\n', &mut bytes);
+        read.map(|_| bytes).map_err(|source| LogError::File {
+            path: self.path.to_owned(),
+            source,
+        })
+    }
+}
+
+/// A line's key and its result; the column where that is no such line, and why.
+fn entry<T: DeserializeOwned>(line: &str) -> Result<(String, T), (usize, String)> {
+    let (key, value) = line
+        .split_once('\t')
+        .ok_or((1, "it has no key".to_owned()))?;
+    let value = ron::from_str(value).map_err(|e| {
+        let column = key.chars().count() + 1 + e.span.start.col;
+        (column, plainly(&e.code))
+    })?;
+    Ok((key.to_owned(), value))
 }
 
 /// The first line.
@@ -51,57 +149,58 @@ impl Log {
     ///
     /// # Errors
     /// If it cannot be read or written, if it is something else, or if another run has it open.
-    pub fn open<T: DeserializeOwned>(path: &Path) -> Result<(Log, HashMap<String, T>), LogError> {
+    pub fn open<T: DeserializeOwned>(
+        path: &Path,
+    ) -> Result<(Log, HashMap<String, Found<T>>), LogError> {
         let failed = |source| LogError::File {
             path: path.to_owned(),
             source,
         };
-        let mut file = File::options()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(path)
-            .map_err(failed)?;
+        let mut options = File::options();
+        options.read(true).write(true).create(true).truncate(false);
+        let mut file = input::open(path, &mut options).map_err(|why| LogError::Unread {
+            path: path.to_owned(),
+            why,
+        })?;
         if flock(&file, FlockOperation::NonBlockingLockExclusive)
             .is_err_and(|e| e == rustix::io::Errno::WOULDBLOCK)
         {
             return Err(LogError::Busy(path.to_owned()));
         }
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(failed)?;
-        let whole = bytes
-            .iter()
-            .rposition(|&b| b == b'\n')
-            .map_or(0, |at| at + 1);
-        let foreign = || LogError::Foreign {
-            path: path.to_owned(),
-            ours: head(),
-        };
-        let text = std::str::from_utf8(&bytes[..whole]).map_err(|_| foreign())?;
-        let ours = text.lines().next().map_or_else(
-            || head().as_bytes().starts_with(&bytes),
-            |first| first == head(),
-        );
-        if !ours {
-            return Err(foreign());
-        }
-        let mut found = HashMap::new();
-        for (k, line) in text.lines().enumerate().skip(1) {
-            let broken = |message: String| LogError::Broken {
-                path: path.to_owned(),
-                line: k + 1,
-                message,
+        let size = file.metadata().map_err(failed)?.len();
+        if size > MOST_BYTES {
+            let what = "no file of kept results is read that has";
+            let why = Unreadable::TooLarge {
+                most: MOST_BYTES,
+                what,
             };
-            let (key, value) = line
-                .split_once('\t')
-                .ok_or_else(|| broken("it has no key".to_owned()))?;
-            let value = ron::from_str(value).map_err(|e| broken(e.to_string()))?;
-            found.insert(key.to_owned(), value);
+            return Err(LogError::Unread {
+                path: path.to_owned(),
+                why,
+            });
         }
-        file.set_len(whole as u64).map_err(failed)?;
+        let mut lines = Lines {
+            from: BufReader::new(&file),
+            path,
+            number: 0,
+            whole: 0,
+        };
+        let mut found = HashMap::new();
+        let begun = lines.head()?;
+        while let Some(line) = lines.next()? {
+            let (key, value) = entry(&line).map_err(|(column, message)| LogError::Broken {
+                path: path.to_owned(),
+                line: lines.number,
+                column,
+                message,
+            })?;
+            let line = lines.number;
+            found.insert(key, Found { line, value });
+        }
+        let whole = lines.whole;
+        file.set_len(whole).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
-        if whole == 0 {
+        if !begun {
             file.write_all((head() + "\n").as_bytes()).map_err(failed)?;
         }
         let log = Log {
@@ -109,6 +208,16 @@ impl Log {
             file: Mutex::new(file),
         };
         Ok((log, found))
+    }
+
+    /// What is wrong with the result of a line.
+    pub fn broken(&self, line: usize, message: &str) -> LogError {
+        LogError::Broken {
+            path: self.path.clone(),
+            line,
+            column: 1,
+            message: message.to_owned(),
+        }
     }
 
     /// Keeps a result, in one write.
@@ -164,7 +273,7 @@ mod tests {
             log.keep("c", &vec![2.0]).unwrap();
             drop(log);
             let (_, found) = Log::open::<Vec<f64>>(&path).unwrap();
-            assert_eq!(found["c"], [2.0]);
+            assert_eq!(found["c"].value, [2.0]);
         }
     }
 

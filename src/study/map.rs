@@ -197,7 +197,7 @@ pub fn run(
             && let Some(ended) = found.get(&key)
         {
             (watch.done)(case.increments);
-            return Ok(Some(ended.clone()));
+            return Ok(Some(ended.value.clone()));
         }
         let model = case.open()?.model;
         let ended = Ended::of(&one(case, watch)?, &model);
@@ -346,11 +346,7 @@ impl Map {
 
     /// A row for each cell, after lines that say what it is.
     pub fn csv(&self) -> String {
-        let mut text: String = self
-            .origin()
-            .iter()
-            .map(|line| format!("# {line}\n"))
-            .collect();
+        let mut text = super::csv::comments(&self.origin());
         let words = [
             "verdict",
             "detail",

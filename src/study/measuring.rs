@@ -2,7 +2,7 @@
 
 use super::chart_file::Chart;
 use super::precision::{self, Cost, Measure, Precision};
-use super::{Vary, Watch};
+use super::{Plan, Vary, Watch};
 use crate::scene::{Scene, SceneError};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -13,59 +13,51 @@ use std::thread;
 pub struct Measuring {
     stop: Arc<AtomicBool>,
     done: Arc<AtomicU64>,
-    all: u64,
+    all: Arc<AtomicU64>,
     result: Receiver<Result<Precision, String>>,
 }
 
 impl Measuring {
     /// Starts to measure a scene's file as it stands, with what was set from outside when it was opened: its own chart, or
-    /// with `over` the product of that. Each run is done once.
-    ///
-    /// # Errors
-    /// If a path or a value will not do.
-    pub fn start(scene: &Scene, over: &[Vary]) -> Result<Measuring, SceneError> {
-        let mut chart = Chart::open(&scene.name, over)?;
-        let set = scene.overrides().map(|(p, v)| (p.to_owned(), v.to_owned()));
-        chart.set.extend(set);
-        let plans = precision::plans(&chart)?;
-        let all = plans
-            .iter()
-            .flat_map(|plan| &plan.cases)
-            .map(|case| case.increments)
-            .sum();
-        let (stop, done) = (
-            Arc::new(AtomicBool::new(false)),
-            Arc::new(AtomicU64::new(0)),
-        );
+    /// with `over` the product of that. Each run is done once. Where a path or a value will not do, that is the result.
+    pub fn start(scene: &Scene, over: Vec<Vary>) -> Measuring {
+        let name = scene.name.clone();
+        let set: Vec<(String, String)> = scene
+            .overrides()
+            .map(|(p, v)| (p.to_owned(), v.to_owned()))
+            .collect();
+        let (stop, done, all) = (Arc::default(), Arc::default(), Arc::default());
         let (told, result) = channel();
-        let (stops, counts) = (stop.clone(), done.clone());
-        thread::spawn(move || {
-            let watch = Watch {
-                stop: &|| stops.load(Ordering::Relaxed),
-                done: &|increments| {
-                    counts.fetch_add(increments, Ordering::Relaxed);
-                },
-            };
-            let measure = Measure {
-                cost: Cost::default(),
-                target: None,
-                repeats: 1,
-            };
-            let measured = precision::run(&chart, &plans, measure, &watch);
-            // Nobody may want it any more.
-            let _ = told.send(measured.map_err(|error| error.to_string()));
-        });
-        Ok(Measuring {
-            stop,
-            done,
-            all,
+        let measuring = Measuring {
+            stop: Arc::clone(&stop),
+            done: Arc::clone(&done),
+            all: Arc::clone(&all),
             result,
-        })
+        };
+        thread::spawn(move || {
+            let plan = || -> Result<_, SceneError> {
+                let mut chart = Chart::open(&name, &over)?;
+                chart.set.extend(set);
+                let plans = precision::plans(&chart)?;
+                Ok((chart, plans))
+            };
+            let measured = plan().map_err(|error| error.to_string());
+            let measured = measured.and_then(|(chart, plans)| {
+                let cases = plans.iter().flat_map(|plan| &plan.cases);
+                let increments = cases.map(|case| case.increments).sum();
+                all.store(increments, Ordering::Relaxed);
+                measure(&chart, &plans, &stop, &done)
+            });
+            // Nobody may want it any more.
+            let _ = told.send(measured);
+        });
+        measuring
     }
 
-    /// Increments done, and all that are planned.
+    /// Increments done, and all that are planned; 0 until that is known.
     pub fn progress(&self) -> (u64, u64) {
-        (self.done.load(Ordering::Relaxed), self.all)
+        let [done, all] = [&self.done, &self.all].map(|count| count.load(Ordering::Relaxed));
+        (done, all)
     }
 
     /// Asks it to end; what was measured until then is the result.
@@ -81,6 +73,26 @@ impl Measuring {
             Err(TryRecvError::Disconnected) => Some(Err("measuring broke down".into())),
         }
     }
+}
+
+fn measure(
+    chart: &Chart,
+    plans: &[Plan],
+    stop: &AtomicBool,
+    done: &AtomicU64,
+) -> Result<Precision, String> {
+    let watch = Watch {
+        stop: &|| stop.load(Ordering::Relaxed),
+        done: &|increments| {
+            done.fetch_add(increments, Ordering::Relaxed);
+        },
+    };
+    let measure = Measure {
+        cost: Cost::default(),
+        target: None,
+        repeats: 1,
+    };
+    precision::run(chart, plans, measure, &watch).map_err(|error| error.to_string())
 }
 
 impl Drop for Measuring {

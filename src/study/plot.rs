@@ -3,6 +3,7 @@
 //! A chart is wider the longer its legend, and higher the more of it there is, so that nothing is cut off.
 
 use super::figure::short;
+use crate::outside::shown;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -68,6 +69,12 @@ const ENTRY: f64 = 22.0;
 const SAMPLE: f64 = 36.0;
 /// Curves named in the legend; a taller one is of no use.
 const MOST_ENTRIES: usize = 48;
+/// Most characters of a label: of a curve, an axis, a run.
+pub(super) const MOST_LETTERS: usize = 80;
+/// Most characters of a line that is broken where it is too long.
+const MOST_LINE: usize = 2000;
+/// Most pixels of a bitmap; one takes three bytes.
+pub(super) const MOST_PIXELS: u64 = 64_000_000;
 /// Markers on a curve, about.
 const MARKERS: usize = 12;
 const GREY: RGBColor = RGBColor(90, 90, 90);
@@ -93,6 +100,7 @@ type Area<DB> = DrawingArea<DB, Shift>;
 /// If it cannot be drawn.
 pub fn svg(chart: &Chart) -> Result<String, PlotError> {
     load_font()?;
+    let chart = &labelled(chart);
     let layout = Layout::of(chart, 1.0)?;
     let mut text = String::new();
     let root = SVGBackend::with_string(&mut text, layout.size).into_drawing_area();
@@ -107,13 +115,46 @@ pub fn svg(chart: &Chart) -> Result<String, PlotError> {
 /// If it cannot be drawn.
 pub fn png(chart: &Chart) -> Result<Vec<u8>, PlotError> {
     load_font()?;
+    let chart = &labelled(chart);
     let layout = Layout::of(chart, PNG_SCALE)?;
     let (width, height) = layout.size;
-    let mut pixels = vec![255; width as usize * height as usize * 3];
+    let mut pixels = paper(width, height)?;
     let root = BitMapBackend::with_buffer(&mut pixels, layout.size).into_drawing_area();
     draw(&root, chart, &layout).map_err(|e| PlotError(e.to_string()))?;
     drop(root);
     encode(&pixels, width, height).map_err(|e| PlotError(e.to_string()))
+}
+
+/// White pixels.
+pub(super) fn paper(width: u32, height: u32) -> Result<Vec<u8>, PlotError> {
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > MOST_PIXELS {
+        return Err(PlotError(format!(
+            "it would have {width} by {height} pixels, and a bitmap has {} million at most; draw less of it, or draw it as SVG",
+            MOST_PIXELS / 1_000_000
+        )));
+    }
+    Ok(vec![255; 3 * pixels as usize])
+}
+
+/// A text of a label as it is drawn: harmless, and not longer than a picture can bear.
+pub(super) fn label(text: &str) -> String {
+    shown::cut(text, MOST_LETTERS)
+}
+
+/// The chart with labels as they are drawn.
+fn labelled(chart: &Chart) -> Chart {
+    let mut chart = chart.clone();
+    for axis in [&mut chart.x, &mut chart.y] {
+        axis.name = label(&axis.name);
+    }
+    for curve in &mut chart.curves {
+        curve.label = label(&curve.label);
+        if let End::Failed(why) | End::Stopped(why) = &mut curve.end {
+            *why = label(why);
+        }
+    }
+    chart
 }
 
 pub(super) fn encode(
@@ -233,18 +274,19 @@ pub(super) fn width_of(text: &str, size: f64) -> Result<f64, PlotError> {
         .map_err(|e| PlotError(e.to_string()))
 }
 
-/// Lines that are no wider than that, broken between words.
+/// Lines that are no wider than that, broken between words; words that are too long by themselves are cut.
 pub(super) fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotError> {
     let mut all = Vec::new();
     for line in lines {
         let mut present = String::new();
-        for word in line.split_whitespace() {
+        for word in shown::cut(line, MOST_LINE).split_whitespace() {
+            let word = label(word);
             let longer = match present.is_empty() {
-                true => word.to_owned(),
+                true => word.clone(),
                 false => format!("{present} {word}"),
             };
             if !present.is_empty() && 1.06 * width_of(&longer, size)? > width {
-                all.push(std::mem::replace(&mut present, word.to_owned()));
+                all.push(std::mem::replace(&mut present, word));
             } else {
                 present = longer;
             }

@@ -16,13 +16,24 @@ use super::read::Study;
 use super::reference::{self, Reference};
 use super::result::{End, Run};
 use super::run::{Watch, one};
+use crate::outside::input::{self, MARK, TABLE_BYTES};
+use crate::outside::shown;
 use crate::scene::SceneError;
 use crate::scene::effort::Estimate;
+use crate::scene::error::quoted;
 use crate::scene::model::Model;
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
 use std::fmt::Write;
+use std::path::Path;
 
+/// Most characters of a name in a table that is read.
+const MOST_NAME: usize = 200;
+/// Most comments of a table that are kept, and most characters of one.
+const MOST_COMMENTS: usize = 40;
+const MOST_COMMENT: usize = 2000;
+/// Most runs of a table that is read.
+const MOST_RUNS: usize = 20_000;
 /// Runs that take this long altogether (seconds) are not repeated any more.
 const LONG: f64 = 20.0;
 
@@ -495,59 +506,92 @@ fn origin(
     ]
 }
 
+/// The text of a table, for [`read`].
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn open(file: &Path) -> Result<String, String> {
+    input::text(file, TABLE_BYTES, "no table of a chart has")
+        .map_err(|error| error.of(&file.display().to_string()))
+}
+
 /// Charts from a table as [`csv`] writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
 /// missing, and the runs need not be of this program.
 ///
 /// # Errors
-/// If it cannot be read: file, line, what is wrong.
+/// If it cannot be read: file, line, column, what is wrong.
 pub fn read(
     name: &str,
     text: &str,
     cost: Cost,
     target: Option<f64>,
 ) -> Result<Vec<Precision>, String> {
+    let text = text.strip_prefix(MARK).unwrap_or(text);
     let comments = text.lines().filter_map(|line| line.strip_prefix('#'));
-    let about: Vec<String> = comments.map(|line| line.trim().to_owned()).collect();
+    let about = comments.map(|line| shown::cut(line.trim(), MOST_COMMENT));
+    let about: Vec<String> = about.take(MOST_COMMENTS).collect();
     let lines = text
         .lines()
         .enumerate()
         .map(|(k, line)| (k + 1, line.trim_end()));
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (_, header) = lines
+    let (first, header) = lines
         .next()
-        .ok_or_else(|| format!("{name}: there is no header"))?;
+        .ok_or_else(|| format!("{name}:1:1: there is no header"))?;
     let heads = super::csv::split(header);
     for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
         if !heads.iter().any(|head| head == wanted) {
             return Err(format!(
-                "{name}: it is no table of a chart: it has no column {wanted}"
+                "{name}:{first}:1: it is no table of a chart: it has no column {wanted}"
             ));
         }
     }
     let mut charts: Vec<Precision> = Vec::new();
+    let mut runs = 0;
     for (line, text) in lines {
         let fields = super::csv::split(text);
         if fields.len() != heads.len() {
             let (has, wants) = (fields.len(), heads.len());
             return Err(format!(
-                "{name}:{line}: the row has {has} fields, the header {wants}"
+                "{name}:{line}:1: the row has {has} fields, the header {wants}"
             ));
         }
-        let word = |head: &str| {
-            let place = heads.iter().position(|own| own == head);
-            place.map_or("", |k| fields[k].as_str())
+        let place = |head: &str| heads.iter().position(|own| own == head);
+        let word = |head: &str| place(head).map_or("", |k| fields[k].as_str());
+        let at = |head: &str| {
+            let column = place(head).map_or(1, |k| super::csv::column(text, k));
+            format!("{name}:{line}:{column}")
         };
+        for head in ["scene", "series", "run", "status"] {
+            let letters = word(head).chars().count();
+            if letters > MOST_NAME {
+                return Err(format!(
+                    "{}: the text under {head} has {letters} characters; it must have {MOST_NAME} at most",
+                    at(head)
+                ));
+            }
+        }
         let number = |head: &str| match word(head) {
             "" => Ok(None),
             word => {
                 let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
                 let wrong = || {
-                    format!("{name}:{line}: {word:?} under {head} is no number that can be drawn")
+                    let word = quoted(word);
+                    format!(
+                        "{}: {word} under {head} is no number that can be drawn",
+                        at(head)
+                    )
                 };
                 value.map(Some).ok_or_else(wrong)
             }
         };
         let count = |head: &str| number(head).map(|value| value.unwrap_or(0.0) as u64);
+        runs += 1;
+        if runs > MOST_RUNS {
+            return Err(format!(
+                "{name}:{line}:1: the table has more than {MOST_RUNS} runs; no chart of so many can be read"
+            ));
+        }
         let (scene, own) = (word("scene"), word("series"));
         if charts.last().is_none_or(|chart| chart.scene != scene) {
             charts.push(Precision {
@@ -595,17 +639,14 @@ pub fn read(
     }
     let last = charts
         .last_mut()
-        .ok_or_else(|| format!("{name}: it has no rows"))?;
+        .ok_or_else(|| format!("{name}:{first}:1: it has no rows"))?;
     last.about = about;
     Ok(charts)
 }
 
 /// A row for each run of some charts, after lines that say what they are.
 pub fn csv(charts: &[Precision]) -> String {
-    let mut text = String::new();
-    for line in charts.iter().flat_map(|chart| &chart.about) {
-        text += &format!("# {line}\n");
-    }
+    let mut text = super::csv::comments(charts.iter().flat_map(|chart| &chart.about));
     text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\
              unsettled,front\n";
     for (chart, point) in charts
@@ -629,7 +670,10 @@ pub fn csv(charts: &[Precision]) -> String {
             &settings.join(" "),
             status,
         ];
-        let words: Vec<String> = words.into_iter().map(super::csv::field).collect();
+        let words: Vec<String> = words
+            .into_iter()
+            .map(|word| super::csv::field(word))
+            .collect();
         // Writing to a string does not fail.
         let _ = writeln!(
             text,

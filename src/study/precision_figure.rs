@@ -16,6 +16,8 @@ const RAIL: f64 = 44.0;
 const LEFT: f64 = 84.0;
 /// The colour of crosses, and of nothing else.
 const CROSS: Colour = (192, 0, 0);
+/// Runs that failed and are named below the plot.
+const MOST_FAILED: usize = 40;
 /// Errors below this are drawn here: they are none.
 pub const NOTHING: f64 = 1e-16;
 
@@ -104,10 +106,14 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     }
     legend(sheet, chart, top);
     sheet.height = top + PLOT.1 + 4.2 * LABEL;
-    for point in chart.points.iter().filter(|p| p.failed.is_some()) {
+    let failed = || chart.points.iter().filter(|p| p.failed.is_some());
+    for point in failed().take(MOST_FAILED) {
         let why = point.failed.as_deref().unwrap_or_default();
         let line = format!("✗ {}, {}: {why}", chart.series[point.series], point.name);
         sheet.paragraph(&[line], SMALL, CROSS)?;
+    }
+    if let Some(more @ 1..) = failed().count().checked_sub(MOST_FAILED) {
+        sheet.paragraph(&[format!("✗ and {more} more")], SMALL, CROSS)?;
     }
     let told: Vec<String> = chart.verdict().into_iter().collect();
     sheet.paragraph(&told, SMALL, BLACK)?;

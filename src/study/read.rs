@@ -15,9 +15,9 @@
 //! that fit to the same value.
 
 use super::builtin;
-use crate::scene::error::{Path, SceneError, Step, did_you_mean};
-use crate::scene::locate::locate;
-use crate::scene::read::{options, text};
+use crate::scene::error::{Path, SceneError, Step, did_you_mean, quoted};
+use crate::scene::locate::{locate, too_deep};
+use crate::scene::read::{options, plainly, shallow, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
@@ -299,6 +299,7 @@ pub(super) fn vary(words: Vec<(String, Vec<Word>)>) -> Vec<Vary> {
 
 /// Reads a file that holds one value.
 pub(super) fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, SceneError> {
+    shallow(name, text, "study")?;
     let options = options();
     let mut reader = ron::Deserializer::from_str_with_options(text, &options)
         .map_err(|e| unreadable(name, &e, String::new()))?;
@@ -330,20 +331,15 @@ fn message(error: &ron::Error) -> String {
         E::NoSuchStructField {
             expected, found, ..
         } => format!(
-            "a study has no field {found:?}{} (fields: {})",
+            "a study has no field {}{} (fields: {})",
+            quoted(found),
             did_you_mean(found, expected.iter().copied()),
             expected.join(", ")
         ),
         E::MissingStructField { field, .. } => format!("the study has no {field}"),
         E::ExpectedComma => "a comma or a closing bracket is missing".to_owned(),
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
-        other => {
-            let text = other.to_string();
-            let mut letters = text.chars();
-            letters.next().map_or_else(String::new, |first| {
-                first.to_lowercase().chain(letters).collect()
-            })
-        }
+        other => plainly(other),
     }
 }
 
@@ -359,6 +355,10 @@ fn plain(path: &serde_path_to_error::Path) -> Path {
 
 /// Whether a text is a study: it names scenes, or varies something, which no scene does. It need not be sound.
 fn is_study(text: &str) -> bool {
+    if too_deep(text).is_some() {
+        // It is neither, and whoever reads it says so.
+        return true;
+    }
     let whole = locate(text, &Path::default());
     ["scene", "scenes", "vary"]
         .iter()

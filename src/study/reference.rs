@@ -4,7 +4,10 @@
 //! path of the load factor turns round, `leg` (from 1; without it, a new leg begins after the load of each corner). What
 //! `stickslip run --csv` writes is one.
 
+use super::csv::column;
 use super::result::Run;
+use crate::outside::input::{self, MARK, TABLE_BYTES};
+use crate::scene::error::{quoted, shortened};
 use std::path::Path;
 
 /// Loads that differ by less than this part of the largest are the same.
@@ -59,10 +62,10 @@ impl Reference {
     /// Opens a table.
     ///
     /// # Errors
-    /// If it cannot be read: file, line, what is wrong.
+    /// If it cannot be read: file, line, column, what is wrong.
     pub fn open(file: &Path, path: &[f64]) -> Result<Reference, String> {
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(file).map_err(|e| format!("{name}: {e}"))?;
+        let text = input::text(file, TABLE_BYTES, "no reference has").map_err(|e| e.of(&name))?;
         Reference::read(&name, &text, path)
     }
 
@@ -71,22 +74,23 @@ impl Reference {
     /// # Errors
     /// As [`Reference::open`].
     pub fn read(name: &str, text: &str, path: &[f64]) -> Result<Reference, String> {
-        let lines = text
-            .lines()
-            .enumerate()
-            .map(|(k, line)| (k + 1, line.trim()));
+        let text = text.strip_prefix(MARK).unwrap_or(text);
+        let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line));
         let about: Vec<&str> = text
             .lines()
             .filter_map(|line| line.strip_prefix('#').map(str::trim))
             .collect();
-        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let mut lines =
+            lines.filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));
         let (first, header) = lines
             .next()
-            .ok_or_else(|| format!("{name}: there is no header"))?;
+            .ok_or_else(|| format!("{name}:1:1: there is no header"))?;
         let heads: Vec<&str> = header.split(',').map(str::trim).collect();
         let place = |wanted: &str| heads.iter().position(|head| *head == wanted);
-        let load = place("load")
-            .ok_or_else(|| format!("{name}:{first}: the header has no column load: {header}"))?;
+        let load = place("load").ok_or_else(|| {
+            let header = quoted(header.trim());
+            format!("{name}:{first}:1: the header has no column load: {header}")
+        })?;
         let leg = place("leg");
         let words = ["load", "leg", "increment", "majors", "minors"];
         let columns: Vec<usize> = (0..heads.len())
@@ -99,15 +103,17 @@ impl Reference {
             if fields.len() != heads.len() {
                 let (has, wants) = (fields.len(), heads.len());
                 return Err(format!(
-                    "{name}:{line}: the row has {has} fields, the header {wants}"
+                    "{name}:{line}:1: the row has {has} fields, the header {wants}"
                 ));
             }
             let number = |k: usize| {
                 let value = fields[k].parse::<f64>().ok();
                 let wrong = || {
                     format!(
-                        "{name}:{line}: {:?} under {} is no number",
-                        fields[k], heads[k]
+                        "{name}:{line}:{}: {} under {} is no number",
+                        column(text, k),
+                        quoted(fields[k]),
+                        shortened(heads[k])
                     )
                 };
                 value.filter(|v| v.is_finite()).ok_or_else(wrong)
@@ -128,7 +134,7 @@ impl Reference {
             });
         }
         if rows.is_empty() {
-            return Err(format!("{name}: it has no rows"));
+            return Err(format!("{name}:{first}:1: it has no rows"));
         }
         Ok(Reference {
             source: [&[name], &about[..]].concat().join(" "),
@@ -228,10 +234,11 @@ mod tests {
     fn what_is_wrong_is_said_with_its_line() {
         for (text, part) in [
             ("", "no header"),
-            ("a,b\n", "x:1: the header has no column load"),
+            ("a,b\n", "x:1:1: the header has no column load"),
+            ("\u{feff}# c\nload,u\n1, a\n", "x:3:3: \"a\" under u"),
             ("load,u\n", "no rows"),
-            ("# c\nload,u\n1\n", "x:3: the row has 1 fields"),
-            ("load,u\n1,a\n", "x:2: \"a\" under u"),
+            ("# c\nload,u\n1\n", "x:3:1: the row has 1 fields"),
+            ("load,u\n1,a\n", "x:2:3: \"a\" under u"),
         ] {
             let error = Reference::read("x", text, &[0.0, 1.0]).unwrap_err();
             assert!(error.contains(part), "{error}");

@@ -2,7 +2,8 @@
 //!
 //! Lengths are those of an SVG; x to the right, y downwards.
 
-use super::plot::{FONT, PNG_SCALE, PlotError, broken, encode, load_font, width_of};
+use super::plot::{FONT, PNG_SCALE, PlotError, broken, encode, label, load_font, paper, width_of};
+use crate::outside::shown;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -98,7 +99,7 @@ impl Sheet {
         load_font()?;
         for line in broken(lines, size, self.width - 2.0 * MARGIN)? {
             let at = (MARGIN, self.height + 0.7 * size);
-            self.text(at, &line, size, colour, Anchor::Left);
+            self.put(at, line, (size, colour, Anchor::Left));
             self.height += 1.4 * size;
         }
         self.height += 0.4 * size;
@@ -107,9 +108,13 @@ impl Sheet {
 
     /// A text beside a point, at half its height.
     pub fn text(&mut self, at: (f64, f64), text: &str, size: f64, colour: Colour, anchor: Anchor) {
+        self.put(at, label(text), (size, colour, anchor));
+    }
+
+    fn put(&mut self, at: (f64, f64), text: String, (size, colour, anchor): (f64, Colour, Anchor)) {
         self.shapes.push(Shape::Text {
             at,
-            text: text.to_owned(),
+            text: shown::line(&text).into_owned(),
             size,
             colour,
             anchor,
@@ -121,7 +126,7 @@ impl Sheet {
     pub fn upright(&mut self, at: (f64, f64), text: &str, size: f64) {
         self.shapes.push(Shape::Text {
             at,
-            text: text.to_owned(),
+            text: label(text),
             size,
             colour: BLACK,
             anchor: Anchor::Middle,
@@ -196,7 +201,7 @@ impl Sheet {
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
         load_font()?;
         let (width, height) = self.size(PNG_SCALE);
-        let mut pixels = vec![255; width as usize * height as usize * 3];
+        let mut pixels = paper(width, height)?;
         let root = BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area();
         self.draw(&root, PNG_SCALE)
             .map_err(|e| PlotError(e.to_string()))?;
@@ -273,7 +278,7 @@ pub fn widest<'a>(texts: impl IntoIterator<Item = &'a str>, size: f64) -> Result
     load_font()?;
     let mut widest: f64 = 0.0;
     for text in texts {
-        widest = widest.max(1.06 * width_of(text, size)?);
+        widest = widest.max(1.06 * width_of(&label(text), size)?);
     }
     Ok(widest)
 }

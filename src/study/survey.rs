@@ -1,6 +1,6 @@
 //! All random problems of a population with all variants: run, counted, and as a table.
 
-use super::log::{Log, key};
+use super::log::{Found, Log, key};
 use super::origin;
 use super::random::Population;
 use super::run::{RunError, Watch, pool};
@@ -58,11 +58,16 @@ impl Survey {
             key([name.as_str(), &number].into_iter().chain(settings))
         };
         let one = |k: usize| -> Result<Option<Judged>, RunError> {
-            if let Some((_, found)) = &opened
-                && let Some(judged) = found.get(&key(k))
+            if let Some((log, found)) = &opened
+                && let Some(Found { line, value }) = found.get(&key(k))
             {
+                if value.trials.len() != variants.len() {
+                    let (has, wants) = (value.trials.len(), variants.len());
+                    let message = format!("it is of {has} trials, and its problem has {wants}");
+                    return Err(log.broken(*line, &message).into());
+                }
                 (watch.done)(1);
-                return Ok(Some(judged.clone()));
+                return Ok(Some(value.clone()));
             }
             if (watch.stop)() {
                 return Ok(None);
@@ -102,10 +107,7 @@ impl Survey {
 
     /// A table with a row for each problem and variant, after lines that say what it is.
     pub fn csv(&self) -> String {
-        let mut text = String::new();
-        for line in self.origin() {
-            text += &format!("# {line}\n");
-        }
+        let mut text = super::csv::comments(&self.origin());
         text += "seed,problem,nodes,form,cohesion,answers,strategy,verdict,detail,majors,minors,violation\n";
         for (k, judged) in self.done() {
             for (variant, trial) in self.variants.iter().zip(&judged.trials) {
@@ -121,7 +123,11 @@ impl Survey {
                 let _ = writeln!(
                     text,
                     "{},{k},{nodes},{form},{cohesive},{answers},{},{word},{detail},{},{},{:?}",
-                    self.population.seed, variant.name, trial.majors, trial.minors, trial.violation
+                    self.population.seed,
+                    super::csv::field(&variant.name),
+                    trial.majors,
+                    trial.minors,
+                    trial.violation
                 );
             }
         }

@@ -7,6 +7,7 @@ use crate::debug::command::{
 };
 use crate::debug::lesson::tutor::Kind;
 use crate::debug::lesson::{Guess, Tutor};
+use crate::outside::shown;
 use crate::scene::Mode;
 use crate::tui::branches;
 use crate::tui::commandline::{CommandLine, Purpose};
@@ -149,6 +150,10 @@ pub struct App {
     pub guess: Option<Guess>,
     /// Increments done of a chart that is being measured, and all of them.
     pub measuring: Option<(u64, u64)>,
+    /// Whether a file is being read.
+    pub loading: bool,
+    /// Whether the journal was lost.
+    pub unkept: bool,
     /// Turns of the spinner.
     pub tick: usize,
     /// The last motion, for Enter.
@@ -191,6 +196,8 @@ impl App {
             lesson: None,
             guess: None,
             measuring: None,
+            loading: false,
+            unkept: false,
             tick: 0,
             last: None,
             history: Vec::new(),
@@ -208,7 +215,7 @@ impl App {
     }
 
     fn tell(&mut self, text: String, tone: Tone) {
-        let text = text.replace(char::is_control, " ");
+        let text = shown::line(&text.replace('\n', " ")).into_owned();
         self.message = Message { text, tone };
     }
 
@@ -277,7 +284,7 @@ impl App {
         self.close(view);
         let trying = |view: &View| view.looks.is_some_and(|looks| looks.is_trying());
         let works = view.is_some_and(|view| view.running || trying(view));
-        if works || self.measuring.is_some() {
+        if works || self.measuring.is_some() || self.loading {
             return Some(Effect::Interrupt);
         }
         self.say("nothing is running; q quits");

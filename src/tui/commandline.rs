@@ -1,6 +1,7 @@
 //! A line being typed at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
 
 use crate::debug::command::{self, Context};
+use crate::outside::shown;
 use crate::tui::theme::Theme;
 use crossterm::event::{Event, KeyEvent};
 use ratatui::style::Modifier;
@@ -53,11 +54,11 @@ impl CommandLine {
         self.input.handle_event(&Event::Key(*key));
     }
 
-    /// Types a text; line ends and other control characters become blanks.
+    /// Types a text; line ends and whatever else is no letter become blanks.
     pub fn insert(&mut self, text: &str) {
         self.completions = None;
         for letter in text.trim_end().chars() {
-            let letter = if letter.is_control() { ' ' } else { letter };
+            let letter = if shown::is_order(letter) { ' ' } else { letter };
             self.input.handle(InputRequest::InsertChar(letter));
         }
     }

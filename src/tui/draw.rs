@@ -1,6 +1,7 @@
 //! The whole screen from the app and the view.
 
 use crate::debug::session::Session;
+use crate::outside::shown;
 use crate::tui::app::{App, Overlay};
 use crate::tui::layout::{self, Pane};
 use crate::tui::theme::Theme;
@@ -41,6 +42,22 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
         }
     }
     footer::draw(buffer, &places, app, view);
+    harmless(buffer, area);
+}
+
+/// Takes from the cells what a terminal would obey, and what was not shown as something else before.
+fn harmless(buffer: &mut Buffer, area: Rect) {
+    for at in area.intersection(buffer.area).positions() {
+        let cell = &mut buffer[at];
+        if cell.symbol().contains(shown::is_order) {
+            let left: String = cell
+                .symbol()
+                .chars()
+                .filter(|c| !shown::is_order(*c))
+                .collect();
+            cell.set_symbol(if left.is_empty() { " " } else { &left });
+        }
+    }
 }
 
 fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -77,7 +94,7 @@ pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme:
         true => (BorderType::Thick, theme.focus, theme.focus),
         false => (BorderType::Plain, theme.faint, theme.heading),
     };
-    let title = Line::styled(format!(" {title} "), title_style);
+    let title = Line::styled(format!(" {} ", shown::line(title)), title_style);
     let block = Block::bordered()
         .border_type(kind)
         .border_style(border)
@@ -96,8 +113,9 @@ pub fn lines(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
 
 /// A text that fits; what is cut off at the end shows as `…`.
 pub fn cut(text: &str, width: usize) -> String {
+    let text = shown::line(text);
     if text.width() <= width {
-        return text.into();
+        return text.into_owned();
     }
     let mut room = width.saturating_sub(1);
     let kept = text.chars().take_while(|letter| {
@@ -116,7 +134,7 @@ pub fn cut(text: &str, width: usize) -> String {
 /// Breaks a text into lines at its blanks.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
+    for word in shown::line(text).split(' ') {
         match lines.last_mut() {
             Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
                 line.push(' ');

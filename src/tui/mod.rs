@@ -20,6 +20,7 @@ pub mod help;
 pub mod keys;
 pub mod layout;
 pub mod lesson;
+pub mod loading;
 pub mod nodes;
 pub mod number;
 pub mod remedies;

@@ -5,18 +5,21 @@ use crate::debug::journal::{JournalError, Keep};
 use crate::debug::lesson::{Lesson, Tutor};
 use crate::debug::report;
 use crate::debug::session::{Reply, Session};
+use crate::outside::shown;
 use crate::scene::{Scene, builtin};
 use crate::study::measuring::Measuring;
 use crate::tui::app::{App, Effect, Offer, Overlay};
 use crate::tui::draw;
 use crate::tui::keys;
+use crate::tui::loading::{Loaded, Loading};
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use crate::tui::workprecision::Page;
 use crossterm::event::{self, Event, KeyEvent};
+use signal_hook::consts::SIGHUP;
 use std::collections::VecDeque;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -94,11 +97,16 @@ pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
 
 fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
-    let mut terminal = Terminal::enter()?;
-    let ended = events(&mut debugger, &mut terminal, &signals);
-    drop(terminal);
+    let ended = Terminal::enter().and_then(|mut terminal| {
+        // The terminal is given back before anything else is said.
+        events(&mut debugger, &mut terminal, &signals)
+    });
+    debugger.part();
     if let Some(signal) = signals.end() {
         terminal::obey(signal)?;
+    }
+    if ended.is_err() && terminal::is_gone() {
+        terminal::obey(SIGHUP)?;
     }
     ended.map_err(Error::from)
 }
@@ -128,7 +136,8 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         if std::mem::take(&mut changed) {
             terminal.draw(&debugger.app, debugger.view().as_ref())?;
         }
-        let wait = if debugger.is_busy() { BUSY } else { IDLE };
+        let works = debugger.is_busy() || debugger.loading.is_some();
+        let wait = if works { BUSY } else { IDLE };
         let mut ready = event::poll(wait)?;
         while ready {
             changed = true;
@@ -200,6 +209,8 @@ pub struct Debugger {
     keeps: bool,
     /// A chart that is being measured.
     measuring: Option<Measuring>,
+    /// A file that is being read.
+    loading: Option<Loading>,
 }
 
 /// Most commands that wait; more come only from a key that is held down.
@@ -222,7 +233,23 @@ impl Debugger {
             trying: false,
             keeps: false,
             measuring: None,
+            loading: None,
         }
+    }
+
+    /// Says in a line where the journal is, or that there is none any more, to whoever started the program.
+    fn part(&self) {
+        let Some(session) = &self.session else { return };
+        let told = match (session.journal(), session.lost_journal()) {
+            (Some(path), _) => {
+                let path = path.display();
+                format!("journal: {path} (`stickslip resume {path}` goes on with it)")
+            }
+            (None, Some(why)) => format!("no journal: {why}"),
+            (None, None) => return,
+        };
+        // There may be nobody any more.
+        let _ = writeln!(io::stderr(), "{}", shown::line(&told));
     }
 
     /// What the panes show.
@@ -256,14 +283,40 @@ impl Debugger {
             Effect::Redraw => return Some(Outside::Redraw),
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
-            Effect::Open(scene) => self.open(&scene),
+            Effect::Open(scene) => self.load(Loading::scene(&scene), &scene),
             Effect::Chart(of) => self.chart(of),
-            Effect::Lesson(name) => match Lesson::open(&name) {
-                Ok(lesson) => self.teach(lesson),
-                Err(error) => self.app.complain(error.to_string()),
-            },
+            Effect::Lesson(name) => self.load(Loading::lesson(&name), &name),
         }
         None
+    }
+
+    fn load(&mut self, loading: Loading, name: &str) {
+        self.loading = Some(loading);
+        self.app.loading = true;
+        self.app.say(format!("reading {name}; Ctrl-C gives it up"));
+    }
+
+    /// Shows what was read, unless a line is being typed. Returns whether there was anything.
+    fn follow_loading(&mut self) -> bool {
+        if matches!(self.app.overlay, Overlay::Line(_)) {
+            return false;
+        }
+        let Some(loaded) = self.loading.as_ref().and_then(Loading::result) else {
+            return false;
+        };
+        (self.loading, self.app.loading) = (None, false);
+        match loaded {
+            Loaded::Scene(Ok(session)) => self.open(*session),
+            Loaded::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
+            Loaded::Chart(Ok(page)) => {
+                self.app.say("");
+                self.app.overlay = Overlay::Chart(page);
+            }
+            Loaded::Scene(Err(why)) | Loaded::Lesson(Err(why)) | Loaded::Chart(Err(why)) => {
+                self.app.complain(why);
+            }
+        }
+        true
     }
 
     /// Types keys by their names, parted by blanks, and waits for the solver after each. For tests and pictures.
@@ -286,6 +339,10 @@ impl Debugger {
     /// Waits until the solver has nothing left to do.
     pub fn settle(&mut self) {
         loop {
+            while self.loading.is_some() && !matches!(self.app.overlay, Overlay::Line(_)) {
+                std::thread::sleep(Duration::from_millis(1));
+                self.advance();
+            }
             while self.is_busy() || !self.queue.is_empty() {
                 if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
                     self.tell(reply);
@@ -380,22 +437,18 @@ impl Debugger {
 
     fn chart(&mut self, of: ChartOf) {
         let over = match of {
-            ChartOf::File(file) => return self.show_chart(Page::open(&file)),
+            ChartOf::File(file) => return self.load(Loading::chart(&file), &file),
             ChartOf::Scene => Vec::new(),
             ChartOf::Settings(over) => over,
         };
         let Some(session) = &self.session else {
             return self.app.complain("there is no scene to measure; :open one");
         };
-        match Measuring::start(session.scene(), &over) {
-            Ok(measuring) => {
-                self.app.measuring = Some(measuring.progress());
-                self.measuring = Some(measuring);
-                self.app
-                    .say("measuring beside all else, and shown when it is done; Ctrl-C stops it");
-            }
-            Err(error) => self.app.complain(error.to_string()),
-        }
+        let measuring = Measuring::start(session.scene(), over);
+        self.app.measuring = Some(measuring.progress());
+        self.measuring = Some(measuring);
+        self.app
+            .say("measuring beside all else, and shown when it is done; Ctrl-C stops it");
     }
 
     fn show_chart(&mut self, page: Result<Page, String>) {
@@ -426,6 +479,10 @@ impl Debugger {
     }
 
     fn interrupt(&mut self) {
+        self.app.loading = false;
+        if self.loading.take().is_some() {
+            return self.app.say("not read");
+        }
         if let Some(measuring) = &self.measuring {
             measuring.interrupt();
         }
@@ -444,25 +501,24 @@ impl Debugger {
         }
     }
 
-    fn open(&mut self, scene: &str) {
-        match load(scene, &[]) {
-            Ok(mut session) => {
-                if self.keeps {
-                    session.keep_at_default_place();
-                }
-                self.session = Some(session);
-                self.queue.clear();
-                (self.measuring, self.app.measuring) = (None, None);
-                self.app.opened();
-                self.app.say("s is one minor iteration; ? lists the keys");
-            }
-            Err(message) => self.app.complain(message),
+    fn open(&mut self, mut session: Session) {
+        if self.keeps {
+            session.keep_at_default_place();
         }
+        self.session = Some(session);
+        self.queue.clear();
+        (self.measuring, self.app.measuring) = (None, None);
+        self.app.opened();
+        self.app.say("s is one minor iteration; ? lists the keys");
     }
 
     /// Begins a lesson at the start of its scene.
     pub fn teach(&mut self, lesson: Lesson) {
         let session = Session::new(lesson.scene.clone());
+        self.take_lesson(lesson, session);
+    }
+
+    fn take_lesson(&mut self, lesson: Lesson, session: Session) {
         let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
         self.session = Some(session);
         self.queue.clear();
@@ -474,11 +530,12 @@ impl Debugger {
 
     /// Gathers what the solver did and gives it the next command. Returns whether there is something new to draw.
     pub fn advance(&mut self) -> bool {
-        let measured = self.follow_chart();
+        let measured = self.follow_loading() | self.follow_chart();
         let Some(session) = &mut self.session else {
             return measured;
         };
         let was_busy = session.is_running();
+        self.app.unkept = session.lost_journal().is_some();
         let mut seen = session.gather_looks();
         let trying = session.looks().is_trying();
         if std::mem::replace(&mut self.trying, trying) && !trying {
@@ -533,7 +590,10 @@ impl Debugger {
     /// Waits a moment for a quick step, so that keys typed fast are not told to wait. A run to the end is none.
     fn breathe(&mut self) {
         let begin = std::time::Instant::now();
-        while self.is_busy() && !self.endless && begin.elapsed() < QUICK {
+        let quick = |debugger: &Debugger| {
+            debugger.loading.is_some() || debugger.is_busy() && !debugger.endless
+        };
+        while quick(self) && begin.elapsed() < QUICK {
             std::thread::sleep(Duration::from_micros(500));
             self.advance();
         }

@@ -71,6 +71,14 @@ fn position(app: &App, view: &View, width: usize) -> Line<'static> {
             line.push_span(chart);
         }
     }
+    if app.unkept {
+        // Whoever goes on without it must not forget that.
+        const LOST: [&str; 2] = ["   no journal (:journal FILE)", "  no journal"];
+        let fits = |words: &&&str| line.width() + words.width() <= width;
+        let words = LOST.iter().find(fits).unwrap_or(&LOST[1]);
+        while line.width() + words.width() > width && line.spans.pop().is_some() {}
+        line.push_span(Span::styled(*words, app.theme.bad));
+    }
     line
 }
 

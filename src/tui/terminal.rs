@@ -18,7 +18,8 @@ use ratatui::backend::CrosstermBackend;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
 use signal_hook::iterator::Handle;
 use signal_hook::{SigId, flag, low_level};
-use std::io::{self, Stdout, Write, stdout};
+use std::io::{self, IsTerminal, Stdout, Write, stdout};
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::thread;
@@ -32,7 +33,8 @@ static PANIC: Mutex<Option<String>> = Mutex::new(None);
 /// The terminal, taken over for as long as this lives.
 #[derive(Debug)]
 pub struct Terminal {
-    screen: ratatui::Terminal<CrosstermBackend<Stdout>>,
+    /// Never dropped: it would show the cursor once more, and panic where it cannot say that there is no terminal to show it on.
+    screen: ManuallyDrop<ratatui::Terminal<CrosstermBackend<Stdout>>>,
 }
 
 impl Terminal {
@@ -41,7 +43,9 @@ impl Terminal {
         hook_panics();
         take()?;
         match ratatui::Terminal::new(CrosstermBackend::new(stdout())) {
-            Ok(screen) => Ok(Terminal { screen }),
+            Ok(screen) => Ok(Terminal {
+                screen: ManuallyDrop::new(screen),
+            }),
             Err(error) => {
                 give_back();
                 Err(error)
@@ -119,6 +123,11 @@ fn give_back() {
         let _ = stdout().flush();
         let _ = disable_raw_mode();
     }
+}
+
+/// Whether the terminal went away under the program: there is none any more where there was one.
+pub fn is_gone() -> bool {
+    !stdout().is_terminal()
 }
 
 /// Makes a panic readable: on this thread the terminal is given back first; on another one (the solver's) the

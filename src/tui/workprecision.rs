@@ -41,7 +41,7 @@ impl Page {
     /// # Errors
     /// If it cannot be read.
     pub fn open(file: &str) -> Result<Page, String> {
-        let text = std::fs::read_to_string(Path::new(file)).map_err(|e| format!("{file}: {e}"))?;
+        let text = precision::open(Path::new(file))?;
         Page::of_table(file, text)
     }
 

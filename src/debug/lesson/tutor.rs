@@ -214,7 +214,9 @@ impl Tutor {
         };
         let moves = matches!(command, Command::Forward { .. } | Command::Back { .. });
         match (command, self.step()) {
-            (Command::Snapshot { .. } | Command::Export { .. }, _) => Ok(false),
+            (Command::Snapshot { .. } | Command::Export { .. } | Command::Journal(_), _) => {
+                Ok(false)
+            }
             (_, Some(Step::Predict { .. })) if moves && !self.done => match &mut self.guess {
                 Some(guess) => guess.permits(action, cursor, frame).map(|()| false),
                 None => Ok(false),

@@ -1,0 +1,172 @@
+//! The one way in which files are read: regular ones only, without ever waiting for somebody to write, and never more of
+//! one than a stated size.
+
+use std::fs::{File, FileType, Metadata, OpenOptions};
+use std::io::{self, Read};
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+use std::path::Path;
+
+/// Most bytes of a table: a chart's, or a reference's.
+pub const TABLE_BYTES: u64 = 64 << 20;
+/// Most bytes of a snapshot or a journal; the largest scenes need a tenth of it.
+pub const RECORD_BYTES: u64 = 256 << 20;
+
+/// Why a file is not read.
+#[derive(Debug, thiserror::Error)]
+pub enum Unreadable {
+    #[error("the file cannot be read: {0}")]
+    Failed(#[from] io::Error),
+    /// What it is instead of a file.
+    #[error("it is {0}, and only a regular file is read")]
+    NoFile(&'static str),
+    #[error("the file has more than {} MiB; {what}", most >> 20)]
+    TooLarge { most: u64, what: &'static str },
+    /// Where the first byte stands that is no text.
+    #[error("the file is not text in UTF-8")]
+    NoText { line: usize, column: usize },
+}
+
+impl Unreadable {
+    /// The message about a file: its name, the place in it where there is one, and why.
+    pub fn of(&self, file: &str) -> String {
+        match self {
+            Unreadable::NoText { line, column } => format!("{file}:{line}:{column}: {self}"),
+            _ => format!("{file}: {self}"),
+        }
+    }
+}
+
+/// The bytes of a file that has no more than so many of them; `what` tells why no sound one has.
+///
+/// # Errors
+/// If it is no regular file, cannot be read, or is larger.
+pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unreadable> {
+    let file = open(path, OpenOptions::new().read(true))?;
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > most {
+        true => Err(Unreadable::TooLarge { most, what }),
+        false => Ok(bytes),
+    }
+}
+
+/// The first bytes of a file, so many at most.
+///
+/// # Errors
+/// If it is no regular file, or cannot be read.
+pub fn start(path: &Path, most: u64) -> Result<Vec<u8>, Unreadable> {
+    let file = open(path, OpenOptions::new().read(true))?;
+    let mut bytes = Vec::new();
+    file.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The text of a file, without the mark with which some editors begin one.
+///
+/// # Errors
+/// As [`bytes`], and if it is not UTF-8.
+pub fn text(path: &Path, most: u64, what: &'static str) -> Result<String, Unreadable> {
+    utf8(bytes(path, most, what)?)
+}
+
+/// The text that some bytes are, without the mark with which some editors begin one.
+///
+/// # Errors
+/// If they are not UTF-8.
+pub fn utf8(bytes: Vec<u8>) -> Result<String, Unreadable> {
+    let mut text = String::from_utf8(bytes).map_err(|e| {
+        let good = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+        let start = good.iter().rposition(|&b| b == b'\n').map_or(0, |k| k + 1);
+        Unreadable::NoText {
+            line: 1 + good.iter().filter(|&&b| b == b'\n').count(),
+            column: 1 + String::from_utf8_lossy(&good[start..]).chars().count(),
+        }
+    })?;
+    if text.starts_with(MARK) {
+        text.drain(..MARK.len_utf8());
+    }
+    Ok(text)
+}
+
+/// The mark.
+pub const MARK: char = '\u{feff}';
+
+/// Opens a regular file as the options say, without waiting.
+///
+/// # Errors
+/// If it is something else, or cannot be opened.
+pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> {
+    // To open some devices does something, so that is asked first; and what it is can have changed until it is open.
+    match std::fs::metadata(path) {
+        Ok(found) => regular(&found)?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error.into()),
+    }
+    let unwaiting = rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY;
+    let file = options.custom_flags(unwaiting.bits() as i32).open(path)?;
+    regular(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn regular(found: &Metadata) -> Result<(), Unreadable> {
+    match kind(found.file_type()) {
+        None => Ok(()),
+        Some(kind) => Err(Unreadable::NoFile(kind)),
+    }
+}
+
+/// What something is that is no regular file.
+pub fn kind(found: FileType) -> Option<&'static str> {
+    let kinds = [
+        (found.is_dir(), "a directory"),
+        (found.is_fifo(), "a pipe"),
+        (found.is_socket(), "a socket"),
+        (
+            found.is_char_device() || found.is_block_device(),
+            "a device",
+        ),
+        (!found.is_file(), "no file"),
+    ];
+    kinds.into_iter().find(|(is, _)| *is).map(|(_, kind)| kind)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rustix::fs::{CWD, Mode, mkfifoat};
+
+    #[test]
+    fn what_is_no_file_is_refused_without_waiting() {
+        let directory = tempfile::tempdir().unwrap();
+        let pipe = directory.path().join("pipe");
+        mkfifoat(CWD, &pipe, Mode::RUSR | Mode::WUSR).unwrap();
+        for (path, kind) in [
+            (pipe.as_path(), "a pipe"),
+            (directory.path(), "a directory"),
+            (Path::new("/dev/zero"), "a device"),
+        ] {
+            let refused = bytes(path, 10, "").unwrap_err();
+            assert!(
+                matches!(refused, Unreadable::NoFile(k) if k == kind),
+                "{refused}"
+            );
+        }
+        let missing = bytes(&directory.path().join("none"), 10, "").unwrap_err();
+        assert!(matches!(missing, Unreadable::Failed(_)));
+    }
+
+    #[test]
+    fn size_text_and_mark() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("file");
+        std::fs::write(&path, "\u{feff}ten bytes").unwrap();
+        assert_eq!(text(&path, 12, "").unwrap(), "ten bytes");
+        assert!(matches!(
+            text(&path, 11, ""),
+            Err(Unreadable::TooLarge { .. })
+        ));
+        std::fs::write(&path, b"a\nb\xc3\xbc\xff").unwrap();
+        let place = text(&path, 12, "").unwrap_err();
+        assert!(matches!(place, Unreadable::NoText { line: 2, column: 3 }));
+    }
+}

@@ -1,0 +1,89 @@
+//! Texts of others, made harmless: what a terminal would obey is shown instead, as `\u{1b}`.
+//!
+//! Everything that the program writes for people or as a table goes through [`text`], texts that stand within a line through
+//! [`line`]. Both leave what is harmless as it is, so that it does no harm to go through them twice.
+
+use std::borrow::Cow;
+
+/// Whether a terminal or a viewer may take a character for an order: C0 and C1 controls and DEL, marks that turn the
+/// direction of writing or end lines, and what is never seen at all.
+pub fn is_order(c: char) -> bool {
+    c.is_control()
+        || matches!(
+            c,
+            '\u{61c}'
+                | '\u{200e}'
+                | '\u{200f}'
+                | '\u{2028}'..='\u{202e}'
+                | '\u{2066}'..='\u{206f}'
+                | '\u{feff}'
+                | '\u{fff9}'..='\u{fffb}'
+                | '\u{e0000}'..='\u{e007f}'
+        )
+}
+
+/// A text of one or more lines: line ends and tabs stay.
+pub fn text(text: &str) -> Cow<'_, str> {
+    escaped(text, |c| is_order(c) && !matches!(c, '\n' | '\t'))
+}
+
+/// A text within a line: nothing that is an order stays.
+pub fn line(text: &str) -> Cow<'_, str> {
+    escaped(text, is_order)
+}
+
+/// A text within a line that has room for so many characters of it.
+pub fn cut(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", line(&text[..end])),
+        None => line(text).into_owned(),
+    }
+}
+
+fn escaped(text: &str, harmful: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(&harmful) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        match harmful(c) {
+            true => shown.extend(c.escape_unicode()),
+            false => shown.push(c),
+        }
+    }
+    Cow::Owned(shown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn orders_are_shown_and_letters_stay() {
+        assert_eq!(line("\u{1b}]0;x\u{7}"), "\\u{1b}]0;x\\u{7}");
+        assert_eq!(
+            line("a\u{202e}b\u{9b}31m\r\n\t"),
+            "a\\u{202e}b\\u{9b}31m\\u{d}\\u{a}\\u{9}"
+        );
+        assert_eq!(text("one\n\ttwo\r\n"), "one\n\ttwo\\u{d}\n");
+        assert_eq!(
+            line("φ → 90°, “Wörter”, 日本, עברית"),
+            "φ → 90°, “Wörter”, 日本, עברית"
+        );
+        assert_eq!(cut("abc\u{1b}def", 4), "abc\\u{1b}…");
+        assert_eq!(cut("abcd", 4), "abcd");
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_harmful_is_left_and_nothing_changes_twice(any in any::<String>()) {
+            let once = line(&any).into_owned();
+            prop_assert!(!once.contains(is_order));
+            prop_assert_eq!(line(&once), once.as_str());
+            let once = text(&any).into_owned();
+            prop_assert!(!once.contains(|c| is_order(c) && c != '\n' && c != '\t'));
+            prop_assert_eq!(text(&once), once.as_str());
+        }
+    }
+}

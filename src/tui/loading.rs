@@ -1,0 +1,70 @@
+//! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
+//! while.
+
+use crate::debug::lesson::Lesson;
+use crate::debug::session::Session;
+use crate::scene::Scene;
+use crate::tui::workprecision::Page;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::thread;
+
+/// What was read, or why it cannot be had.
+pub enum Loaded {
+    Scene(Result<Box<Session>, String>),
+    Lesson(Result<Box<(Lesson, Session)>, String>),
+    Chart(Result<Box<Page>, String>),
+}
+
+/// Something on its way; who drops it does not want it any more.
+pub struct Loading {
+    result: Receiver<Loaded>,
+}
+
+impl Loading {
+    /// A session on a scene, by file or built-in name.
+    pub fn scene(name: &str) -> Loading {
+        let name = name.to_owned();
+        Loading::of(move || {
+            let scene = Scene::open(&name, &[]).map_err(|error| error.to_string());
+            Loaded::Scene(scene.map(|scene| Box::new(Session::new(scene))))
+        })
+    }
+
+    /// A lesson, by file or built-in name, and a session on its scene.
+    pub fn lesson(name: &str) -> Loading {
+        let name = name.to_owned();
+        Loading::of(move || {
+            let lesson = Lesson::open(&name).map_err(|error| error.to_string());
+            Loaded::Lesson(lesson.map(|lesson| {
+                let session = Session::new(lesson.scene.clone());
+                Box::new((lesson, session))
+            }))
+        })
+    }
+
+    /// The table of a chart.
+    pub fn chart(file: &str) -> Loading {
+        let file = file.to_owned();
+        Loading::of(move || Loaded::Chart(Page::open(&file).map(Box::new)))
+    }
+
+    fn of(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {
+        let (told, result) = channel();
+        thread::spawn(move || {
+            // Nobody may want it any more.
+            let _ = told.send(read());
+        });
+        Loading { result }
+    }
+
+    /// What was read, once it is there.
+    pub fn result(&self) -> Option<Loaded> {
+        match self.result.try_recv() {
+            Ok(loaded) => Some(loaded),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => {
+                Some(Loaded::Scene(Err("reading it broke down".into())))
+            }
+        }
+    }
+}

@@ -1,0 +1,754 @@
+//! What comes from outside: files and names that try to harm the terminal, what is no file, too deep, too wide, too long.
+
+#![cfg(unix)]
+
+#[path = "common/program.rs"]
+mod common;
+
+use common::{code, err, names, out, program, rows, well};
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use stickslip::debug::journal::Journal;
+use stickslip::debug::session::Session;
+use stickslip::outside::shown;
+use stickslip::scene::{Scene, builtin};
+use tempfile::TempDir;
+
+const CYCLES: &str = "osc-two6";
+/// What would set a title, ring, clear the screen, turn the writing, and colour by C1.
+const ORDERS: &str = "\u{1b}]0;PWN\u{7}\u{202e}\u{1b}[2J\u{9b}31m";
+const SHOWN: &str = "\\u{1b}]0;PWN\\u{7}\\u{202e}\\u{1b}[2J\\u{9b}31m";
+/// Far more than a refusal takes, since the machine may be busy with other tests.
+const DEADLINE: Duration = Duration::from_secs(20);
+
+/// Runs the program, and does not wait for ever.
+#[track_caller]
+fn run(directory: &TempDir, arguments: &[&str]) -> Output {
+    let mut child = program(directory.path(), arguments)
+        .env("XDG_STATE_HOME", directory.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // What it says fits into a pipe.
+    let begin = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if begin.elapsed() > DEADLINE {
+            child.kill().unwrap();
+            panic!("it waits for ever: {arguments:?}");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.wait_with_output().unwrap()
+}
+
+/// What it says where it refuses something: one line, not longer than one can read.
+#[track_caller]
+fn refusal(directory: &TempDir, arguments: &[&str]) -> String {
+    let output = run(directory, arguments);
+    let told = err(&output);
+    assert_eq!(code(&output), 2, "{arguments:?}: {told}");
+    assert_eq!(out(&output), "", "{arguments:?}");
+    assert!(
+        told.lines().count() == 1 && told.len() < 2000,
+        "{arguments:?}: {told}"
+    );
+    told
+}
+
+fn put(directory: &TempDir, name: &str, text: &str) {
+    fs::write(directory.path().join(name), text).unwrap();
+}
+
+fn scene(name: &str) -> String {
+    builtin::find(name).unwrap().text.to_owned()
+}
+
+const STUDY: &str = r#"(title: "ORDERSA study", about: "Why ORDERS not", scene: "osc-two6",
+    set: [("settings.strategy", "table2")], vary: [("history.increment", [0.5])])"#;
+const LESSON: &str = r#"(title: "ORDERSA lesson", about: "ORDERSabout", scene: Name("osc-two6"),
+    steps: [Text("ORDERSread"), Press(text: "ORDERSdo", press: "s"),
+    Ask(text: "ORDERSsay", answer: Mode(node: "a"), hint: "ORDERSh", then: "ORDERSt")])"#;
+const CHART: &str = "# ORDERSwhere from\nscene,series,run,status,error,seconds\n\
+    ORDERSscene,\"ORDERSone, two\",ORDERSrun=1,whole,1e-3,0.1\n\
+    ORDERSscene,\"ORDERSone, two\",ORDERSrun=2,ORDERSfailed,,0.2\n";
+const REFERENCE: &str = "# ORDERSof whom\nload,u_x,u_y\n1,0.5,0.1\n";
+const CONTACTS: &str = r#"Contacts(
+    title: "t",
+    contacts: [
+        (id: "a", gap: 0.5, friction: (angle: 20.0), load: (-1.0, 0.25)),
+        (id: "b", friction: (angle: 9.0), load: (0.0, 1.0)),
+    ],
+    matrix: Stiffness([
+        [4.0, 0.0, 0.0, 0.0],
+        [0.0, 3.0, 0.0, 0.0],
+        [0.0, 0.0, 2.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ]),
+    history: (path: [0, 1], increment: 0.5),
+)"#;
+
+/// A text with the orders in it, as RON writes them.
+fn in_ron(text: &str) -> String {
+    text.replace("ORDERS", SHOWN)
+}
+
+/// A directory with one file of every kind, each with orders in it wherever a text can be.
+fn harmful() -> TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    put(&directory, "study.ron", &in_ron(STUDY));
+    put(&directory, "lesson.ron", &in_ron(LESSON));
+    put(&directory, "chart.csv", &CHART.replace("ORDERS", ORDERS));
+    put(
+        &directory,
+        "reference.csv",
+        &REFERENCE.replace("ORDERS", ORDERS),
+    );
+    let path = directory.path().join("j");
+    let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
+    session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
+    for line in ["step", "rename x", "watch gap a"] {
+        use stickslip::debug::command::{Action, Context, parse};
+        let context = Context {
+            model: Some(session.model()),
+            ..Context::default()
+        };
+        let Ok(Action::Session(command)) = parse(line, &context) else {
+            panic!("{line}")
+        };
+        session.submit(command).unwrap();
+        session.wait();
+    }
+    let text = fs::read_to_string(&path).unwrap();
+    put(
+        &directory,
+        "story.journal",
+        &text.replace("said:\"", &format!("said:\"{SHOWN}")),
+    );
+    let other = text
+        .replace("version:\"", &format!("version:\"{SHOWN}"))
+        .replace("name:\"osc", &format!("name:\"{SHOWN}osc"))
+        .replace("digest:\"", "digest:\"1");
+    put(&directory, "resume.journal", &other);
+    let scene = scene(CYCLES);
+    put(&directory, &format!("{ORDERS}.ron"), &scene);
+    put(
+        &directory,
+        &format!("{ORDERS}wrong.ron"),
+        &scene.replacen("title", "tittle", 1),
+    );
+    directory
+}
+
+#[test]
+fn orders_to_the_terminal_out_of_files_and_their_names_are_shown_everywhere_and_nowhere_obeyed() {
+    let directory = harmful();
+    let (good, wrong) = (format!("{ORDERS}.ron"), format!("{ORDERS}wrong.ron"));
+    let (good, wrong) = (good.as_str(), wrong.as_str());
+    let study_csv = format!("{ORDERS}.csv");
+    let cases: &[(&[&str], i32)] = &[
+        (
+            &[
+                "study",
+                "study.ron",
+                "--csv",
+                "study.csv",
+                "--svg",
+                "study.svg",
+            ],
+            0,
+        ),
+        (&["study", good, "--csv", "-", "--vary", "refine=1"], 0),
+        (&["lesson", "--check", "lesson.ron"], 0),
+        (
+            &[
+                "chart",
+                "--from",
+                "chart.csv",
+                "--csv",
+                "made.csv",
+                "--svg",
+                "chart.svg",
+            ],
+            0,
+        ),
+        (&["chart", "--from", "chart.csv", "--csv", "-"], 0),
+        (
+            &[
+                "chart",
+                CYCLES,
+                "--over",
+                "settings.strategy=ladder,lemke",
+                "--reference",
+                "reference.csv",
+                "--repeats",
+                "1",
+                "--csv",
+                "-",
+                "--svg",
+                "reference.svg",
+            ],
+            0,
+        ),
+        (&["story", "story.journal"], 0),
+        (&["story", "resume.journal"], 0),
+        (&["resume", "--check", "resume.journal"], 1),
+        (&["check", good], 0),
+        (&["check", good, "--paths"], 0),
+        (&["check", wrong], 2),
+        (&["run", good, "--csv", &study_csv], 3),
+        (&["run", good, "--set", ORDERS], 2),
+        (&["run", good, "--set", "refine=\u{1b}]0;x\u{7}"], 2),
+        (&["remedies", good], 0),
+        (&["core", good], 0),
+        (&["record", good, "--at", "1.1.1"], 0),
+        (
+            &[
+                "map",
+                good,
+                "--strategies",
+                "ladder,lemke",
+                "--csv",
+                "-",
+                "--svg",
+                "map.svg",
+            ],
+            0,
+        ),
+        (&["check", ORDERS], 2),
+        (&["study", ORDERS], 2),
+        (&["lesson", ORDERS], 2),
+        (&["story", ORDERS], 2),
+        (&["diff", ORDERS, ORDERS], 2),
+        (&["run", "a", ORDERS], 2),
+        (&[ORDERS, ORDERS], 2),
+    ];
+    for (arguments, wanted) in cases {
+        let output = run(&directory, arguments);
+        let (out, err) = (out(&output), err(&output));
+        assert_eq!(code(&output), *wanted, "{arguments:?}: {err}");
+        let told = out + &err;
+        let harm = |c: char| shown::is_order(c) && c != '\n' && c != '\t';
+        assert!(!told.contains(harm), "{arguments:?}: {told:?}");
+        // Neither escapes of RON count here nor a file whose name is not told.
+        let quiet = ["core", "lesson", "chart", "remedies", "record"].contains(&arguments[0])
+            && *wanted == 0;
+        let quiet = quiet || arguments.contains(&"--paths");
+        assert!(quiet || told.contains("\\u{1b}"), "{arguments:?}: {told}");
+    }
+    for name in [
+        "study.csv",
+        "study.svg",
+        "made.csv",
+        "chart.svg",
+        "reference.svg",
+        "map.svg",
+    ] {
+        let text = fs::read_to_string(directory.path().join(name)).unwrap();
+        let harm = text.contains(|c| shown::is_order(c) && !"\n\t\r".contains(c));
+        assert!(
+            !harm && (text.contains("\\u{1b}") || name == "study.csv"),
+            "{name}: {text}"
+        );
+    }
+    let again = well(&run(
+        &directory,
+        &["chart", "--from", "made.csv", "--csv", "-"],
+    ));
+    assert!(rows(&again)[0]["series"].starts_with(SHOWN), "{again}");
+    // A snapshot is not called as the scene's file would have it.
+    let made = names(directory.path());
+    let ours = made.iter().filter(|name| name.ends_with("-1.1.1.ron"));
+    assert!(
+        ours.into_iter().all(|name| !name.contains(shown::is_order)),
+        "{made:?}"
+    );
+}
+
+/// Every command that reads a file, with `FILE` for it.
+const READERS: &[&str] = &[
+    "check FILE",
+    "run FILE",
+    "record FILE --at 1",
+    "remedies FILE",
+    "core FILE",
+    "study FILE",
+    "map FILE",
+    "chart FILE",
+    "lesson --check FILE",
+    "story FILE",
+    "resume --check FILE",
+    "audit FILE",
+    "replay FILE",
+    "diff FILE FILE",
+    "chart --from FILE",
+    "chart osc-two6 --reference FILE",
+    "map osc-two6 --resume FILE",
+    "map --random 1 --resume FILE",
+];
+
+fn reader<'a>(line: &'a str, file: &'a str) -> Vec<&'a str> {
+    let words = line.split(' ');
+    words
+        .map(|word| if word == "FILE" { file } else { word })
+        .collect()
+}
+
+fn pipe(directory: &TempDir, name: &str) {
+    use rustix::fs::{CWD, Mode, mkfifoat};
+    mkfifoat(CWD, directory.path().join(name), Mode::RUSR | Mode::WUSR).unwrap();
+}
+
+#[test]
+fn what_is_no_file_is_refused_at_once_by_every_command() {
+    let directory = tempfile::tempdir().unwrap();
+    pipe(&directory, "pipe");
+    fs::create_dir(directory.path().join("folder")).unwrap();
+    symlink("pipe", directory.path().join("link")).unwrap();
+    for (file, kind) in [
+        ("pipe", "it is a pipe"),
+        ("link", "it is a pipe"),
+        ("folder", "it is a directory"),
+        ("/dev/zero", "it is a device"),
+    ] {
+        for line in READERS {
+            let told = refusal(&directory, &reader(line, file));
+            assert!(told.contains(file) && told.contains(kind), "{line}: {told}");
+        }
+    }
+    for line in [
+        "run osc-two6 --csv FILE",
+        "run osc-two6 --trace FILE",
+        "run osc-two6 --snapshot FILE",
+        "record osc-two6 --at 1.1.1 -o FILE",
+        "core osc-two6 -o FILE",
+        "study osc-two6 --svg FILE",
+        "map osc-two6 --png FILE",
+        "map --random 1 --write 0 -o FILE",
+    ] {
+        let told = refusal(&directory, &reader(line, "pipe"));
+        assert!(told.contains("nobody reads"), "{line}: {told}");
+        let forced = [&reader(line, "folder")[..], &["--force"]].concat();
+        let told = refusal(&directory, &forced);
+        assert!(told.contains("it is a directory"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn a_file_that_is_larger_than_any_sound_one_is_refused_and_not_read() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("huge");
+    // It takes no room on the disk.
+    fs::File::create(&path).unwrap().set_len(3 << 40).unwrap();
+    for line in READERS {
+        let told = refusal(&directory, &reader(line, "huge"));
+        assert!(told.contains("MiB"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn brackets_that_are_nested_too_deep_are_refused_at_once_with_their_place() {
+    let directory = tempfile::tempdir().unwrap();
+    for (text, column) in [
+        (format!("(title{}", "Scene((".repeat(20_000)), 230),
+        ("(".repeat(100_000), 65),
+        ("[".repeat(1 << 20), 65),
+        (format!("(scene: {}", "Some(".repeat(100_000)), 0),
+        (format!("Contacts({}", "(".repeat(100_000)), 73),
+    ] {
+        put(&directory, "deep.ron", &text);
+        for line in [
+            "check FILE",
+            "study FILE",
+            "lesson --check FILE",
+            "replay FILE",
+        ] {
+            let told = refusal(&directory, &reader(line, "deep.ron"));
+            let place = format!("deep.ron:1:{column}: brackets are nested far too deep");
+            assert!(column == 0 || told.starts_with(&place), "{line}: {told}");
+            assert!(told.contains("nested far too deep"), "{line}: {told}");
+        }
+    }
+    put(&directory, "deep", &format!("{}\n", "(".repeat(100_000)));
+    for line in ["story FILE", "resume --check FILE", "chart --from FILE"] {
+        let told = refusal(&directory, &reader(line, "deep"));
+        assert!(told.contains("deep:1:"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn results_that_do_not_fit_their_problem_are_refused_with_their_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let map = ["map", "--random", "4", "--jobs", "1", "--resume", "log"];
+    well(&run(&directory, &map));
+    let whole = fs::read_to_string(directory.path().join("log")).unwrap();
+    let changed = |line: usize, change: &dyn Fn(&str) -> String| {
+        let lines = whole.lines().enumerate();
+        let lines = lines.map(|(k, old)| {
+            if k + 1 == line {
+                change(old)
+            } else {
+                old.to_owned()
+            }
+        });
+        put(
+            &directory,
+            "log",
+            &(lines.collect::<Vec<_>>().join("\n") + "\n"),
+        );
+        refusal(&directory, &map)
+    };
+    let trials = |line: &str| line.find("trials:[").unwrap() + "trials:[".len();
+    let none = changed(3, &|line| format!("{}])", &line[..trials(line)]));
+    assert!(
+        none.starts_with("log:3:1: ") && none.contains("of 0 trials"),
+        "{none}"
+    );
+    let one = changed(4, &|line| {
+        line[..=line.find("),(").unwrap()].to_owned() + "])"
+    });
+    assert!(
+        one.starts_with("log:4:1: ") && one.contains("of 1 trials"),
+        "{one}"
+    );
+    let wrong = changed(2, &|line| {
+        line.replacen("Right", "Rihgt", 1)
+            .replacen("Wrong", "Wrogn", 1)
+    });
+    assert!(
+        wrong.starts_with("log:2:") && !wrong.starts_with("log:2:1:"),
+        "{wrong}"
+    );
+    assert!(changed(5, &|line| line.replace('\t', " ")).starts_with("log:5:1: "));
+    assert!(changed(1, &|_| "stickslip 0.0.0 results, another".into()).starts_with("log:1:1: "));
+    let long = changed(2, &|line| line.replace("stiffness", &"x".repeat(2 << 20)));
+    assert!(long.starts_with("log:2:1: "), "{long}");
+    // As it was, and with an editor's mark, it is taken up.
+    put(&directory, "log", &format!("\u{feff}{whole}"));
+    well(&run(&directory, &map));
+    assert_eq!(
+        fs::read_to_string(directory.path().join("log")).unwrap(),
+        format!("\u{feff}{whole}")
+    );
+}
+
+#[test]
+fn a_table_of_a_chart_is_refused_where_its_names_are_too_long_and_drawn_within_bounds() {
+    let directory = tempfile::tempdir().unwrap();
+    let head = "scene,series,run,status,error,seconds\n";
+    let wide = "T".repeat(100_000);
+    for (k, column) in [(0, 1), (1, 3), (2, 5), (3, 7)] {
+        let mut row = ["s", "t", "r", "whole", "1", "1"];
+        row[k] = &wide;
+        put(&directory, "a.csv", &format!("{head}{}\n", row.join(",")));
+        let told = refusal(&directory, &["chart", "--from", "a.csv", "--png", "a.png"]);
+        assert!(told.starts_with(&format!("a.csv:2:{column}: ")), "{told}");
+        assert!(told.contains("100000 characters"), "{told}");
+    }
+    let name = "W".repeat(200);
+    put(
+        &directory,
+        "a.csv",
+        &format!("# {wide}\n{head}{name},{name},{name},{name},1e-300,1e300\n"),
+    );
+    well(&run(
+        &directory,
+        &["chart", "--from", "a.csv", "--svg", "a.svg", "--csv", "-"],
+    ));
+    let text = fs::read_to_string(directory.path().join("a.svg")).unwrap();
+    assert!(text.len() < 200_000 && text.contains('…'));
+    let many: String = (0..200)
+        .map(|k| format!("scene{k},a,b,whole,1,1\n"))
+        .collect();
+    put(&directory, "b.csv", &format!("{head}{many}"));
+    let told = run(
+        &directory,
+        &["chart", "--from", "b.csv", "--png", "b.png", "--quiet"],
+    );
+    assert_eq!(code(&told), 2);
+    assert!(err(&told).contains("million at most"), "{}", err(&told));
+    let runs: String = (0..20_001)
+        .map(|k| format!("s,a,{k},whole,1,1\n"))
+        .collect();
+    put(&directory, "c.csv", &format!("{head}{runs}"));
+    let told = refusal(&directory, &["chart", "--from", "c.csv"]);
+    assert!(told.starts_with("c.csv:20002:1: "), "{told}");
+}
+
+#[test]
+fn what_is_wrong_with_an_interface_problem_is_said_with_its_place() {
+    let directory = tempfile::tempdir().unwrap();
+    let place = |from: &str, to: &str| {
+        assert!(CONTACTS.contains(from), "{from}");
+        put(&directory, "c.ron", &CONTACTS.replacen(from, to, 1));
+        refusal(&directory, &["check", "c.ron"])
+    };
+    for (from, to, at) in [
+        ("id: \"a\"", "id: \"a b\"", "4:14: contacts[0].id: "),
+        ("id: \"b\"", "id: \"a\"", "5:14: contacts[1].id: "),
+        ("gap: 0.5", "gap: 1e30", "4:24: contacts[0].gap"),
+        (
+            "angle: 9.0",
+            "angle: 95",
+            "5:37: contacts[1].friction.angle: ",
+        ),
+        ("(0.0, 1.0)", "(0.0, 1e300)", "5:49: contacts[1].load: "),
+        (
+            "[0.0, 3.0, 0.0, 0.0]",
+            "[0.0, 3.0, 0.0]",
+            "9:9: matrix[1]: ",
+        ),
+        ("        [0.0, 0.0, 0.0, 1.0],\n", "", "7:13: matrix: "),
+        (
+            "[0.0, 0.0, 2.0, 0.0]",
+            "[0.0, 0.0, 2.0, inf]",
+            "10:25: matrix[2][3]: ",
+        ),
+        (
+            "[0.0, 0.0, 2.0, 0.0]",
+            "[0.0, 0.0, x, 0.0]",
+            "10:20: matrix[2][2]",
+        ),
+        (
+            "increment: 0.5",
+            "increment: -1",
+            "13:40: history.increment: ",
+        ),
+        ("title: \"t\"", "title: \"\"", "2:12: title: "),
+    ] {
+        let told = place(from, to);
+        assert!(told.starts_with(&format!("c.ron:{at}")), "{to}: {told}");
+    }
+    put(&directory, "c.ron", CONTACTS);
+    well(&run(&directory, &["check", "c.ron"]));
+    let told = refusal(
+        &directory,
+        &["check", "c.ron", "--set", "history.increment=0"],
+    );
+    assert!(told.contains("--set history.increment=0"), "{told}");
+}
+
+#[test]
+fn an_editor_s_mark_at_the_beginning_is_no_fault_of_any_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let marked = |name: &str, text: &str| put(&directory, name, &format!("\u{feff}{text}"));
+    marked("scene.ron", &scene(CYCLES));
+    marked("contacts.ron", CONTACTS);
+    marked("study.ron", &STUDY.replace("ORDERS", ""));
+    marked("lesson.ron", &LESSON.replace("ORDERS", ""));
+    marked("chart.csv", &CHART.replace("ORDERS", ""));
+    marked(
+        "plain.csv",
+        CHART.replace("ORDERS", "").split_once('\n').unwrap().1,
+    );
+    marked("reference.csv", REFERENCE.split_once('\n').unwrap().1);
+    marked("siconos.dat", "2\n1\n0\n2\n2\n2 2\n1 0 0 1\n-1 0.5\n0.3\n");
+    well(&run(
+        &directory,
+        &["record", CYCLES, "--at", "1.1.1", "-o", "snapshot.ron"],
+    ));
+    let snapshot = fs::read_to_string(directory.path().join("snapshot.ron")).unwrap();
+    marked("snapshot.ron", &snapshot);
+    let path = directory.path().join("journal");
+    let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
+    session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
+    drop(session);
+    marked("journal", &fs::read_to_string(&path).unwrap());
+    for line in [
+        "check scene.ron",
+        "check contacts.ron",
+        "check siconos.dat",
+        "study study.ron",
+        "lesson --check lesson.ron",
+        "chart --from chart.csv",
+        "chart --from plain.csv",
+        "chart osc-two6 --over settings.strategy=ladder,lemke --repeats 1 --reference reference.csv",
+        "replay snapshot.ron",
+        "story journal",
+        "resume --check journal",
+    ] {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let output = run(&directory, &arguments);
+        assert_eq!(code(&output), 0, "{line}: {}", err(&output));
+    }
+}
+
+#[test]
+fn a_message_repeats_only_the_beginning_of_what_is_long() {
+    let directory = tempfile::tempdir().unwrap();
+    let long = "x".repeat(50_000);
+    let scene = scene(CYCLES);
+    let cases = [
+        ("check", scene.replacen("title:", &format!("{long}:"), 1)),
+        ("check", scene.replacen("Node(", &format!("{long}("), 1)),
+        ("check", scene.replacen("\"a\"", &format!("\"{long}\""), 1)),
+        (
+            "check",
+            scene.replacen("title:", &format!("{long}: 1, title:"), 1),
+        ),
+        (
+            "check",
+            scene.replacen("title:", &format!("title: {long}, title:"), 1),
+        ),
+        ("check", format!("2\n{long}\n")),
+        ("check", format!("({long}")),
+        ("check", long.clone()),
+        ("check", CONTACTS.replace("id:", &format!("{long}:"))),
+        ("study", STUDY.replace("title", &long)),
+        ("study", STUDY.replace("osc-two6", &long)),
+        ("study", STUDY.replace("history.increment", &long)),
+        ("study", STUDY.replace("0.5", &format!("\"{long}\""))),
+        ("lesson", LESSON.replace("steps", &long)),
+        ("lesson", LESSON.replace("osc-two6", &long)),
+        (
+            "lesson",
+            LESSON.replace("press: \"s\"", &format!("press: \"{long}\"")),
+        ),
+        (
+            "lesson",
+            LESSON.replace("node: \"a\"", &format!("node: \"{long}\"")),
+        ),
+        ("replay", format!("(format: 1, {long}: 2)")),
+        ("story", format!("(format:1,{long}:2)\n")),
+        ("story", format!("{long}\n")),
+        ("chart", format!("{long},b\n1,2\n")),
+        (
+            "chart",
+            format!("scene,series,run,status,error,seconds\na,b,c,whole,{long},1\n"),
+        ),
+        ("reference", format!("{long},b\n1,2\n")),
+        ("reference", format!("load,{long}\n1,{long}\n")),
+        ("map", format!("{long}\n")),
+    ];
+    for (k, (command, text)) in cases.iter().enumerate() {
+        put(&directory, "file", text);
+        let arguments: &[&str] = match *command {
+            "lesson" => &["lesson", "--check", "file"],
+            "chart" => &["chart", "--from", "file"],
+            "reference" => &["chart", CYCLES, "--reference", "file"],
+            "map" => &["map", CYCLES, "--resume", "file"],
+            command => &[command, "file"],
+        };
+        let told = refusal(&directory, arguments);
+        assert!(
+            told.starts_with("file") || told.contains("--set") || told.starts_with('x'),
+            "{k}: {told}"
+        );
+    }
+    for arguments in [
+        &["run", CYCLES, "--set", &format!("{long}=1")][..],
+        &["run", CYCLES, "--set", &format!("refine={long}")],
+        &["run", CYCLES, "--set", &format!("settings.strategy={long}")],
+        &["chart", CYCLES, "--over", &format!("refine={long}")],
+        &["map", CYCLES, "--strategies", &long],
+    ] {
+        let output = run(&directory, arguments);
+        assert_eq!(code(&output), 2);
+        assert!(
+            err(&output).len() < 3000,
+            "{}: {}",
+            arguments[0],
+            err(&output).len()
+        );
+    }
+}
+
+#[test]
+fn what_a_killed_run_has_left_is_swept_up_by_the_next_in_that_folder() {
+    let directory = tempfile::tempdir().unwrap();
+    let long = ["--set", "history.increment=1e-6"];
+    let record = [
+        "record",
+        "01-pinned-beam-rough-floor",
+        "--at",
+        "400000",
+        "-o",
+        "a.ron",
+    ];
+    let mut child = program(directory.path(), &[&record[..], &long].concat())
+        .spawn()
+        .unwrap();
+    while names(directory.path()).is_empty() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // The temporary file of a run that lives is left alone.
+    let other = ["record", CYCLES, "--at", "1.1.1", "-o", "b.ron"];
+    well(&run(&directory, &other));
+    assert_eq!(names(directory.path()).len(), 2);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(names(directory.path()).len(), 2);
+    well(&run(&directory, &[&other[..], &["--force"]].concat()));
+    assert_eq!(names(directory.path()), ["b.ron"]);
+}
+
+#[test]
+fn force_makes_what_a_dangling_link_points_to_and_leaves_the_link() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    fs::create_dir(at("folder")).unwrap();
+    symlink("folder/there", at("link")).unwrap();
+    for (arguments, option) in [
+        (
+            &[
+                "run",
+                "02-two-cantilevers-smooth",
+                "--set",
+                "history.increment=0.5",
+            ][..],
+            "--csv",
+        ),
+        (&["record", CYCLES, "--at", "1.1.1"], "-o"),
+        (&["core", CYCLES], "-o"),
+    ] {
+        let plain = [arguments, &[option, "link"]].concat();
+        assert!(refusal(&directory, &plain).contains("exists already"));
+        for _ in 0..2 {
+            well(&run(&directory, &[&plain[..], &["--force"]].concat()));
+            assert!(at("link").is_symlink() && !at("folder/there").is_symlink());
+            assert!(fs::read_to_string(at("folder/there")).unwrap().len() > 10);
+        }
+        fs::remove_file(at("folder/there")).unwrap();
+    }
+}
+
+#[test]
+fn a_disk_without_room_is_told_and_leaves_nothing_half_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_stickslip");
+    for arguments in [
+        "run 02-two-cantilevers-rough --trace a",
+        "record 02-two-cantilevers-rough --at 1 -o a",
+        "map osc-two6 osc-two3 --strategies ladder,lemke --svg a",
+    ] {
+        let line = format!("ulimit -f 4; exec {program} {arguments}");
+        let mut shell = Command::new("sh");
+        let output = shell
+            .args(["-c", &line])
+            .current_dir(directory.path())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{}", err(&output));
+        assert!(
+            err(&output).contains("a: it cannot be written"),
+            "{}",
+            err(&output)
+        );
+        assert!(names(directory.path()).is_empty());
+    }
+    if Path::new("/dev/full").exists() {
+        let told = run(
+            &directory,
+            &["run", "02-two-cantilevers-rough", "--trace", "/dev/full"],
+        );
+        assert_eq!(code(&told), 2);
+        assert!(
+            err(&told).contains("/dev/full: it cannot be written"),
+            "{}",
+            err(&told)
+        );
+    }
+}
