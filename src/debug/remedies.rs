@@ -5,11 +5,12 @@
 //! load that failed is accepted, where it fails, or after [`BUDGET`] minor iterations. What it did is kept as steps, so
 //! that the chosen one can be done again in a branch.
 
+use crate::contact::judge::Law;
 use crate::debug::looks;
 use crate::debug::report;
 use crate::debug::strip::Kind;
+use crate::scene::Settings;
 use crate::scene::spec::{AtCycle, FrictionLimit, ResidualMethod, Sticking, Strategy};
-use crate::scene::{Mode, Settings};
 use crate::solve::{
     Event, Failure, Forced, Intervention, NodeRecord, Norms, NotFound, Outcome, State, Status,
     Stepper,
@@ -39,6 +40,8 @@ pub struct Remedy {
 pub enum End {
     /// The load that failed was accepted.
     Converged,
+    /// A state was accepted, as held modes or the settings want it, that the judge found against this law.
+    Against(Law),
     Failed(Failure),
     /// The budget is used up.
     Budget,
@@ -47,7 +50,7 @@ pub enum End {
 /// What is left of violations in the accepted state, over the scale of forces and the length of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Left {
-    /// Deepest penetration (length).
+    /// Deepest penetration, or largest distance over which a force acts (length).
     pub penetration: f64,
     /// Largest tension of a touching node (force).
     pub tension: f64,
@@ -207,6 +210,15 @@ pub fn attempt(
                 trial.end = End::Failed(failure.clone());
                 break;
             }
+            Outcome::Increment {
+                after,
+                marked: Some(found),
+                ..
+            } => {
+                trial.end = End::Against(found.law);
+                trial.left = Some(left(stepper, &event, after));
+                break;
+            }
             Outcome::Increment { after, .. } if is_there(stepper.state(), &event, target) => {
                 trial.end = End::Converged;
                 trial.left = Some(left(stepper, &event, after));
@@ -271,30 +283,24 @@ fn scale_of(tested: crate::contact::decision::Tested, stepper: &Stepper, event: 
     }
 }
 
-/// Violations in the last minor iteration, which was accepted.
+/// What the judge found of the state that was accepted last.
 fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
-    let friction = &stepper.state().controls.friction;
-    let mut left = Left {
-        residual: after.relative,
-        ..Left::default()
+    let verdict = stepper.state().start.verdict.as_ref();
+    let amount = |law: Law| {
+        let found = verdict.and_then(|verdict| verdict.worst[law as usize]);
+        found.map_or(0.0, |found| found.amount)
     };
-    for (record, friction) in event.nodes.iter().zip(friction) {
-        let decision = &record.decision;
-        if record.gap.is_finite() {
-            left.penetration = left.penetration.max(-record.gap);
-        }
-        if decision.before != Mode::Free {
-            let limit = record.f_n.abs() * friction.coefficient() + friction.cohesion;
-            left.tension = left.tension.max(-record.f_n);
-            left.shear = left.shear.max(record.f_t.abs() - limit);
-        }
-        left.held += usize::from(decision.wanted != decision.next);
+    let inside = amount(Law::Penetration).max(amount(Law::Gap));
+    let (tension, shear) = (amount(Law::Tension), amount(Law::Cone));
+    let decisions = event.nodes.iter().map(|record| &record.decision);
+    Left {
+        penetration: inside * stepper.model().length,
+        tension: tension * after.scale,
+        shear: shear * after.scale,
+        held: decisions.filter(|d| d.wanted != d.next).count(),
+        residual: after.relative,
+        worst: inside.max(tension).max(shear),
     }
-    let force = if after.scale > 0.0 { after.scale } else { 1.0 };
-    left.worst = (left.penetration / stepper.model().length)
-        .max(left.tension / force)
-        .max(left.shear / force);
-    left
 }
 
 /// Best first: those that converged and leave no violation, by cost; those that leave one, by its size; then the others.
@@ -302,6 +308,7 @@ pub fn sort(trials: &mut [Trial]) {
     let class = |trial: &Trial| match (&trial.end, &trial.left) {
         (End::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
         (End::Converged, _) => 0,
+        (End::Against(_), _) => 1,
         _ => 2,
     };
     let worst = |trial: &Trial| trial.left.map_or(0.0, |left| left.worst);
@@ -321,6 +328,7 @@ pub fn sort(trials: &mut [Trial]) {
 pub fn end_words(end: &End) -> String {
     match end {
         End::Converged => "converged".into(),
+        End::Against(law) => format!("breaks {}", law.name()),
         End::Budget => format!("{BUDGET} minors"),
         End::Failed(Failure::Cycle(cycle)) => format!("{}-cycle", cycle.period),
         End::Failed(Failure::MinorLimit { .. }) => "minors' limit".into(),

@@ -123,6 +123,7 @@ fn mark(trial: &Trial, app: &App) -> (&'static str, Style) {
     match (&trial.end, &trial.left) {
         (End::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => ("~", theme.warning),
         (End::Converged, _) => ("✓", theme.good),
+        (End::Against(_), _) => ("~", theme.warning),
         _ => ("✗", theme.bad),
     }
 }
