@@ -37,7 +37,7 @@ fn a_run_that_converges_ends_with_0_and_writes_only_data_to_standard_output() {
     assert_eq!(code(&output), 0, "{}", err(&output));
     let table = out(&output);
     assert_eq!(whole_rows(&table), 50);
-    let header = "increment,load,majors,minors,u_x,u_y,rotation,contact_x,contact_y";
+    let header = "increment,load,majors,minors,u_x,u_y,rotation,contact_x,contact_y,jumped";
     assert_eq!(table.lines().next(), Some(header));
     for (k, row) in table.lines().skip(1).enumerate() {
         let fields: Vec<f64> = row.split(',').map(|f| f.parse().unwrap()).collect();

@@ -261,6 +261,7 @@ fn ended(end: f64) -> Option<Ended> {
         majors: 5,
         minors: 5,
         unsettled: 0,
+        jumped: 0,
         // The drift is a measure of error and may differ.
         monitors: vec![
             seen("u_x", Kind::Length, end),

@@ -117,6 +117,7 @@ fn a_run_that_fails_is_a_row_that_says_where_and_why() {
     let table = rows(&out(&output));
     let header = "history.increment,status,increment,load,majors,minors,unsettled,u_x,u_y";
     assert!(table[0].join(",").starts_with(header), "{:?}", table[0]);
+    assert_eq!(table[0].last().map(String::as_str), Some("jumped"));
     let status: Vec<String> = table[1..].iter().map(|r| r[..3].join(" ")).collect();
     let expected = [
         "0.02 converged 1",

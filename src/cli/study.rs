@@ -147,6 +147,12 @@ fn tell_end(plan: &Plan, runs: &[Run]) -> bool {
             "{name}: {doubtful} of {all} runs have increments that were accepted unsettled"
         ));
     }
+    let jumped = count(|run| run.jumped() > 0);
+    if jumped > 0 {
+        tell(&format!(
+            "{name}: {jumped} of {all} runs jumped to another branch"
+        ));
+    }
     let left = count(|run| matches!(run.end, End::Interrupted | End::NotRun));
     if left > 0 {
         tell(&format!(

@@ -216,7 +216,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> Verdict {
             Some(Outcome::Failed(Failure::Diverged { .. })) => Verdict::Diverged,
             _ => Verdict::Failed,
         },
-        Kind::Increment | Kind::Last => {
+        Kind::Increment | Kind::Jumped | Kind::Last | Kind::LastJumped => {
             let mut other = None;
             for earlier in others() {
                 match compare::sameness(tree, branch, earlier) {

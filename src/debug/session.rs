@@ -1143,6 +1143,6 @@ pub(super) fn ends(unit: Unit, kind: Kind) -> bool {
         Unit::Minor => kind.is_solved(),
         Unit::Major => kind.ends_major(),
         Unit::Increment => kind.is_accepted() || kind.is_failure(),
-        Unit::Run => kind == Kind::Last || kind.is_failure(),
+        Unit::Run => kind.is_last() || kind.is_failure(),
     }
 }

@@ -28,8 +28,12 @@ pub enum Kind {
     Refused,
     /// The end of an increment: accepted.
     Increment,
-    /// The same, and the end of the history.
+    /// The same, and it jumped to another branch of equilibrium.
+    Jumped,
+    /// Accepted, and the end of the history.
     Last,
+    /// The same, and it jumped.
+    LastJumped,
     /// A cycle of minors: failed.
     Cycle,
     /// Failed for another reason.
@@ -46,8 +50,12 @@ impl Kind {
             Outcome::Cut { .. } => Kind::Cut,
             Outcome::Major { .. } => Kind::Major,
             Outcome::Refused { .. } => Kind::Refused,
-            Outcome::Increment { last: false, .. } => Kind::Increment,
-            Outcome::Increment { last: true, .. } => Kind::Last,
+            Outcome::Increment { last, jumped, .. } => match (last, jumped) {
+                (false, false) => Kind::Increment,
+                (false, true) => Kind::Jumped,
+                (true, false) => Kind::Last,
+                (true, true) => Kind::LastJumped,
+            },
             Outcome::Failed(Failure::Cycle(_)) => Kind::Cycle,
             Outcome::Failed(_) => Kind::Failed,
         }
@@ -70,7 +78,15 @@ impl Kind {
 
     /// Whether an increment was accepted here.
     pub fn is_accepted(self) -> bool {
-        matches!(self, Kind::Increment | Kind::Last)
+        matches!(
+            self,
+            Kind::Increment | Kind::Jumped | Kind::Last | Kind::LastJumped
+        )
+    }
+
+    /// Whether the history ended here.
+    pub fn is_last(self) -> bool {
+        matches!(self, Kind::Last | Kind::LastJumped)
     }
 }
 

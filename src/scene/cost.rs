@@ -291,7 +291,7 @@ fn without(model: &Model) -> Vec<String> {
         ),
         (
             model.monitors.is_empty(),
-            "no monitors: --csv has only increment, load, majors and minors",
+            "no monitors: --csv has only increment, load, majors, minors and jumped",
         ),
     ];
     lines.extend(

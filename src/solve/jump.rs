@@ -26,7 +26,7 @@ const NOTHING: f64 = 1e-9;
 pub struct Pace {
     /// Largest displacement of the present attempt's first major iteration.
     pub predicted: f64,
-    /// Largest displacement over size of the accepted increments that did not jump.
+    /// Largest displacement over size of the accepted increments since the last jump.
     pub fastest: f64,
     /// The increment that is suspected, of which the present one is a part.
     pub suspect: Option<Suspect>,
@@ -97,7 +97,8 @@ impl Stepper {
                 return Outcome::Failed(why);
             }
         }
-        self.state.pace.suspect = None;
+        // The other branch has a pace of its own.
+        self.state.pace = Pace::default();
         self.accept(after, verdict, None, true)
     }
 

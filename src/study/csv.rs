@@ -1,10 +1,12 @@
 //! All results of a study as one table.
 //!
-//! Columns: what differs between the runs; `status`; `increment,load,majors,minors,unsettled`; the monitors. One row
+//! Columns: what differs between the runs; `status`; `increment,load,majors,minors,unsettled`; the monitors; `jumped`. One row
 //! per accepted increment: its status is `converged`, or `accepted` where a loop was cut off unsettled. A run that
 //! failed has one last row whose status is the reason (`minor-cycle`, `major-limit`, …): it says at which increment,
 //! tried load and major iteration, after how many minor ones, and has no monitors. One that was stopped from outside
 //! has a last row `interrupted`; one that had not begun has none.
+//!
+//! `jumped` is 1 where an increment ends on another branch of equilibrium than it began on, else 0.
 //!
 //! Floats have as many digits as they need to read back to the same bits.
 
@@ -34,6 +36,7 @@ fn header(plan: &Plan) -> String {
     ];
     let names = plan.columns.iter().map(String::as_str).chain(words);
     let names = names.chain(plan.monitors.iter().map(String::as_str));
+    let names = names.chain(["jumped"]);
     names.map(field).collect::<Vec<_>>().join(",") + "\n"
 }
 
@@ -57,9 +60,9 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
                 let _ = write!(text, "{value:?}");
             }
         }
-        text.push('\n');
+        text.push_str(if row.jumped { ",1\n" } else { ",0\n" });
     }
-    let blanks = ",".repeat(plan.monitors.len());
+    let blanks = ",".repeat(plan.monitors.len() + 1);
     match &run.end {
         End::Finished | End::NotRun => {}
         End::Failed(failed) => {

@@ -38,6 +38,9 @@ pub struct Ended {
     pub minors: u64,
     /// Increments that were accepted although a loop had not settled.
     pub unsettled: u64,
+    /// Increments that jumped to another branch of equilibrium.
+    #[serde(default)]
+    pub jumped: u64,
     /// What is compared, one a monitor.
     pub monitors: Vec<Seen>,
 }
@@ -121,6 +124,7 @@ impl Ended {
             majors: run.majors(),
             minors: run.minors(),
             unsettled: run.unsettled() as u64,
+            jumped: run.jumped() as u64,
             monitors: (0..run.monitors.len()).map(monitor).collect(),
         })
     }
@@ -168,14 +172,17 @@ pub fn kind(model: &Model, watched: &Watched) -> Kind {
 }
 
 impl Cell {
-    /// Its glyph; for a cycle with the period, for a failure with the letter of its reason.
+    /// Its glyph; for a cycle with the period, for a failure with the letter of its reason. One that jumped on its way has a
+    /// `↯` after it.
     pub fn label(&self) -> String {
         let glyph = self.verdict.glyph();
-        match self.verdict {
+        let jumped = if self.ended.jumped > 0 { "↯" } else { "" };
+        let label = match self.verdict {
             Verdict::Cycle { period, .. } => format!("{glyph}{period}"),
             Verdict::Failed(reason) => format!("{glyph}{}", reason.letter()),
             _ => format!("{glyph}{}", self.verdict.letter()),
-        }
+        };
+        label + jumped
     }
 }
 
@@ -358,6 +365,7 @@ impl Map {
             "unsettled",
             "difference",
             "reference",
+            "jumped",
         ];
         let heads = self.plan.columns.iter().map(String::as_str).chain(words);
         text += &(heads.collect::<Vec<_>>().join(",") + "\n");
@@ -369,6 +377,7 @@ impl Map {
                 majors,
                 minors,
                 unsettled,
+                jumped,
                 ..
             } = &cell.ended;
             for value in &case.values {
@@ -387,7 +396,7 @@ impl Map {
             // Writing to a string does not fail.
             let _ = writeln!(
                 text,
-                "{},{},{increment},{load},{increments},{majors},{minors},{unsettled},{difference},{reference}",
+                "{},{},{increment},{load},{increments},{majors},{minors},{unsettled},{difference},{reference},{jumped}",
                 cell.verdict.word(),
                 cell.verdict.detail(),
             );

@@ -30,6 +30,8 @@ pub struct Row {
     pub minors: u64,
     /// Loops that were cut off by a limit whose being reached is accepted.
     pub unsettled: u32,
+    /// Whether it jumped to another branch of equilibrium.
+    pub jumped: bool,
     /// Values of the run's monitors.
     pub monitors: Vec<f64>,
 }
@@ -172,6 +174,11 @@ impl Run {
     pub fn minors(&self) -> u64 {
         let accepted: u64 = self.rows.iter().map(|row| row.minors).sum();
         accepted + self.failed().map_or(0, |failed| failed.minors)
+    }
+
+    /// Increments that jumped to another branch of equilibrium.
+    pub fn jumped(&self) -> usize {
+        self.rows.iter().filter(|row| row.jumped).count()
     }
 
     /// Increments that were accepted although a loop of theirs had not settled.

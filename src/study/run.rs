@@ -98,10 +98,12 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
                     unsettled: stepper.state().unsettled,
                 });
             }
-            Outcome::Increment { unsettled, .. } => {
-                let unsettled = *unsettled;
+            Outcome::Increment {
+                unsettled, jumped, ..
+            } => {
+                let (unsettled, jumped) = (*unsettled, *jumped);
                 let mut row = row(&mut stepper, at.major, minors, unsettled);
-                row.increment = at.increment;
+                (row.increment, row.jumped) = (at.increment, jumped);
                 run.rows.push(row);
                 minors = 0;
                 (watch.done)(1);
@@ -123,6 +125,7 @@ fn row(stepper: &mut Stepper, majors: u32, minors: u64, unsettled: u32) -> Row {
         majors,
         minors,
         unsettled,
+        jumped: false,
         monitors,
     }
 }

@@ -105,9 +105,15 @@ fn title(view: &View) -> String {
     let what = match strip.kind {
         Kind::Start => "start".into(),
         Kind::Intervention => "an intervention".into(),
-        _ => format!(
-            "increment {}, major {}, minor {}",
-            at.increment, at.major, at.minor
+        kind => format!(
+            "increment {}, major {}, minor {}{}",
+            at.increment,
+            at.major,
+            at.minor,
+            match kind {
+                Kind::Jumped | Kind::LastJumped => ", jumped",
+                _ => "",
+            }
         ),
     };
     let last = view.strips.len() - 1;
@@ -215,6 +221,7 @@ fn end(kind: Kind, app: &App) -> (&'static str, Style) {
         Kind::Refused => ("⊘", theme.warning),
         Kind::Major => ("▸", theme.faint),
         Kind::Increment | Kind::Last => ("✓", theme.good),
+        Kind::Jumped | Kind::LastJumped => ("↯", theme.warning),
         Kind::Cycle => ("↺", theme.bad),
         Kind::Failed => ("✗", theme.bad),
     }
