@@ -121,8 +121,6 @@ pub enum SnapshotError {
     File(#[from] FileError),
     #[error("{}", why.of(file))]
     Unreadable { file: String, why: Unreadable },
-    #[error(transparent)]
-    Deep(SceneError),
     #[error("{file}:{line}:{column}: {message}")]
     Syntax {
         file: String,
@@ -218,7 +216,15 @@ impl Snapshot {
             format: u32,
         }
         let text = text.strip_prefix(input::MARK).unwrap_or(text);
-        read::shallow(file, text, "snapshot").map_err(SnapshotError::Deep)?;
+        read::shallow(file, text, "snapshot").map_err(|deep| {
+            let (line, column) = deep.at.unwrap_or((1, 1));
+            SnapshotError::Syntax {
+                file: file.to_owned(),
+                line,
+                column,
+                message: deep.message,
+            }
+        })?;
         if let Ok(header) = read::options().from_str::<Header>(text)
             && header.format != FORMAT
         {

@@ -670,10 +670,7 @@ pub fn csv(charts: &[Precision]) -> String {
             &settings.join(" "),
             status,
         ];
-        let words: Vec<String> = words
-            .into_iter()
-            .map(|word| super::csv::field(word))
-            .collect();
+        let words: Vec<String> = words.into_iter().map(super::csv::field).collect();
         // Writing to a string does not fail.
         let _ = writeln!(
             text,
