@@ -44,6 +44,9 @@ fn anchored_nodes_do_not_drift_and_others_do_in_third_order_of_the_increment() {
         let majors = |run: &Run| run.accepted.iter().map(|a| a.majors).sum::<u32>();
         let cut = held.accepted.len() > loose.accepted.len();
         assert!(cut || majors(&held) <= majors(&loose), "{increment}");
+        if cut {
+            continue;
+        }
         let end = |run: &Run| run.accepted.last().unwrap().monitors["u_x"];
         assert!((end(&held) - end(&loose)).abs() < drifted * held.stepper.model().length);
     }

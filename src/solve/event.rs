@@ -101,7 +101,7 @@ pub struct Norms {
 
 impl Norms {
     /// Noise above which no answer is accepted.
-    pub const LOUDEST: f64 = 1e-3;
+    pub const LOUDEST: f64 = 1e-2;
     /// Noise from which on a run says what accuracy is left.
     pub const AUDIBLE: f64 = 1e-6;
 }
