@@ -375,6 +375,43 @@ fn reactions_are_those_of_the_load_at_hand() {
     assert_eq!(found.len(), right.len());
 }
 
+/// The slave node's own support carries it along a floor that does not move either: in fixed mode no friction could hold it, and
+/// there would be none.
+#[test]
+fn a_node_that_its_support_drags_over_a_rigid_floor_has_friction_at_its_limit_both_ways() {
+    let text = r#"(title: "dragged", nodes: [Line(id: "strip", from: (0, 0.1), to: (2, 0), elements: 4, per_element: 3),
+            Line(id: "floor", from: (4, 0), to: (-2, 0), elements: 1, per_element: 2)],
+        materials: [Section(id: "m", EA: 1e3, EI: 1)], bodies: [Beam(id: "strip", along: "strip", material: "m")],
+        surfaces: [(id: "floor", along: "floor")], slaves: [(nodes: ["strip.end"], on: ["floor"])], friction: (angle: 20),
+        supports: [(node: "strip.start", fix: [rotation])],
+        loads: [Displacement(node: "strip.end", component: x, value: 0.3, scale: [(0, 0), (0.5, 0), (1, 1), (2, 0)]),
+            Displacement(node: "strip.start", component: x, value: 0.3, scale: [(0, 0), (0.5, 0), (1, 1), (2, 0)]),
+            Displacement(node: "strip.start", component: y, value: -0.1, scale: [(0, 0), (0.5, 1)])],
+        history: (path: [0, 1, 2], increment: 0.1))"#;
+    let mut stepper = Stepper::new(Arc::new(Scene::from_text("t", text, &[]).unwrap().model));
+    let mut seen = [false; 2];
+    while let Some(event) = stepper.step() {
+        assert!(
+            !matches!(event.outcome, Outcome::Failed(_)),
+            "{:?}",
+            event.outcome
+        );
+        let load = event.load_factor;
+        if matches!(event.outcome, Outcome::Increment { .. }) && load > 0.55 {
+            let [f_n, f_t] = forces(&stepper, "strip.9");
+            // The floor is walked to −x, so that t points there: friction is along t while the node goes to +x.
+            let back = stepper.state().start.leg > 0 && load > 1.05;
+            let limit = f_n * 20_f64.to_radians().tan() * if back { -1.0 } else { 1.0 };
+            assert!(
+                f_n > 0.0 && (f_t - limit).abs() < 1e-9 * f_n,
+                "{load}: {f_t} {limit}"
+            );
+            seen[usize::from(back)] = true;
+        }
+    }
+    assert_eq!(seen, [true, true]);
+}
+
 #[test]
 fn the_rough_cantilevers_at_two_degrees_come_to_the_same_state_with_any_increment() {
     // 0.949343 on this mesh, 0.94871 exactly; it was 1.00678 where friction drove the slip.

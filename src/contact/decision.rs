@@ -11,6 +11,8 @@ pub enum Rule {
     FixedStays,
     /// F_n > 0 and |F_t| > |T_max|.
     FixedSlides,
+    /// Its supports drag it over a surface that does not move either: no force can stick it there.
+    FixedDragged,
     /// F_n <= 0.
     FixedOpens,
     /// F_n > 0 and T_max · slip < 0.
@@ -227,6 +229,24 @@ impl Decision {
     /// Signed distance of the deciding inequality from switching (force or length); positive kept the mode.
     pub fn margin(&self) -> f64 {
         self.decisive().map_or(f64::INFINITY, |t| t.margin)
+    }
+
+    /// A fixed node that slips all the same, by so much (length): nothing that is unknown can move to stop it, so it slides.
+    pub fn dragged(self, slip: f64) -> Self {
+        let test = Test {
+            tested: Tested::Slip,
+            value: slip.abs(),
+            bound: 0.0,
+            margin: -slip.abs(),
+            tie: false,
+        };
+        Decision {
+            next: Mode::Sliding,
+            wanted: Mode::Sliding,
+            rule: Rule::FixedDragged,
+            tests: [self.tests[0], Some(test)],
+            ..self
+        }
     }
 
     /// Whether the mode changes.

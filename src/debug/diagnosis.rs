@@ -222,6 +222,7 @@ fn fired(rule: Rule) -> Option<Tested> {
     match rule {
         Rule::FixedOpens | Rule::SlidingOpens => Some(Tested::NormalForce),
         Rule::FixedSlides => Some(Tested::ShearForce),
+        Rule::FixedDragged => Some(Tested::Slip),
         Rule::SlidingSticks => Some(Tested::Slip),
         Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(Tested::Gap),
         Rule::NewtonOpens => Some(Tested::NormalForce),

@@ -68,6 +68,7 @@ pub fn rule(rule: Rule) -> &'static str {
     match rule {
         Rule::FixedStays => "fixed-stays",
         Rule::FixedSlides => "fixed-slides",
+        Rule::FixedDragged => "fixed-dragged",
         Rule::FixedOpens => "fixed-opens",
         Rule::SlidingSticks => "sliding-sticks",
         Rule::SlidingStays => "sliding-stays",
@@ -92,6 +93,9 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
     let text = match decision.rule {
         Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
         Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
+        Rule::FixedDragged => {
+            "Fixed → sliding: its supports drag it along, and nothing could stick it there."
+        }
         Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
         Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
         Rule::SlidingStays if !friction => {

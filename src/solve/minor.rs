@@ -178,6 +178,10 @@ fn record(
         }
         _ => (decide(&numbers, ties), None),
     };
+    let fixed = decision.before == Mode::Fixed && decision.next == Mode::Fixed;
+    if fixed && !site.moves[1] && slip.abs() > ties.length {
+        decision = decision.dragged(slip);
+    }
     if site.gap.is_infinite() {
         decision.rule = Rule::OffSurface;
         (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);

@@ -1,0 +1,90 @@
+//! What the judge costs beside the run that it judges: `cargo bench --bench judge`.
+//!
+//! Every increment is judged once more after it was accepted, from the same positions and forces, and that is timed. A table, not
+//! a statistic: all of a row are measured in the same process.
+
+use std::sync::Arc;
+use std::time::Instant;
+use stickslip::contact::judge::{Judge, Scales, Seen};
+use stickslip::scene::{Model, Scene};
+use stickslip::solve::{Outcome, State, Stepper};
+
+const BLOCKS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/benches/two-blocks-pressed-sheared.ron"
+);
+
+fn main() {
+    println!("| scene | unknowns | slaves | increments | run s | judge s | part |");
+    println!("|---|---|---|---|---|---|---|");
+    row("04-cantilever-rigid-circle", &[]);
+    row("05-cantilever-elastic-block", &[]);
+    for refine in ["2", "6", "13"] {
+        row(BLOCKS, &[("refine", refine)]);
+    }
+}
+
+fn row(name: &str, set: &[(&str, &str)]) {
+    let owned = |(path, value): &(&str, &str)| ((*path).to_owned(), (*value).to_owned());
+    let set: Vec<_> = set.iter().map(owned).collect();
+    let scene = Scene::open(name, &set).unwrap_or_else(|e| panic!("{e}"));
+    let model = Arc::new(scene.model);
+    let mut stepper = Stepper::new(model.clone());
+    let (mut judge, mut contact) = (Judge::new(), vec![[0.0; 2]; model.nodes.len()]);
+    let mut before = positions(&model, stepper.state());
+    let (mut run, mut judged, mut increments) = (0.0, 0.0, 0);
+    loop {
+        let began = Instant::now();
+        let Some(event) = stepper.step() else { break };
+        let accepted = matches!(event.outcome, Outcome::Increment { .. });
+        assert!(!matches!(event.outcome, Outcome::Failed(_)));
+        run += began.elapsed().as_secs_f64();
+        if !accepted {
+            continue;
+        }
+        increments += 1;
+        let state = stepper.state();
+        let now = positions(&model, state);
+        let nodes = &state.start.nodes;
+        let forces: Vec<_> = nodes.iter().map(|node| node.force()).collect();
+        let nothing = vec![0.0; forces.len()];
+        let seen = Seen {
+            surfaces: &model.surfaces,
+            slaves: &model.slaves,
+            friction: &state.controls.friction,
+            before: &before,
+            now: &now,
+            forces: &forces,
+            brought: &nothing,
+            earlier: &nothing,
+            scales: Scales {
+                length: model.length,
+                force: 1.0,
+                lengths: 1e-8,
+                forces: 1e-8,
+            },
+        };
+        let began = Instant::now();
+        std::hint::black_box(judge.interface(&seen, &mut contact));
+        judged += began.elapsed().as_secs_f64();
+        before = now;
+    }
+    println!(
+        "| {} | {} | {} | {increments} | {run:.2} | {judged:.4} | {:.2} % |",
+        model.title,
+        model.dofs.equations,
+        model.slaves.len(),
+        100.0 * judged / run
+    );
+}
+
+fn positions(model: &Model, state: &State) -> Vec<[f64; 2]> {
+    let nodes = model.nodes.iter().zip(&model.dofs.first);
+    let at = |(node, &first): (&stickslip::scene::model::Node, &usize)| {
+        [
+            node.at[0] + state.start.u[first],
+            node.at[1] + state.start.u[first + 1],
+        ]
+    };
+    nodes.map(at).collect()
+}
