@@ -122,7 +122,7 @@ impl fmt::Display for SceneError {
         } else if !self.path.is_empty() {
             write!(f, "{}: ", self.path)?;
         }
-        f.write_str(&self.message)
+        f.write_str(&shown::cut(&self.message, LONGEST_MESSAGE))
     }
 }
 
@@ -204,6 +204,8 @@ pub(crate) fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     text
 }
 
+/// Most characters of a message; lists of choices are half as long.
+const LONGEST_MESSAGE: usize = 1500;
 /// Most characters of a file's name in a message.
 const LONGEST_NAME: usize = 300;
 /// Most characters that a message repeats of a text from outside.
