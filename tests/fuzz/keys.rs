@@ -186,6 +186,7 @@ fn session(number: u64) -> Result<End, String> {
             typist.log.join(" ")
         )
     };
+    let mut shown = String::new();
     let status = match end {
         End::HangUp => {
             // A terminal that is gone lets nothing go on that is stopped.
@@ -203,6 +204,8 @@ fn session(number: u64) -> Result<End, String> {
                 (super::terminal::modes(&*session.master) == session.before).then_some(())
             })
             .ok_or_else(|| told("the terminal's modes are others", &typist))?;
+            // Where it broke down, this is why.
+            shown = session.text();
             status
         }
     };
@@ -217,7 +220,10 @@ fn session(number: u64) -> Result<End, String> {
     let struck = typed("\\u{3}") && typed("signal TSTP") && status.signal() == Some("Interrupt");
     match right || struck {
         true => Ok(end),
-        false => Err(told(&format!("it ends with {status}"), &typist)),
+        false => Err(told(
+            &format!("it ends with {status}; {}", shown.trim()),
+            &typist,
+        )),
     }
 }
 
