@@ -178,6 +178,39 @@ fn two_cantilevers_with_some_friction_are_never_thrown_over_without_a_word() {
     }
 }
 
+/// Near the limit point the halves do not converge any more; beyond it the column lies on the sliding beam.
+#[test]
+fn where_the_halves_fail_the_increment_is_taken_whole_and_marked() {
+    for (name, set, limit, whole) in [
+        (
+            "02-two-cantilevers-rough",
+            vec![("friction.angle", "10"), ("history.increment", "0.05")],
+            (0.82, 0.83),
+            2.5,
+        ),
+        (
+            "osc-snap",
+            vec![("settings.strategy", "ladder")],
+            (1.75, 2.0),
+            6.0,
+        ),
+    ] {
+        let run = run(&scene(name, &set));
+        assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+        assert_eq!(loads(&run).last(), Some(&whole), "{name}");
+        let jumps: Vec<f64> = run
+            .accepted
+            .iter()
+            .filter(|a| jumped(a))
+            .map(|a| a.load)
+            .collect();
+        let [load] = jumps[..] else {
+            panic!("{name}: {jumps:?}")
+        };
+        assert!(load > limit.0 && load <= limit.1, "{name}: {load}");
+    }
+}
+
 #[test]
 fn the_program_says_where_a_run_jumped_and_its_table_has_a_last_column_for_it() {
     let here = std::env::current_dir().unwrap();

@@ -191,6 +191,7 @@ impl<'a> Run<'a> {
                 event.outcome,
                 Outcome::Climbed { .. }
                     | Outcome::Cut { .. }
+                    | Outcome::Leaps { .. }
                     | Outcome::Damped { .. }
                     | Outcome::Refused { .. }
             ) {

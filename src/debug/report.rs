@@ -196,6 +196,10 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: {}; the increment is cut to {size}",
             describe_failure(model, why)
         ),
+        Outcome::Leaps { why, size } => format!(
+            "{at}: {}; nothing is near: the increment is taken whole, {size}",
+            describe_failure(model, why)
+        ),
         Outcome::Major { after, settled } => {
             let how = if *settled {
                 "minors settled"

@@ -47,7 +47,7 @@ impl Kind {
             Outcome::Minor => Kind::Minor,
             Outcome::Damped { .. } => Kind::Damped,
             Outcome::Climbed { .. } => Kind::Climbed,
-            Outcome::Cut { .. } => Kind::Cut,
+            Outcome::Cut { .. } | Outcome::Leaps { .. } => Kind::Cut,
             Outcome::Major { .. } => Kind::Major,
             Outcome::Refused { .. } => Kind::Refused,
             Outcome::Increment { last, jumped, .. } => match (last, jumped) {

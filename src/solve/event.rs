@@ -118,6 +118,8 @@ pub enum Outcome {
     Climbed { why: Failure, to: Strategy },
     /// The increment failed, and is started again with this size.
     Cut { why: Failure, size: f64 },
+    /// The halves of an increment that may jump failed: it is started again, and taken whole, which is this size.
+    Leaps { why: Failure, size: f64 },
     /// The minor iterations are done, but equilibrium is not reached: another major iteration. `settled` is false
     /// where the limit of minor iterations was accepted.
     Major { after: Norms, settled: bool },

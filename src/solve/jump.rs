@@ -8,16 +8,21 @@
 //! increment, and where a tangent only goes soft with its square root. Of a jump all is left but the part that led there; what
 //! has shrunk by less than the fourth root is one, and is accepted marked. A change of modes, a node that opens
 //! or slides or touches, or a load that sets in, shrinks.
+//!
+//! Near a limit point the halves may have no end at all, where the whole increment has one beyond. Where they fail, the suspected
+//! increment is taken whole after all, and is a jump if it still moves beyond what is expected.
 
 use crate::contact::judge::Verdict;
 use crate::scene::spec::{Jumps, Strategy};
 use crate::solve::event::{Failure, Norms, Outcome};
-use crate::solve::state::State;
+use crate::solve::state::{Piece, State};
 use crate::solve::stepper::Stepper;
 use serde::{Deserialize, Serialize};
 
 /// How many times what is expected an increment may move without being suspected.
 pub const RATIO: f64 = 4.0;
+/// The same where the halves of a suspected increment have failed: there is less doubt.
+const RATIO_OVER: f64 = 2.0;
 /// Motions below this part of the scene's length are no jumps: round-off makes as much of them.
 const NOTHING: f64 = 1e-9;
 
@@ -30,6 +35,8 @@ pub struct Pace {
     pub fastest: f64,
     /// The increment that is suspected, of which the present one is a part.
     pub suspect: Option<Suspect>,
+    /// Whether its halves have failed, so that it is not cut for being suspected any more.
+    pub over: bool,
 }
 
 /// An increment that moved beyond what was expected.
@@ -39,6 +46,8 @@ pub struct Suspect {
     pub motion: f64,
     /// Its size.
     pub size: f64,
+    /// Where it ends.
+    pub piece: Piece,
 }
 
 impl Pace {
@@ -53,7 +62,8 @@ impl Pace {
 
     /// Whether a motion over an increment of this size is beyond what is expected.
     fn is_exceeded(&self, motion: f64, size: f64) -> bool {
-        motion > RATIO * self.expected(size)
+        let ratio = if self.over { RATIO_OVER } else { RATIO };
+        motion > ratio * self.expected(size)
     }
 }
 
@@ -77,13 +87,17 @@ impl Stepper {
             return self.settle(after, verdict, motion / size);
         }
         let jumps = self.model().jumps;
-        let here = Suspect { motion, size };
+        let here = Suspect {
+            motion,
+            size,
+            piece: state.piece,
+        };
         let suspect = state.pace.suspect.unwrap_or(here);
         let why = Failure::Leapt {
             motion,
             predicted: state.pace.expected(size),
         };
-        if jumps != Jumps::Accept {
+        if jumps != Jumps::Accept && !state.pace.over {
             if let Some(cut) = self.cut(&why) {
                 self.state.pace.suspect = Some(suspect);
                 return cut;
@@ -102,6 +116,21 @@ impl Stepper {
         self.accept(after, verdict, None, true)
     }
 
+    /// Takes an increment whole whose halves have failed that were to tell whether it jumps.
+    pub(super) fn leap_over(&mut self, why: &Failure) -> Option<Outcome> {
+        let cuts = self.state.controls.settings.strategy == Strategy::Ladder
+            && self.model().jumps == Jumps::Cut;
+        if !cuts || matches!(why, Failure::Leapt { .. }) {
+            return None;
+        }
+        let suspect = self.state.pace.suspect.take()?;
+        self.state.pace.over = true;
+        self.restart(suspect.piece);
+        let size = (self.state.load_factor - self.state.start.load_factor).abs();
+        let why = why.clone();
+        Some(Outcome::Leaps { why, size })
+    }
+
     /// Accepts a state that is no jump.
     fn settle(&mut self, after: Norms, verdict: Verdict, rate: f64) -> Outcome {
         let pace = &mut self.state.pace;
@@ -109,7 +138,7 @@ impl Stepper {
             pace.fastest = pace.fastest.max(rate);
         }
         if self.state.piece.next().is_none() {
-            pace.suspect = None;
+            (pace.suspect, pace.over) = (None, false);
         }
         self.accept(after, verdict, None, false)
     }
@@ -132,6 +161,7 @@ mod tests {
         let whole = Suspect {
             motion: 1.0,
             size: 1.0,
+            piece: Piece::default(),
         };
         for halvings in 1..=10 {
             let size = 0.5_f64.powi(halvings);
@@ -146,6 +176,7 @@ mod tests {
             predicted,
             fastest,
             suspect: None,
+            over: false,
         };
         assert!(
             !pace(1.0, 0.0).is_exceeded(3.9, 0.1),

@@ -642,14 +642,19 @@ impl Stepper {
             || half.size() < least
             || half.size() == 0.0
         {
-            return None;
+            return if helps { self.leap_over(why) } else { None };
         }
-        self.state.piece = half;
+        self.restart(half);
+        let (why, size) = (why.clone(), half.size());
+        Some(Outcome::Cut { why, size })
+    }
+
+    /// Starts the increment again, up to the end of this piece.
+    pub(super) fn restart(&mut self, piece: Piece) {
+        self.state.piece = piece;
         self.state.start_again();
         self.linearised = false;
         self.lemke = None;
-        let (why, size) = (why.clone(), half.size());
-        Some(Outcome::Cut { why, size })
     }
 
     /// Whether nothing holds a body in the modes that the increment starts with, whatever its size.

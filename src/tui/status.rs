@@ -167,6 +167,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         Outcome::Damped { .. }
         | Outcome::Climbed { .. }
         | Outcome::Cut { .. }
+        | Outcome::Leaps { .. }
         | Outcome::Refused { .. }
         | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
         Outcome::Increment {
