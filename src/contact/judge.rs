@@ -259,9 +259,9 @@ impl Amounts {
 /// Feet and sides that a node has at most, as a rule.
 const FEW: usize = 16;
 
-impl Judge {
+impl Default for Judge {
     /// A judge with memory for what is usual.
-    pub fn new() -> Self {
+    fn default() -> Self {
         feet::prepare();
         Judge {
             feet: Vec::with_capacity(FEW),
@@ -269,7 +269,9 @@ impl Judge {
             sides: Vec::with_capacity(FEW),
         }
     }
+}
 
+impl Judge {
     /// Judges contact and friction. `contact` gets the interaction force at every node, x and y, as the feet found here
     /// hand it on to the master.
     pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {

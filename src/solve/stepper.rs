@@ -166,7 +166,7 @@ impl Stepper {
         if !self.linearise() {
             return self.fail(Failure::Singular(Singular::Unexplained));
         }
-        self.event.before = self.system.norms();
+        self.event.before = self.system.norms_of(&self.model, &self.state);
         let strategy = self.state.settings().strategy;
         if let (Strategy::Lemke | Strategy::Census, Pivoting::At { start, pivot }) =
             (strategy, self.state.search.pivoting)

@@ -520,6 +520,13 @@ impl System {
         self.assembly.advance(u, before, history);
     }
 
+    /// Norms of the last linearisation, with the interface conditions of this state: what is told of it must not hang on
+    /// whether the workspace was made anew since.
+    pub fn norms_of(&mut self, model: &Model, state: &State) -> Norms {
+        self.norms.interface = self.violation(model, state);
+        self.norms
+    }
+
     /// Norms of the last linearisation.
     pub fn norms(&self) -> Norms {
         self.norms

@@ -70,7 +70,7 @@ fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
         true => ("✗", theme.warning),
         false => ("✓", theme.good),
     };
-    let node = worst.slave.map(|slave| report::slave(&view.model, slave));
+    let node = worst.slave.map(|slave| report::slave(view.model, slave));
     let place = node.map_or(String::new(), |node| format!(" at {node}"));
     Some(Line::from(vec![
         Span::styled(" last accepted ", theme.faint),

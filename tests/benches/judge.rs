@@ -30,7 +30,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
     let scene = Scene::open(name, &set).unwrap_or_else(|e| panic!("{e}"));
     let model = Arc::new(scene.model);
     let mut stepper = Stepper::new(model.clone());
-    let (mut judge, mut contact) = (Judge::new(), vec![[0.0; 2]; model.nodes.len()]);
+    let (mut judge, mut contact) = (Judge::default(), vec![[0.0; 2]; model.nodes.len()]);
     let mut before = positions(&model, stepper.state());
     let (mut run, mut judged, mut increments) = (0.0, 0.0, 0);
     loop {
