@@ -184,12 +184,12 @@ fn is_letter(c: char) -> bool {
 fn group(text: &[&str], at: usize) -> Range<usize> {
     let opens = |piece: &&str| matches!(*piece, "(" | "[" | "{");
     let closes = |piece: &&str| matches!(*piece, ")" | "]" | "}");
-    let Some(start) = text[..=at].iter().rposition(|piece| opens(&piece)) else {
+    let Some(start) = text[..=at].iter().rposition(&opens) else {
         return at..at + 1;
     };
     let mut depth = 0;
     for (k, piece) in text[start..].iter().enumerate() {
-        depth += i32::from(opens(&piece)) - i32::from(closes(&piece));
+        depth += i32::from(opens(piece)) - i32::from(closes(piece));
         if depth == 0 {
             return start..start + k + 1;
         }
