@@ -95,7 +95,7 @@ pub fn find(
 /// Gives every local minimum of the distance over an element.
 fn minima(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], found: &mut impl FnMut(f64)) {
     let grid = &GRID[nodes.len()];
-    let slope = |s: &Shape| slope(nodes, positions, point, s).0;
+    let slope = |s: &Shape| slope(nodes, positions, point, s);
     let mut left = (-1.0, slope(&grid[0].1));
     if left.1 >= 0.0 {
         found(-1.0);
@@ -123,8 +123,9 @@ fn root(
 ) -> f64 {
     let mut xi = 0.5 * (low + high);
     for _ in 0..STEPS {
-        let (value, rise) = slope(nodes, positions, point, &shape(nodes.len(), xi));
-        let newton = xi - value / rise;
+        let s = shape(nodes.len(), xi);
+        let value = slope(nodes, positions, point, &s);
+        let newton = xi - value / rise(nodes, positions, point, &s);
         if (newton - xi).abs() <= f64::EPSILON {
             return newton.clamp(low, high);
         }
@@ -142,13 +143,25 @@ fn root(
     xi
 }
 
-/// (x − p) · x' at ξ, and its derivative by ξ.
-fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> (f64, f64) {
-    let (x, d) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
-    let dd = blend(nodes, positions, &s.dd);
-    let to = [x[0] - point[0], x[1] - point[1]];
-    let rise = squared(d) + to[0] * dd[0] + to[1] * dd[1];
-    (to[0] * d[0] + to[1] * d[1], rise)
+/// (x − p) · x' where the shape functions are these.
+fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
+    let (mut to, mut d) = ([-point[0], -point[1]], [0.0; 2]);
+    for ((&node, n), slope) in nodes.iter().zip(s.n).zip(s.d) {
+        let [x, y] = positions[node];
+        to = [to[0] + n * x, to[1] + n * y];
+        d = [d[0] + slope * x, d[1] + slope * y];
+    }
+    to[0] * d[0] + to[1] * d[1]
+}
+
+/// Its derivative by ξ.
+fn rise(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
+    let x = blend(nodes, positions, &s.n);
+    let (d, dd) = (
+        blend(nodes, positions, &s.d),
+        blend(nodes, positions, &s.dd),
+    );
+    squared(d) + (x[0] - point[0]) * dd[0] + (x[1] - point[1]) * dd[1]
 }
 
 /// ξ of the foot on the endless straight line through an element's ends.
