@@ -40,31 +40,34 @@ fn leaves_the_law(scene: &Scene) -> bool {
         || s.at_major_limit == AtLimit::Accept
 }
 
-/// Where one law stands among the worst ones of an audit that must be clean.
+/// Nothing is broken; and what is marked is so since the scene asks for it, or is a touch that no place of touching explains
+/// and that could not be cut.
 fn assert_clean(name: &str, audit: &Audit, may_be_marked: bool) {
     let broken: Vec<_> = audit.broken().collect();
     assert!(broken.is_empty(), "{name}: {broken:?}");
+    let marked = audit
+        .worst_marked
+        .iter()
+        .flatten()
+        .map(|found| found.finding);
+    let mut beyond = marked.filter(|finding| finding.is_broken() && finding.law != Law::Touch);
     assert!(
-        may_be_marked || audit.marked == 0,
-        "{name}: {:?}",
-        audit.worst_marked
+        may_be_marked || beyond.next().is_none(),
+        "{name}: {beyond:?}"
     );
 }
 
 #[test]
 fn every_accepted_increment_of_every_built_in_scene_obeys_every_law() {
+    let mut judged = 0;
     for builtin in builtin::list() {
         let scene = scene(builtin.name, &[]);
         let may_be_marked = leaves_the_law(&scene);
         let audit = audit(scene);
         assert_clean(builtin.name, &audit, may_be_marked);
-        let judged = [Law::Gap, Law::Penetration].map(|law| audit.of(law).is_some());
-        assert!(
-            audit.increments == audit.marked || judged.contains(&true),
-            "{}",
-            builtin.name
-        );
+        judged += u32::from(audit.of(Law::Slip).is_some());
     }
+    assert!(judged > 10, "nodes are pressed in most scenes: {judged}");
 }
 
 #[test]
@@ -92,7 +95,8 @@ fn the_command_prints_the_worst_of_every_law_and_ends_with_0_where_all_hold() {
     assert_eq!(code(&output), 0, "{}", err(&output));
     let text = out(&output);
     for law in Law::ALL {
-        assert_eq!(text.matches(law.name()).count(), 2, "{text}");
+        let rows = text.matches(&format!("\n  {} ", law.name())).count();
+        assert_eq!(rows, 2, "{text}");
     }
     assert!(text.contains("10 increments accepted"), "{text}");
     assert!(!text.contains("BROKEN"), "{text}");

@@ -47,6 +47,9 @@ pub enum End {
     Budget,
 }
 
+/// Amounts below this are round-off, and none.
+const ROUND_OFF: f64 = 1e-14;
+
 /// What is left of violations in the accepted state, over the scale of forces and the length of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Left {
@@ -288,7 +291,8 @@ fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     let verdict = stepper.state().start.verdict.as_ref();
     let amount = |law: Law| {
         let found = verdict.and_then(|verdict| verdict.worst[law as usize]);
-        found.map_or(0.0, |found| found.amount)
+        let amount = found.map_or(0.0, |found| found.amount);
+        if amount < ROUND_OFF { 0.0 } else { amount }
     };
     let inside = amount(Law::Penetration).max(amount(Law::Gap));
     let (tension, shear) = (amount(Law::Tension), amount(Law::Cone));

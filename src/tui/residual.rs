@@ -73,12 +73,11 @@ fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
     let node = worst.slave.map(|slave| report::slave(view.model, slave));
     let place = node.map_or(String::new(), |node| format!(" at {node}"));
     Some(Line::from(vec![
-        Span::styled(" last accepted ", theme.faint),
+        Span::styled(" judge ", theme.faint),
         Span::styled(sign, style),
-        Span::styled(" worst ", theme.faint),
-        Span::raw(format!("{} {}", worst.law.name(), short(worst.amount))),
+        Span::raw(format!(" {} {}", worst.law.name(), short(worst.amount))),
         Span::styled(
-            format!("{place}, allowed {}", short(worst.allowed)),
+            format!("{place}, allowed {:.0e}", worst.allowed),
             theme.faint,
         ),
     ]))
