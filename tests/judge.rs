@@ -72,7 +72,7 @@ impl Stage {
             },
         };
         let mut contact = vec![[0.0; 2]; now.len()];
-        let verdict = Judge::default().interface(&seen, &mut contact);
+        let verdict = Judge::with_capacity(now.len(), 1).interface(&seen, &mut contact);
         for k in 0..2 {
             let sum: f64 = contact.iter().map(|f| f[k]).sum();
             assert!(sum.abs() < 1e-15, "action is reaction: {contact:?}");

@@ -216,6 +216,53 @@ pub struct Judge {
     feet: Vec<Foot>,
     earlier: Vec<Foot>,
     sides: Vec<Touching>,
+    /// The state that was judged last, which is mostly the one accepted before the next.
+    last: Stood,
+    next: Stood,
+}
+
+/// Where all slave nodes stood in a state.
+#[derive(Debug)]
+struct Stood {
+    /// Positions of all nodes, and the length up to which places were the same.
+    at: Vec<[f64; 2]>,
+    near: f64,
+    /// Feet of all slave nodes, one after the other, and where each one's end.
+    feet: Vec<Foot>,
+    ends: Vec<usize>,
+}
+
+impl Stood {
+    fn with_capacity(nodes: usize, slaves: usize) -> Self {
+        Stood {
+            at: Vec::with_capacity(nodes),
+            near: 0.0,
+            // On a border of elements a node has two feet.
+            feet: Vec::with_capacity(2 * slaves + FEW),
+            ends: Vec::with_capacity(slaves),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.feet.clear();
+        self.ends.clear();
+    }
+
+    fn add(&mut self, feet: &[Foot]) {
+        self.feet.extend_from_slice(feet);
+        self.ends.push(self.feet.len());
+    }
+
+    /// Feet of a slave node.
+    fn of(&self, slave: usize) -> &[Foot] {
+        let from = slave.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.feet[from..self.ends[slave]]
+    }
+
+    /// Whether it is this state, seen as sharply.
+    fn is(&self, at: &[[f64; 2]], near: f64, slaves: usize) -> bool {
+        self.ends.len() == slaves && self.near == near && self.at == at
+    }
 }
 
 /// A side of the master on which a node stands.
@@ -259,27 +306,36 @@ impl Amounts {
 /// Feet and sides that a node has at most, as a rule.
 const FEW: usize = 16;
 
-impl Default for Judge {
-    /// A judge with memory for what is usual.
-    fn default() -> Self {
+impl Judge {
+    /// A judge with memory for a scene of so many nodes and slave nodes.
+    pub fn with_capacity(nodes: usize, slaves: usize) -> Self {
         feet::prepare();
         Judge {
             feet: Vec::with_capacity(FEW),
             earlier: Vec::with_capacity(FEW),
             sides: Vec::with_capacity(FEW),
+            last: Stood::with_capacity(nodes, slaves),
+            next: Stood::with_capacity(nodes, slaves),
         }
     }
-}
 
-impl Judge {
     /// Judges contact and friction. `contact` gets the interaction force at every node, x and y, as the feet found here
     /// hand it on to the master.
     pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {
         let mut verdict = Verdict::new();
         contact.fill([0.0; 2]);
+        let near = seen.scales.near();
+        if !self.last.is(seen.before, near, seen.slaves.len()) {
+            self.last.clear();
+        }
+        self.next.clear();
         for slave in 0..seen.slaves.len() {
             self.node(seen, slave, contact, &mut verdict);
         }
+        self.next.near = near;
+        self.next.at.clear();
+        self.next.at.extend_from_slice(seen.now);
+        std::mem::swap(&mut self.last, &mut self.next);
         verdict
     }
 
@@ -311,6 +367,7 @@ impl Judge {
             2.0 * near,
             &mut self.feet,
         );
+        self.next.add(&self.feet);
         let mut report = |law: Law, amount: f64, numbers: Numbers| {
             verdict.add(Finding {
                 law,
@@ -369,14 +426,21 @@ impl Judge {
     fn find_sides(&mut self, seen: &Seen, slave: usize, near: f64) {
         let Slave { node, surfaces, .. } = &seen.slaves[slave];
         let (point, was) = (seen.now[*node], seen.before[*node]);
-        feet::find(
-            was,
-            seen.surfaces,
-            surfaces,
-            seen.before,
-            2.0 * near,
-            &mut self.earlier,
-        );
+        // What was found of that state when it was judged itself holds still.
+        match self.last.ends.is_empty() {
+            false => {
+                self.earlier.clear();
+                self.earlier.extend_from_slice(self.last.of(slave));
+            }
+            true => feet::find(
+                was,
+                seen.surfaces,
+                surfaces,
+                seen.before,
+                2.0 * near,
+                &mut self.earlier,
+            ),
+        }
         self.sides.clear();
         for foot in self.feet.iter().filter(|foot| foot.distance <= near) {
             let across = [-1.0, 1.0].map(|end| {

@@ -932,7 +932,11 @@ impl Stepper {
             };
             self.state.piece = self.state.piece.next().unwrap_or_else(whole);
             self.state.begin();
-            self.linearised = false;
+            let stands = self.model.prescribed.is_empty() && self.state.start.history.is_empty();
+            self.linearised &= stands;
+            if self.linearised {
+                self.system.aim(&self.model, &self.state);
+            }
         }
         Outcome::Increment {
             after,

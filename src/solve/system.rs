@@ -183,10 +183,7 @@ impl System {
             Layout::Whole => self.bind_whole(model, state)?,
             Layout::Bodies => self.bind_bodies(model, state)?,
         }
-        self.external.fill(0.0);
-        for load in &model.loads {
-            self.external[load.dof] += load.value * load.scale.at(state.aim);
-        }
+        self.load(model, state);
         self.step.fill(0.0);
         for p in &model.prescribed {
             self.step[p.dof] = p.value * p.scale.at(state.aim) - state.u[p.dof];
@@ -449,6 +446,20 @@ impl System {
             noise: noise.max(length_floor / model.length),
         };
         self.norms.interface = self.violation(model, state);
+    }
+
+    /// Aims the last linearisation at another load, at the same displacements; nothing else of it changes where no motion is
+    /// prescribed and no element remembers what was accepted.
+    pub fn aim(&mut self, model: &Model, state: &State) {
+        self.load(model, state);
+        self.balance(model, state);
+    }
+
+    fn load(&mut self, model: &Model, state: &State) {
+        self.external.fill(0.0);
+        for load in &model.loads {
+            self.external[load.dof] += load.value * load.scale.at(state.aim);
+        }
     }
 
     /// Renews the residual after the forces of the interface were changed, geometry and stiffness staying.

@@ -39,7 +39,7 @@ impl Bench {
     pub fn new(model: &Model) -> Self {
         let (nodes, slaves) = (model.nodes.len(), model.slaves.len());
         Bench {
-            judge: Judge::default(),
+            judge: Judge::with_capacity(nodes, slaves),
             before: Vec::with_capacity(nodes),
             forces: Vec::with_capacity(slaves),
             brought: Vec::with_capacity(slaves),

@@ -30,7 +30,9 @@ fn row(name: &str, set: &[(&str, &str)]) {
     let scene = Scene::open(name, &set).unwrap_or_else(|e| panic!("{e}"));
     let model = Arc::new(scene.model);
     let mut stepper = Stepper::new(model.clone());
-    let (mut judge, mut contact) = (Judge::default(), vec![[0.0; 2]; model.nodes.len()]);
+    let nodes = model.nodes.len();
+    let mut judge = Judge::with_capacity(nodes, model.slaves.len());
+    let mut contact = vec![[0.0; 2]; nodes];
     let mut before = positions(&model, stepper.state());
     let (mut run, mut judged, mut increments) = (0.0, 0.0, 0);
     loop {
