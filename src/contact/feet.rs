@@ -10,7 +10,7 @@ use crate::scene::model::Surface;
 use std::sync::LazyLock;
 
 /// Intervals in which an element of m > 2 nodes is searched, for each of its nodes but one.
-const INTERVALS: usize = 4;
+const INTERVALS: usize = 2;
 /// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
 const STEPS: u32 = 60;
 /// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
@@ -104,7 +104,7 @@ fn minima(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], found: &mut 
         let right = (*xi, slope(s));
         let at_end = *xi == 1.0 && right.1 == 0.0;
         if left.1 < 0.0 && right.1 >= 0.0 && !at_end {
-            found(root(nodes, positions, point, [left.0, right.0]));
+            found(root(nodes, positions, point, [left, right]));
         }
         left = right;
     }
@@ -113,15 +113,16 @@ fn minima(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], found: &mut 
     }
 }
 
-/// The root of (x − p) · x' between two ξ between which it changes its sign from minus to plus: Newton's method, and halving
-/// where that leaves the interval.
+/// The root of (x − p) · x' between two ξ, each with its value, between which it changes its sign from minus to plus:
+/// Newton's method, and halving where that leaves the interval.
 fn root(
     nodes: &[usize],
     positions: &[[f64; 2]],
     point: [f64; 2],
-    [mut low, mut high]: [f64; 2],
+    [(mut low, below), (mut high, above)]: [(f64, f64); 2],
 ) -> f64 {
-    let mut xi = 0.5 * (low + high);
+    // Both values come along: where a straight line between them vanishes is near.
+    let mut xi = low - below * (high - low) / (above - below);
     for _ in 0..STEPS {
         let s = shape(nodes.len(), xi);
         let value = slope(nodes, positions, point, &s);
