@@ -3,6 +3,7 @@
 mod common;
 
 use std::sync::Arc;
+use stickslip::contact::balance::{self, Forces};
 use stickslip::contact::judge::{Judge, Law, Scales, Seen, Verdict};
 use stickslip::scene::model::{Slave, Surface};
 use stickslip::scene::spec::InitialState;
@@ -242,6 +243,55 @@ fn on_a_convex_vertex_a_node_stays_that_slides_down_neither_side() {
         Stage::chain(&ridge, 0.0, 0.0).broken(top, top, up),
         [Law::Cone]
     );
+}
+
+#[test]
+fn forces_out_of_balance_at_a_node_and_on_the_bodies_as_a_whole_are_refused() {
+    let model = Scene::open("01-pinned-beam-rough-floor", &[])
+        .unwrap()
+        .model;
+    let now: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
+    let (dofs, nodes) = (model.dofs.len(), now.len());
+    let scales = Scales {
+        length: model.length,
+        force: 1.0,
+        lengths: TOLERANCE,
+        forces: TOLERANCE,
+    };
+    // A node that is free along x, and the pin, which is held there.
+    let x_of = |free: bool| {
+        let held = |node: &usize| model.dofs.equation[model.dofs.first[*node]].is_some() == free;
+        let node = (0..nodes).filter(|&n| model.dofs.count[n] == 3).find(held);
+        model.dofs.first[node.unwrap()]
+    };
+    let (free, pin) = (x_of(true), x_of(false));
+    let broken = |inside: &[(usize, f64)], loads: &[(usize, f64)]| {
+        let (mut internal, mut load) = (vec![0.0; dofs], vec![0.0; dofs]);
+        inside
+            .iter()
+            .for_each(|&(dof, force)| internal[dof] = force);
+        loads.iter().for_each(|&(dof, force)| load[dof] = force);
+        let contact = vec![[0.0; 2]; nodes];
+        let forces = Forces {
+            internal: &internal,
+            load: &load,
+            contact: &contact,
+        };
+        let mut verdict = Verdict {
+            worst: [None; 8],
+            work: None,
+        };
+        balance::check(&model, &forces, &now, &scales, &mut verdict);
+        let laws: Vec<Law> = verdict.broken().map(|finding| finding.law).collect();
+        laws
+    };
+    assert_eq!(broken(&[], &[]), []);
+    assert_eq!(broken(&[], &[(free, 1e-6)]), [Law::Balance]);
+    assert_eq!(broken(&[], &[(pin, 1.0)]), [], "the pin bears it");
+    assert_eq!(broken(&[(free, 1e-6)], &[(free, 1e-6)]), [Law::Moments]);
+    // A couple: the forces add up to nothing, and turn the beam.
+    let couple = [(free, 1e-6), (pin, -1e-6)];
+    assert_eq!(broken(&couple, &[(free, 1e-6)]), [Law::Moments]);
 }
 
 /// Runs a scene to its end, and gives back what it was refused for on the way.

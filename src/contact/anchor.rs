@@ -8,7 +8,8 @@
 //! - it is set where the node touches: where its path, straight over the major iteration, pierces the surface, at
 //!   S* − g ρ t (eqn 14);
 //! - it goes along when an increment is accepted in which the node slides (and with every major iteration, where slip is
-//!   counted over those), and is gone when the node is free;
+//!   counted over those), and is gone when the node is free, unless the judge has
+//!   asked for the net slip ([`crate::contact::judge`]): then the anchor of the increment's start is kept;
 //! - the drift is the length of the surface from S* to it, positive where it lies ahead of S* along t.
 //!
 //! Drift has the sign of slip, u_tS* − u_tS: what sticking must take back (Table 1).
