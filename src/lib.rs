@@ -13,13 +13,10 @@
 //! - [`cli`] and [`tui`]: the two front ends.
 
 pub mod cli;
-pub mod contact;
 pub mod debug;
-pub mod fem;
 pub mod outside;
 pub mod scene;
-pub mod solve;
 pub mod study;
 pub mod tui;
 
-pub use stickslip_linalg as linalg;
+pub use stickslip_core::{contact, fem, interface, linalg, linear, model, step, strategy};

@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stickslip::scene::Scene;
-use stickslip::solve::Stepper;
+use stickslip::step::stepper::Stepper;
 
 struct Counting;
 

@@ -11,9 +11,10 @@ use std::sync::Arc;
 use stickslip::contact::judge::Law;
 use stickslip::debug::audit::Audit;
 use stickslip::debug::remedies::{self, End};
-use stickslip::scene::spec::{AtLimit, SlipCount, Sticking, Ties};
+use stickslip::model::{AtLimit, SlipCount, Sticking, Ties};
 use stickslip::scene::{Scene, builtin};
-use stickslip::solve::{Outcome, Stepper};
+use stickslip::step::event::Outcome;
+use stickslip::step::stepper::Stepper;
 use stickslip::study::plan::Plan;
 use stickslip::study::read::Study;
 

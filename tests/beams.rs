@@ -117,7 +117,8 @@ fn a_prescribed_end_displacement_gives_the_force_that_gives_the_displacement() {
 
 #[test]
 fn newton_is_quadratic_at_the_end() {
-    use stickslip::solve::{Outcome, Stepper};
+    use stickslip::step::event::Outcome;
+    use stickslip::step::stepper::Stepper;
     let text = "(title: \"t\", nodes: [Line(id: \"b\", from: (0.0, 0.0), to: (1.0, 0.0), elements: 4, per_element: 3)],
         materials: [Section(id: \"m\", EA: 1e3, EI: 1.0)], bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")],
         supports: [(node: \"b.start\", fix: [x, y, rotation])], loads: [Force(node: \"b.end\", y: 1.0)],

@@ -5,8 +5,9 @@ use stickslip::debug::command::{Command, To, Unit};
 use stickslip::debug::compare::Sameness;
 use stickslip::debug::session::{Frame, Session};
 use stickslip::debug::strip::Kind;
-use stickslip::scene::{Mode, Scene};
-use stickslip::solve::State;
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
+use stickslip::step::state::State;
 
 const FLOOR: &str = "01-pinned-beam-rough-floor";
 const OSCILLATES: &str = "osc-inclined-cantilever";
@@ -302,7 +303,7 @@ fn the_strip_of_an_iteration_tells_what_its_event_tells() {
             assert_eq!(strip.margin(s), record.decision.margin() as f32);
             assert_eq!(
                 strip.is_forced(s),
-                record.forced != stickslip::solve::Forced::No
+                record.forced != stickslip::contact::record::Forced::No
             );
             assert_eq!(
                 strip.element(s).is_some(),

@@ -4,8 +4,9 @@ use stickslip::debug::breakpoints::hits;
 use stickslip::debug::command::{Action, Context, parse};
 use stickslip::debug::session::Session;
 use stickslip::debug::strip::Kind;
-use stickslip::scene::{Mode, Scene};
-use stickslip::solve::Outcome;
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
+use stickslip::step::event::Outcome;
 
 const FLOOR: &str = "01-pinned-beam-rough-floor";
 const OSCILLATES: &str = "osc-inclined-cantilever";
@@ -121,14 +122,14 @@ fn one_node_of_several_is_told_from_the_others() {
     // The node that changes last, and not at every change.
     let mut own = Vec::new();
     let mut chosen = 0;
-    for slave in 0..model.slaves.len() {
+    for slave in 0..model.contacts.len() {
         let steps = changes(&session, |s, _, _| s == slave);
         if !steps.is_empty() && steps.len() < all.len() {
             (own, chosen) = (steps, slave);
         }
     }
     assert!(!own.is_empty(), "no node to tell from the others");
-    let name = &model.nodes[model.slaves[chosen].node].name;
+    let name = &model.nodes[model.contacts[chosen].node].name;
     say(&mut session, &format!("break mode {name}"));
     assert_eq!(stops_back(&mut session), own);
 }

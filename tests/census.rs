@@ -4,8 +4,9 @@ mod common;
 
 use common::{run, scene};
 use std::sync::Arc;
-use stickslip::solve::census::census;
-use stickslip::solve::{Failure, Stepper};
+use stickslip::interface::census::census;
+use stickslip::step::event::Failure;
+use stickslip::step::stepper::Stepper;
 
 #[test]
 fn where_free_and_fixed_take_turns_sliding_is_the_one_answer() {
@@ -23,7 +24,7 @@ fn where_free_and_fixed_take_turns_sliding_is_the_one_answer() {
         assert_eq!((census.tried, answers), (4, vec!["-".to_string()]));
         let slides = census.answers[0].answer.nodes[0];
         // What the solver finds once the tip is forced to slide.
-        common::force(&mut failed, 0, stickslip::scene::Mode::Sliding, false);
+        common::force(&mut failed, 0, stickslip::model::Mode::Sliding, false);
         let mut stepper = failed.stepper;
         let first = loop {
             let event = stepper.step().unwrap();
@@ -46,7 +47,7 @@ fn where_nothing_touches_the_free_state_is_the_one_answer() {
     let frozen = stepper.frozen().unwrap();
     let count = frozen.nodes.len();
     let found = census(&frozen);
-    if count > stickslip::solve::census::MOST {
+    if count > stickslip::interface::census::MOST {
         assert!(found.unwrap_err().contains("core"));
     } else {
         assert_eq!(

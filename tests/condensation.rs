@@ -3,9 +3,10 @@
 mod common;
 
 use common::{Run, run};
+use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
-use stickslip::solve::event::Singular;
-use stickslip::solve::{Failure, Status};
+use stickslip::step::event::Failure;
+use stickslip::step::state::Status;
 
 /// A block that only its contact holds up, pushed down and aside.
 const FLOATING: &str = "(title: \"t\", nodes: [Block(id: \"low\", corners: [(0, 0), (3, 1)], elements: (6, 2)),

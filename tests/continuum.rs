@@ -182,7 +182,8 @@ fn a_distorted_patch_reproduces_a_homogeneous_deformation_exactly() {
                 let nodes = scene.names().nodes(&format!("k.{e}")).unwrap();
                 nodes[1..].to_vec()
             }) {
-                use stickslip::scene::spec::{Component, LoadSpec};
+                use stickslip::model::Component;
+                use stickslip::scene::spec::LoadSpec;
                 for (k, component) in [Component::X, Component::Y].into_iter().enumerate() {
                     spec.loads.push(LoadSpec::Displacement {
                         node: scene.model.nodes[n].name.clone(),
@@ -322,7 +323,7 @@ fn problem_05_runs_to_its_end_and_to_the_tip_displacement_known() {
 
 /// The column's supports and the block's carry the load together.
 fn balanced(run: &Run) {
-    use stickslip::scene::model::{Monitor, Watched};
+    use stickslip::model::{Monitor, Watched};
     let mut model = (**run.stepper.model()).clone();
     let held: Vec<usize> = (0..model.nodes.len())
         .map(|n| model.dofs.first[n])
@@ -335,10 +336,10 @@ fn balanced(run: &Run) {
             of: Watched::Reaction { dof },
         })
         .collect();
-    let mut stepper = stickslip::solve::Stepper::new(std::sync::Arc::new(model));
+    let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(model));
     // The end of the history as the start of nothing more: its memory is that of its own displacements.
     let mut state = run.accepted.last().unwrap().state.clone();
-    state.aim = state.load_factor;
+    state.target = state.load_factor;
     stepper.restore(&state);
     let mut reactions = Vec::new();
     stepper.monitors(&mut reactions);
@@ -348,10 +349,10 @@ fn balanced(run: &Run) {
 
 /// Loads at which slave nodes touch that were open at the end of the increment before, and which.
 fn touches(run: &Run) -> Vec<(f64, String)> {
-    use stickslip::scene::Mode;
+    use stickslip::model::Mode;
     let model = run.stepper.model();
     let mut found = Vec::new();
-    let mut before = vec![false; model.slaves.len()];
+    let mut before = vec![false; model.contacts.len()];
     for a in &run.accepted {
         let now: Vec<bool> = a
             .event
@@ -360,7 +361,7 @@ fn touches(run: &Run) -> Vec<(f64, String)> {
             .map(|n| n.decision.next != Mode::Free)
             .collect();
         let new = (0..now.len()).filter(|&s| now[s] && !before[s]);
-        found.extend(new.map(|s| (a.load, model.nodes[model.slaves[s].node].name.clone())));
+        found.extend(new.map(|s| (a.load, model.nodes[model.contacts[s].node].name.clone())));
         before = now;
     }
     found
@@ -418,7 +419,7 @@ fn few_minor_iterations_cost_problem_05_its_accuracy_only_where_majors_are_few_t
         ];
         let run = finished(&scene(ROLES[0], &set));
         let unsettled = |a: &&common::Accepted| {
-            use stickslip::solve::Outcome;
+            use stickslip::step::event::Outcome;
             matches!(a.event.outcome, Outcome::Increment { unsettled, .. } if unsettled > 0)
         };
         let loads: Vec<String> = run
@@ -504,7 +505,7 @@ fn problem_05_with_frozen_geometry_gets_to_its_end_too_but_not_with_the_roles_sw
     let (event, failure) = swapped.failure.as_ref().unwrap();
     let limit = matches!(
         failure,
-        stickslip::solve::Failure::MajorLimit { limit: 200, .. }
+        stickslip::step::event::Failure::MajorLimit { limit: 200, .. }
     );
     assert!(limit && event.load_factor > 1.04, "{failure:?}");
 }
@@ -617,9 +618,9 @@ fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
 fn line_contact(refine: &str) -> (f64, f64, f64) {
     let run = finished(&scene("hertz-cylinder-on-block", &[("refine", refine)]));
     let (state, model) = (run.stepper.state(), run.stepper.model());
-    let at = |s: usize| model.nodes[model.slaves[s].node].at[0];
+    let at = |s: usize| model.nodes[model.contacts[s].node].at[0];
     let spacing = (at(1) - at(0)).abs();
-    let points: Vec<(f64, f64)> = (0..model.slaves.len())
+    let points: Vec<(f64, f64)> = (0..model.contacts.len())
         .filter(|&s| state.nodes[s].f_n > 0.0)
         .filter(|&s| (at(s) / spacing).round() as usize % 2 == 1)
         .map(|s| (s, state.nodes[s].f_n / (4.0 / 3.0 * spacing)))

@@ -6,14 +6,17 @@ use common::{run, scene, two_blocks};
 use std::path::Path;
 use std::process::{Command as Process, Output};
 use std::sync::Arc;
+use stickslip::contact::record::Forced;
 use stickslip::debug::command::{Command, Exported, Unit};
 use stickslip::debug::core::{Core, core};
 use stickslip::debug::export::{self, Origin, compared};
 use stickslip::debug::session::Session;
-use stickslip::scene::{Mode, Scene, builtin};
-use stickslip::solve::event::{Cycle, Forced};
-use stickslip::solve::frozen::{Frozen, Trials};
-use stickslip::solve::{Failure, Outcome, Stepper};
+use stickslip::interface::problem::{InterfaceProblem, Trials};
+use stickslip::model::Mode;
+use stickslip::scene::{Scene, builtin};
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::minor_history::Cycle;
+use stickslip::step::stepper::Stepper;
 
 /// A run that ended in a cycle of minors: its stepper there, the cycle, and where.
 struct Stuck {
@@ -39,7 +42,7 @@ fn stuck(scene: Scene) -> Option<Stuck> {
 }
 
 impl Stuck {
-    fn core(&mut self) -> (Frozen, Core, String) {
+    fn core(&mut self) -> (InterfaceProblem, Core, String) {
         let problem = self.stepper.frozen().unwrap();
         let core = core(&problem).unwrap();
         let model = &self.scene.model;
@@ -54,10 +57,10 @@ fn read(text: &str) -> Scene {
 }
 
 /// Modes and forces of nodes over a round.
-type Round = Vec<Vec<(Mode, f64, f64)>>;
+type MajorCycle = Vec<Vec<(Mode, f64, f64)>>;
 
 /// A round of some slave nodes, from a stepper that stands on a cycle.
-fn round(stepper: &mut Stepper, slaves: &[usize], period: u32) -> Round {
+fn round(stepper: &mut Stepper, slaves: &[usize], period: u32) -> MajorCycle {
     let of = |stepper: &mut Stepper| {
         let event = stepper.step().unwrap();
         let one = |&s: &usize| {
@@ -70,7 +73,7 @@ fn round(stepper: &mut Stepper, slaves: &[usize], period: u32) -> Round {
 }
 
 /// Whether two rounds are the same, wherever each begins.
-fn same(a: &Round, b: &Round, size: f64) -> bool {
+fn same(a: &MajorCycle, b: &MajorCycle, size: f64) -> bool {
     let close = |x: f64, y: f64| (x - y).abs() <= 1e-9 * size;
     let equal = |a: &[(Mode, f64, f64)], b: &[(Mode, f64, f64)]| {
         let mut pairs = a.iter().zip(b);
@@ -138,7 +141,9 @@ fn every_oscillator_has_a_core_whose_file_cycles_as_it_does() {
             let (mut trials, mut nodes) = (Trials::new(&frozen).unwrap(), frozen.states());
             let mut minor = || {
                 let (records, _) = trials.minor(&mut nodes).unwrap();
-                let one = |r: &stickslip::solve::NodeRecord| (r.decision.before, r.f_n, r.f_t);
+                let one = |r: &stickslip::contact::record::ContactRecord| {
+                    (r.decision.before, r.f_n, r.f_t)
+                };
                 records.iter().map(one).collect()
             };
             (0..core.cycle.period).map(|_| minor()).collect()
@@ -153,7 +158,7 @@ fn every_oscillator_has_a_core_whose_file_cycles_as_it_does() {
 }
 
 /// A frozen problem of the nodes that a file can have, none of them held by the user.
-fn plain(problem: &Frozen) -> Frozen {
+fn plain(problem: &InterfaceProblem) -> InterfaceProblem {
     let mut plain = problem.reduced(&export::writable(problem)).unwrap();
     plain
         .nodes
@@ -181,7 +186,7 @@ fn whole_frozen_problems_step_alone_as_in_their_scenes() {
         for step in 0..60 {
             if step % 6 == 1 {
                 let problem = stepper.frozen().unwrap();
-                let origin = Origin::of(&scene, stepper.state().next, stepper.state().aim);
+                let origin = Origin::of(&scene, stepper.state().next, stepper.state().target);
                 let text = export::whole(&scene.model, &origin, &problem)
                     .unwrap_or_else(|why| panic!("{name}, step {step}: {why}"));
                 let off = compared(&plain(&problem), &text).unwrap();

@@ -6,16 +6,20 @@ mod common;
 use common::run;
 use std::sync::Arc;
 use std::time::Instant;
+use stickslip::contact::record::ContactRecord;
 use stickslip::debug::command::Command;
 use stickslip::debug::diagnosis::{Cause, Diagnosis, cycling, words};
 use stickslip::debug::session::Session;
+use stickslip::interface::census::census;
+use stickslip::interface::problem::{Answer, Assumed, InterfaceProblem, Trials};
+use stickslip::model::Mode;
+use stickslip::model::{Friction, InitialState, Settings, Strategy, Touch};
+use stickslip::scene::Scene;
 use stickslip::scene::condensed::{Contact, Matrix, Problem};
-use stickslip::scene::spec::{Friction, History, InitialState, Settings, Strategy, Touch};
-use stickslip::scene::{Mode, Scene};
-use stickslip::solve::census::census;
-use stickslip::solve::event::Cycle;
-use stickslip::solve::frozen::{Answer, Assumed, Frozen, Trials};
-use stickslip::solve::{Failure, NodeRecord, Outcome, Stepper};
+use stickslip::scene::spec::History;
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::minor_history::Cycle;
+use stickslip::step::stepper::Stepper;
 
 /// Smooth contacts with u_n = M f_n, u_t = f_t, and these gaps; those of `touching` start in touch.
 fn smooth(m: &[Vec<f64>], gaps: &[f64], touching: &[usize]) -> Scene {
@@ -187,7 +191,7 @@ fn rough_contacts_cycle_from_where_and_as_long_as_their_iterations_say() {
         let (mut inputs, mut found) = (Vec::new(), None);
         for _ in 0..start + 5 * period {
             let event = stepper.step().unwrap();
-            let input = |node: &NodeRecord| match node.decision.before {
+            let input = |node: &ContactRecord| match node.decision.before {
                 Mode::Sliding => (Mode::Sliding, node.t_max_used),
                 mode => (mode, 0.0),
             };
@@ -298,7 +302,7 @@ impl Random {
 }
 
 /// A random rough interface problem.
-fn random(n: usize, random: &mut Random) -> Frozen {
+fn random(n: usize, random: &mut Random) -> InterfaceProblem {
     let size = 2 * n;
     let l: Vec<f64> = (0..size * size)
         .map(|_| 2.0 * random.next() - 1.0)
@@ -342,7 +346,7 @@ fn random(n: usize, random: &mut Random) -> Frozen {
 }
 
 /// The consistent assumptions one by one, each solved by itself.
-fn one_by_one(problem: &Frozen) -> (usize, Vec<Answer>) {
+fn one_by_one(problem: &InterfaceProblem) -> (usize, Vec<Answer>) {
     const ALL: [Assumed; 4] = [Assumed::Free, Assumed::Fixed, Assumed::Plus, Assumed::Minus];
     let n = problem.nodes.len();
     let mut trials = Trials::new(problem).unwrap();

@@ -6,11 +6,12 @@ mod common;
 use common::{Run, force, go_on, run, scene};
 use stickslip::debug::diagnosis::{Cause, Diagnosis, words};
 use stickslip::debug::influence::influences;
-use stickslip::scene::Mode;
-use stickslip::solve::frozen::{Frozen, Trials};
-use stickslip::solve::{Failure, Status};
+use stickslip::interface::problem::{InterfaceProblem, Trials};
+use stickslip::model::Mode;
+use stickslip::step::event::Failure;
+use stickslip::step::state::Status;
 
-fn failed(name: &str) -> (Run, Frozen, Diagnosis) {
+fn failed(name: &str) -> (Run, InterfaceProblem, Diagnosis) {
     let mut run = run(&scene(name, &[]));
     assert!(
         matches!(run.failure, Some((_, Failure::Cycle(_)))),

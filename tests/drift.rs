@@ -88,14 +88,14 @@ fn the_anchor_is_a_part_of_the_state_and_is_gone_with_the_contact() {
     let (mut held, mut free) = (0, 0);
     for a in &run.accepted {
         for node in &a.state.nodes {
-            let touches = node.mode != stickslip::scene::Mode::Free;
+            let touches = node.mode != stickslip::model::Mode::Free;
             assert_eq!(node.anchor.is_some(), touches, "load {}", a.load);
             held += u32::from(touches);
             free += u32::from(!touches);
         }
         let text = ron::to_string(&a.state).unwrap();
         assert_eq!(
-            ron::from_str::<stickslip::solve::State>(&text).unwrap(),
+            ron::from_str::<stickslip::step::state::State>(&text).unwrap(),
             a.state
         );
     }

@@ -8,7 +8,7 @@ use stickslip::debug::session::{Frame, Session};
 use stickslip::debug::strip::Strip;
 use stickslip::debug::tree::BUDGET;
 use stickslip::scene::Scene;
-use stickslip::solve::State;
+use stickslip::step::state::State;
 
 struct Counting;
 

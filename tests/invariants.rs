@@ -4,10 +4,14 @@ mod common;
 
 use common::{force, go_on, run, scene};
 use std::sync::Arc;
+use stickslip::model::Mode;
+use stickslip::model::Model;
+use stickslip::scene::Scene;
 use stickslip::scene::builtin;
-use stickslip::scene::spec::{LoadSpec, Mode, Nodes, Point, Spec};
-use stickslip::scene::{Model, Scene};
-use stickslip::solve::{Outcome, State, Status, Stepper};
+use stickslip::scene::spec::{LoadSpec, Nodes, Point, Spec};
+use stickslip::step::event::Outcome;
+use stickslip::step::state::{State, Status};
+use stickslip::step::stepper::Stepper;
 
 /// All built-in scenes but those that are to fail, of which `tests/oscillators.rs` speaks; the inclined cantilever with its
 /// node forced to slide once where it stops.
@@ -18,7 +22,7 @@ fn accepted_everywhere(check: impl Fn(&Scene, &common::Accepted)) {
         let mut run = run(&scene);
         for _ in 0..3 {
             if run.failure.is_some() {
-                (0..scene.model.slaves.len())
+                (0..scene.model.contacts.len())
                     .for_each(|s| force(&mut run, s, Mode::Sliding, false));
                 run = go_on(run);
             }
@@ -63,7 +67,7 @@ fn accepted_increments_are_in_equilibrium_with_their_supports() {
 
 /// The model with the reaction of every restrained x (or y) as its monitors.
 fn with_reactions(model: &Model, axis: usize) -> Model {
-    use stickslip::scene::model::{Monitor, Watched};
+    use stickslip::model::{Monitor, Watched};
     let mut model = model.clone();
     let dofs = model.dofs.first.iter().map(|first| first + axis);
     let held = dofs.filter(|&dof| model.dofs.equation[dof].is_none());
@@ -84,7 +88,7 @@ fn accepted_increments_obey_contact_and_coulomb() {
         };
         let (force, length) = (1e-8 * after.scale, 1e-8 * scene.model.length);
         for (node, record) in a.state.start.nodes.iter().zip(&a.event.nodes) {
-            let limit = node.f_n.abs() * scene.model.slaves[0].friction.coefficient();
+            let limit = node.f_n.abs() * scene.model.contacts[0].friction.coefficient();
             match node.mode {
                 Mode::Free => assert!(record.gap >= -length && node.f_n == 0.0 && node.f_t == 0.0),
                 Mode::Fixed => {

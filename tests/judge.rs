@@ -5,10 +5,12 @@ mod common;
 use std::sync::Arc;
 use stickslip::contact::balance::{self, Forces};
 use stickslip::contact::judge::{Judge, Law, Scales, Seen, Verdict};
-use stickslip::scene::model::{Slave, Surface};
-use stickslip::scene::spec::InitialState;
-use stickslip::scene::{Friction, Mode, Scene};
-use stickslip::solve::{Failure, Outcome, Stepper};
+use stickslip::model::InitialState;
+use stickslip::model::{Contact, Surface};
+use stickslip::model::{Friction, Mode};
+use stickslip::scene::Scene;
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::stepper::Stepper;
 
 const TOLERANCE: f64 = 1e-8;
 
@@ -43,7 +45,7 @@ impl Stage {
             rigid: true,
             endless: false,
         }];
-        let slaves = [Slave {
+        let slaves = [Contact {
             node: 0,
             surfaces: vec![0],
             friction: self.friction,
@@ -329,8 +331,8 @@ fn open(scene: Scene) -> (Stepper, Vec<Law>, Option<Failure>) {
 /// F_n and F_t of a slave node, by name.
 fn forces(stepper: &Stepper, name: &str) -> [f64; 2] {
     let model = stepper.model();
-    let of = |slave: &Slave| model.nodes[slave.node].name == name;
-    let slave = model.slaves.iter().position(of).unwrap();
+    let of = |slave: &Contact| model.nodes[slave.node].name == name;
+    let slave = model.contacts.iter().position(of).unwrap();
     let node = &stepper.state().start.nodes[slave];
     [node.f_n, node.f_t]
 }

@@ -8,7 +8,7 @@ use common::{Accepted, Run, run, scene};
 use program::{code, err, out, program};
 use stickslip::scene::Scene;
 use stickslip::scene::spec::LoadSpec;
-use stickslip::solve::{Failure, Outcome};
+use stickslip::step::event::{Failure, Outcome};
 
 const EDGE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),

@@ -10,7 +10,7 @@ use stickslip::debug::lesson::play::play;
 use stickslip::debug::lesson::tutor::{Kind, Paragraph};
 use stickslip::debug::lesson::{self, Guess, Lesson, Tutor};
 use stickslip::debug::session::Session;
-use stickslip::scene::Mode;
+use stickslip::model::Mode;
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
 

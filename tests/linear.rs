@@ -3,10 +3,12 @@
 mod common;
 
 use common::run;
+use stickslip::model::InitialState;
+use stickslip::model::{Friction, Mode, Settings};
 use stickslip::scene::condensed::{Contact, Matrix, Problem};
-use stickslip::scene::spec::{History, InitialState};
-use stickslip::scene::{Friction, Mode, Scene, Settings, Spec, read};
-use stickslip::solve::Stepper;
+use stickslip::scene::spec::History;
+use stickslip::scene::{Scene, Spec, read};
+use stickslip::step::stepper::Stepper;
 
 fn contact(id: &str, gap: f64, load: [f64; 2]) -> Contact {
     Contact {
@@ -77,7 +79,7 @@ fn end(scene: &Scene) -> (Vec<Mode>, Vec<f64>) {
     let nodes = &run.accepted.last().unwrap().event.nodes;
     let modes = nodes.iter().map(|n| n.decision.next).collect();
     let mut numbers: Vec<f64> = nodes.iter().flat_map(|n| [n.f_n, n.f_t]).collect();
-    for slave in &run.stepper.model().slaves {
+    for slave in &run.stepper.model().contacts {
         let first = run.stepper.model().dofs.first[slave.node];
         numbers.extend(&run.stepper.state().u[first..first + 2]);
     }

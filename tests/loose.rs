@@ -8,10 +8,12 @@ use common::{Run, run, scene};
 use program::{code, err, program};
 use stickslip::debug::report::advice;
 use stickslip::debug::smaller::{Smaller, smaller};
+use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
-use stickslip::solve::event::Singular;
-use stickslip::solve::rounds::Round;
-use stickslip::solve::{Failure, Intervention, Stepper};
+use stickslip::step::event::Failure;
+use stickslip::step::intervene::Intervention;
+use stickslip::step::major_history::MajorCycle;
+use stickslip::step::stepper::Stepper;
 
 const PUSHED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scales/pushed-block.ron");
 
@@ -138,7 +140,7 @@ fn the_program_gives_no_advice_that_does_not_help() {
         "{told}"
     );
     assert!(!told.contains(none), "{told}");
-    let round = Round {
+    let round = MajorCycle {
         start: 2,
         period: 2,
         members: vec![],

@@ -7,9 +7,11 @@ mod common;
 
 use common::{Run, force, go_on, run, scene};
 use std::sync::Arc;
-use stickslip::scene::Mode;
-use stickslip::solve::event::{Cycle, Singular};
-use stickslip::solve::{Failure, Outcome, Position, Stepper};
+use stickslip::linear::singular::Singular;
+use stickslip::model::Mode;
+use stickslip::step::event::{Failure, Outcome, Position};
+use stickslip::step::minor_history::Cycle;
+use stickslip::step::stepper::Stepper;
 
 /// Modes by letter: F free, S sliding, X fixed.
 fn letter(mode: Mode) -> char {
@@ -37,7 +39,7 @@ fn cycle<'r>(name: &str, run: &'r Run) -> (Position, &'r Cycle) {
 
 /// The modes of all nodes over one round, from the cycle's start: "FF>XX>FS".
 fn round(run: &Run, cycle: &Cycle) -> String {
-    let nodes = run.stepper.model().slaves.len();
+    let nodes = run.stepper.model().contacts.len();
     let letters = |k: usize| {
         (0..nodes).map(move |node| {
             let member = cycle.members.iter().find(|(s, _)| *s == node);
@@ -253,7 +255,7 @@ fn problem_5_with_the_papers_settings_runs_out_of_majors_with_its_modes_at_rest(
         panic!("{:?}", run.failure)
     };
     assert_eq!((run.accepted.len(), event.position.increment), (6, 7));
-    let still = |node: &stickslip::solve::NodeRecord| !node.decision.changes();
+    let still = |node: &stickslip::contact::record::ContactRecord| !node.decision.changes();
     assert!(event.nodes.iter().all(still));
     // The reference stands at this state of the seventh increment, too.
     assert!((run.stepper.state().load_factor - 1.05).abs() < 1e-12);

@@ -5,7 +5,8 @@ mod common;
 
 use common::{Run, run, two_blocks};
 use stickslip::contact::projection::{footing, project};
-use stickslip::scene::{Mode, Scene};
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
 
 /// A stated scene, run to its end.
 fn solved(text: &str) -> Run {
@@ -21,7 +22,7 @@ fn solved(text: &str) -> Run {
 fn positions(run: &Run, k: usize) -> Vec<[f64; 2]> {
     let model = run.stepper.model();
     let u = &run.accepted[k].state.u;
-    let moved = |(n, node): (usize, &stickslip::scene::model::Node)| {
+    let moved = |(n, node): (usize, &stickslip::model::Node)| {
         let d = model.dofs.first[n];
         [node.at[0] + u[d], node.at[1] + u[d + 1]]
     };
@@ -40,7 +41,7 @@ fn assert_sound(run: &Run) {
             .nodes
             .iter()
             .fold(1e-12, |m: f64, n| m.max(n.f_n.abs()));
-        for (slave, state) in model.slaves.iter().zip(&accepted.state.nodes) {
+        for (slave, state) in model.contacts.iter().zip(&accepted.state.nodes) {
             let name = &model.nodes[slave.node].name;
             let at = x[slave.node];
             let load = accepted.load;
@@ -316,7 +317,7 @@ fn both_bodies_in_both_roles_balance_with_the_load() {
     let model = done.stepper.model();
     // Forces on the slaves of the upper strip less those on the slaves of the lower one bear the load.
     let mut lift = 0.0;
-    for (slave, state) in model.slaves.iter().zip(&last.state.nodes) {
+    for (slave, state) in model.contacts.iter().zip(&last.state.nodes) {
         let on_up = model.nodes[slave.node].name.starts_with("up");
         lift += if on_up { 1.0 } else { -1.0 } * state.force()[1];
     }
@@ -374,7 +375,7 @@ fn a_pile_of_four_blocks_passes_all_forces_down() {
             // What lies on the joint below block k: the tractions on the tops of k and all above it.
             let above: f64 = (k..4).map(|j| 3.0 - 0.24 * j as f64).sum();
             let mut sum = [0.0; 2];
-            for (slave, state) in model.slaves.iter().zip(&accepted.state.nodes) {
+            for (slave, state) in model.contacts.iter().zip(&accepted.state.nodes) {
                 if model.nodes[slave.node].name.starts_with(&format!("b{k}.")) {
                     let f = state.force();
                     sum = [sum[0] + f[0], sum[1] + f[1]];
@@ -484,7 +485,7 @@ fn a_shoe_goes_over_the_ridge_of_an_elastic_surface_with_a_corner() {
 #[test]
 fn the_large_scene_is_large_and_its_small_form_balances() {
     let large = two_blocks(8);
-    assert_eq!(large.model.slaves.len(), 193);
+    assert_eq!(large.model.contacts.len(), 193);
     assert!((9_900..10_200).contains(&stickslip::scene::Cost::of(&large).unknowns()));
     let done = run(&two_blocks(1));
     assert!(done.failure.is_none());

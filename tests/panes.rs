@@ -9,8 +9,11 @@ use stickslip::debug::journal::{Journal, Record};
 use stickslip::debug::remedies::End;
 use stickslip::debug::session::Session;
 use stickslip::debug::story::story;
-use stickslip::scene::{Mode, Scene};
-use stickslip::solve::{Intervention, Outcome, Status};
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
+use stickslip::step::event::Outcome;
+use stickslip::step::intervene::Intervention;
+use stickslip::step::state::Status;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{Debugger, draw, keys};
 

@@ -133,8 +133,8 @@ fn help_opens_scrolls_and_closes() {
 fn nodes_are_found_by_a_part_of_their_name() {
     let mut session = open(CANTILEVERS);
     let model = Scene::open(CANTILEVERS, &[]).unwrap().model;
-    let name = |slave: usize| model.nodes[model.slaves[slave].node].name.clone();
-    let last = name(model.slaves.len() - 1);
+    let name = |slave: usize| model.nodes[model.contacts[slave].node].name.clone();
+    let last = name(model.contacts.len() - 1);
     session.see(&format!("Decision  {}", name(0)));
     session.type_and_see(&format!("/{last}\r"), &format!("Decision  {last}"));
     session.type_and_see("/nowhere\r", "no slave node's name contains 'nowhere'");

@@ -8,7 +8,8 @@ use outside::families::{FAMILIES, draw};
 use outside::judge::{Law, Pull, Scales, Seen, Verdict, judge};
 use outside::tally;
 use outside::trial::End;
-use stickslip::scene::{Friction, Scene};
+use stickslip::model::Friction;
+use stickslip::scene::Scene;
 
 /// As many as a few seconds allow.
 const SCENES: u64 = 60;
@@ -69,7 +70,7 @@ fn after(scene: &Scene, [from, to]: [Point; 2], forces: [Point; 2], brought: f64
     let model = &scene.model;
     let state = |at: Point, force: Point| {
         let mut positions: Vec<Point> = model.nodes.iter().map(|n| n.at).collect();
-        positions[model.slaves[0].node] = at;
+        positions[model.contacts[0].node] = at;
         Seen {
             positions,
             forces: vec![force],
@@ -81,7 +82,7 @@ fn after(scene: &Scene, [from, to]: [Point; 2], forces: [Point; 2], brought: f64
         force: 1.0,
     };
     let (before, now) = (state(from, forces[0]), state(to, forces[1]));
-    let friction = [model.slaves[0].friction];
+    let friction = [model.contacts[0].friction];
     judge(model, [&before, &now], &friction, &[brought], scales)
 }
 

@@ -103,9 +103,9 @@ fn the_scenes_in_the_readme_are_sound_and_converge() {
     for block in blocks {
         let text = block.split("```").next().unwrap();
         let scene = Scene::from_text("README.md", text, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let mut stepper = stickslip::solve::Stepper::new(std::sync::Arc::new(scene.model));
+        let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(scene.model));
         while let Some(event) = stepper.step() {
-            if let stickslip::solve::Outcome::Failed(failure) = &event.outcome {
+            if let stickslip::step::event::Outcome::Failed(failure) = &event.outcome {
                 panic!("{failure:?}");
             }
         }

@@ -6,8 +6,9 @@ mod common;
 
 use common::{Run, force, go_on, number, run, scene, table};
 use std::collections::HashMap;
-use stickslip::scene::{Mode, Scene};
-use stickslip::solve::Failure;
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
+use stickslip::step::event::Failure;
 
 type Row = HashMap<String, String>;
 

@@ -21,8 +21,10 @@ use std::sync::Arc;
 use stickslip::debug::command::{Action, Command, Context, parse};
 use stickslip::debug::session::Session;
 use stickslip::debug::snapshot::{Applied, Snapshot, SnapshotError, compare};
-use stickslip::scene::Mode;
-use stickslip::solve::{Intervention, Outcome, Stepper};
+use stickslip::model::Mode;
+use stickslip::step::event::Outcome;
+use stickslip::step::intervene::Intervention;
+use stickslip::step::stepper::Stepper;
 
 fn recorded() -> Vec<PathBuf> {
     let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots");
@@ -92,10 +94,10 @@ fn random_session(scene_name: &str, seed: u64, file: &std::path::Path) -> Vec<(S
     let mut random = Pcg64::new(u128::from(seed), 1);
     let mut pick = |count: usize| (random.next_u64() % count as u64) as usize;
     let mut session = Session::new(scene(scene_name, &[]));
-    let slaves = session.model().slaves.len();
+    let slaves = session.model().contacts.len();
     let (mut lines, mut taken) = (Vec::new(), Vec::new());
     for _ in 0..24 {
-        let slave = session.model().slaves[pick(slaves)].node;
+        let slave = session.model().contacts[pick(slaves)].node;
         let node = session.model().nodes[slave].name.clone();
         let mode = MODES[pick(3)];
         let line = match pick(16) {

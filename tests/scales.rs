@@ -6,10 +6,12 @@ mod common;
 mod program;
 
 use common::{Run, run, scene};
+use stickslip::linear::estimate::Estimate;
+use stickslip::linear::norms::Norms;
+use stickslip::model::Component;
 use stickslip::scene::Scene;
-use stickslip::scene::effort::Estimate;
-use stickslip::scene::spec::{BodySpec, Component, LoadSpec, Material, Nodes, Point, Spec};
-use stickslip::solve::{Failure, Norms, Outcome};
+use stickslip::scene::spec::{BodySpec, LoadSpec, Material, Nodes, Point, Spec};
+use stickslip::step::event::{Failure, Outcome};
 
 fn file(name: &str) -> Scene {
     let path = format!("{}/tests/scales/{name}", env!("CARGO_MANIFEST_DIR"));

@@ -3,9 +3,10 @@
 use proptest::prelude::*;
 use std::collections::HashSet;
 use stickslip::contact::projection::{footing, project};
-use stickslip::scene::model::{BodyKind, Watched};
-use stickslip::scene::spec::{Component, FrictionLimit};
-use stickslip::scene::{Cost, Model, Scene, SceneError, Spec, builtin, paths, read};
+use stickslip::model::Model;
+use stickslip::model::{BodyKind, Watched};
+use stickslip::model::{BoundUpdate, Component};
+use stickslip::scene::{Cost, Scene, SceneError, Spec, builtin, paths, read};
 
 const PINNED: &str = "01-pinned-beam-rough-floor";
 
@@ -504,7 +505,7 @@ fn built_in_slaves_start_on_the_outward_side() {
         let model = Scene::open(builtin.name, &[]).unwrap().model;
         let positions: Vec<[f64; 2]> = model.nodes.iter().map(|n| n.at).collect();
         let mut over = 0;
-        for slave in &model.slaves {
+        for slave in &model.contacts {
             let at = positions[slave.node];
             // A node that stands past the ends of its surfaces has no side yet.
             let Some(spot) = project(at, &model.surfaces, &slave.surfaces, &positions, None) else {
@@ -945,14 +946,14 @@ fn every_listed_value_can_be_set_and_set_to_itself_changes_nothing() {
 #[test]
 fn settings_from_outside_reach_the_model_and_are_named_in_messages() {
     let scene = with("friction.angle", "20").unwrap();
-    assert_eq!(scene.model.slaves[0].friction.angle, 20.0);
+    assert_eq!(scene.model.contacts[0].friction.angle, 20.0);
     assert_eq!(
         scene.overrides().collect::<Vec<_>>(),
         [("friction.angle", "20")]
     );
     let scene = scene.with("settings.t_max", "consistent").unwrap();
-    assert_eq!(scene.model.settings.t_max, FrictionLimit::Consistent);
-    assert_eq!(scene.model.slaves[0].friction.angle, 20.0);
+    assert_eq!(scene.model.settings.t_max, BoundUpdate::Consistent);
+    assert_eq!(scene.model.contacts[0].friction.angle, 20.0);
     let cases = [
         (
             "friction.angle",
@@ -995,8 +996,8 @@ fn settings_from_outside_reach_the_model_and_are_named_in_messages() {
 #[test]
 fn friction_of_a_group_is_the_scenes_until_it_is_set() {
     let own = with("slaves[0].friction.cohesion", "0.5").unwrap();
-    assert_eq!(own.model.slaves[0].friction.cohesion, 0.5);
-    assert_eq!(own.model.slaves[0].friction.angle, 30.0);
+    assert_eq!(own.model.contacts[0].friction.cohesion, 0.5);
+    assert_eq!(own.model.contacts[0].friction.angle, 30.0);
     assert_eq!(own.spec.friction.cohesion, 0.0);
 }
 
@@ -1022,7 +1023,7 @@ fn cost_counts_what_the_model_has() {
         let cost = Cost::of(&scene);
         let bodies = cost.translations + cost.rotations + cost.shears + cost.forces;
         assert_eq!(bodies, scene.model.dofs.equations, "{}", builtin.name);
-        assert_eq!(cost.unknowns(), bodies + 2 * scene.model.slaves.len());
+        assert_eq!(cost.unknowns(), bodies + 2 * scene.model.contacts.len());
     }
     let text = Cost::of(&Scene::open(PINNED, &[]).unwrap()).to_string();
     for line in [
@@ -1078,7 +1079,12 @@ fn assert_usable(model: &Model) {
             .all(|p| model.dofs.equation[p.dof].is_none())
     );
     assert!(model.path.len() >= 2 && model.increment > 0.0);
-    assert!(model.slaves.iter().all(|slave| !slave.surfaces.is_empty()));
+    assert!(
+        model
+            .contacts
+            .iter()
+            .all(|slave| !slave.surfaces.is_empty())
+    );
 }
 
 fn try_text(text: &str) {

@@ -8,13 +8,18 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use std::sync::Arc;
-use stickslip::contact::decision::{Decision, Entry, Numbers, Rule, Ties, decide};
+use stickslip::contact::record::{ContactRecord, Forced};
+use stickslip::contact::table2::{Decision, Entry, Numbers, Rule, Ties, decide};
 use stickslip::debug::command::{Command, Unit};
 use stickslip::debug::session::{Frame, Session};
-use stickslip::scene::model::{Beam, Body, BodyKind, Dofs, Monitor, Node, Slave, Surface, Watched};
-use stickslip::scene::{Friction, Mode, Model, Scene, Settings};
-use stickslip::solve::event::{Cycle, Position};
-use stickslip::solve::{Event, Failure, Forced, NodeRecord, Norms, Outcome, State};
+use stickslip::linear::norms::Norms;
+use stickslip::model::{Beam, Body, BodyKind, Contact, Dofs, Monitor, Node, Surface, Watched};
+use stickslip::model::{Friction, Mode, Model, Settings};
+use stickslip::scene::Scene;
+use stickslip::step::event::Position;
+use stickslip::step::event::{Event, Failure, Outcome};
+use stickslip::step::minor_history::Cycle;
+use stickslip::step::state::State;
 use stickslip::tui::app::{App, Effect, Offer};
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{Debugger, View, draw, keys};
@@ -56,8 +61,8 @@ fn model(slaves: usize) -> Model {
             rigid: true,
             endless: false,
         }],
-        slaves: (0..slaves)
-            .map(|node| Slave {
+        contacts: (0..slaves)
+            .map(|node| Contact {
                 node,
                 surfaces: vec![0],
                 friction: Friction {
@@ -84,12 +89,13 @@ fn model(slaves: usize) -> Model {
         jumps: Default::default(),
         settings: Settings::default(),
         monitors: vec![],
+        budget: 1e9,
         length: 4.0,
     }
 }
 
 /// What the table would say of these numbers.
-fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -> NodeRecord {
+fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -> ContactRecord {
     let ties = Ties {
         force: 1e-12,
         length: 1e-12,
@@ -107,7 +113,7 @@ fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -> No
         },
         &ties,
     );
-    NodeRecord {
+    ContactRecord {
         decision,
         forced: Forced::No,
         gap,
@@ -125,11 +131,11 @@ fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -> No
 }
 
 /// One node of every kind that a screen should be able to show.
-fn records() -> Vec<NodeRecord> {
+fn records() -> Vec<ContactRecord> {
     vec![
         record(Mode::Fixed, 0.0, 1.23456789e-1, 4.0e-2, 4.4934579e-2, 0.0),
         record(Mode::Fixed, 0.0, 2.5e-1, -9.2e-2, -9.099255856e-2, 0.0),
-        NodeRecord {
+        ContactRecord {
             t_max_used: 1.0e-3,
             ..record(
                 Mode::Sliding,
@@ -145,7 +151,7 @@ fn records() -> Vec<NodeRecord> {
     ]
 }
 
-fn event(position: (u32, u32, u32), nodes: Vec<NodeRecord>, outcome: Outcome) -> Event {
+fn event(position: (u32, u32, u32), nodes: Vec<ContactRecord>, outcome: Outcome) -> Event {
     let (increment, major, minor) = position;
     Event {
         position: Position {
@@ -316,7 +322,7 @@ fn the_small_screen_turns_its_page() {
     ];
     for (screen, title) in seen.iter().zip(titles) {
         assert!(
-            screen.contains(title) && screen.contains(" Slave nodes "),
+            screen.contains(title) && screen.contains(" Contact nodes "),
             "{screen}"
         );
     }
@@ -423,7 +429,7 @@ fn held_and_off_surface_nodes_are_told_in_words() {
         rule: Rule::Held,
         ..table.decision
     };
-    let held = NodeRecord {
+    let held = ContactRecord {
         decision,
         forced: Forced::Held(Mode::Free),
         ..table
@@ -434,7 +440,7 @@ fn held_and_off_surface_nodes_are_told_in_words() {
         tests: [None, None],
         ..apart.decision
     };
-    let off = NodeRecord { decision, ..apart };
+    let off = ContactRecord { decision, ..apart };
     let mut frames = frames(&model, event((1, 1, 1), vec![held, off], Outcome::Minor));
     frames[1].state.nodes[0].forced = Forced::Held(Mode::Free);
     let view = view(&model, &frames);
@@ -548,7 +554,7 @@ fn listed(app: &App, view: &View) -> Vec<String> {
 fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     let mut model = model(5);
     model.surfaces.push(model.surfaces[0].clone());
-    model.slaves[4].surfaces = vec![1];
+    model.contacts[4].surfaces = vec![1];
     let mut event = minor();
     event.before.scale = 1.0;
     let mut frames = frames(&model, event);
@@ -558,7 +564,7 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     // Of 4 and 5, free both, the gap over the length counts; of the others the force over the scale, or the slip.
     assert_eq!(listed(&app, &view), ["3", "4", "2", "1", "5"]);
     assert_eq!(app.selected, 3);
-    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Slave nodes  2/5  by margin "));
+    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Contact nodes  2/5  by margin "));
     press(&mut app, &view, "Down");
     assert_eq!(app.selected, 1, "the row below, whatever its number");
     press(&mut app, &view, "<");

@@ -4,9 +4,10 @@ mod common;
 
 use common::{Run, force, go_on, run};
 use proptest::prelude::*;
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
 use stickslip::scene::siconos::{Friction2d, Storage, read};
-use stickslip::scene::{Mode, Scene};
-use stickslip::solve::Failure;
+use stickslip::step::event::Failure;
 
 fn path(name: &str) -> String {
     format!("{}/tests/siconos/{name}", env!("CARGO_MANIFEST_DIR"))
@@ -38,11 +39,11 @@ fn the_three_storages_say_the_same() {
 /// u and r of each contact in turn, normal first, at the end of a run.
 fn answer(run: &Run) -> (Vec<f64>, Vec<f64>) {
     let (model, state) = (run.stepper.model(), run.stepper.state());
-    let of = |s: &stickslip::scene::model::Slave| {
+    let of = |s: &stickslip::model::Contact| {
         let first = model.dofs.first[s.node];
         [state.u[first + 1], -state.u[first]]
     };
-    let u = model.slaves.iter().flat_map(of).collect();
+    let u = model.contacts.iter().flat_map(of).collect();
     let last = &run.accepted.last().expect("an answer").event;
     (u, last.nodes.iter().flat_map(|n| [n.f_n, n.f_t]).collect())
 }

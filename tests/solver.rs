@@ -3,9 +3,13 @@
 mod common;
 
 use common::{Run, force, go_on, number, run, scene, table};
-use stickslip::scene::{Mode, Scene};
-use stickslip::solve::event::{Motion, Singular};
-use stickslip::solve::{Failure, Forced, Intervention, Outcome, Status};
+use stickslip::contact::record::Forced;
+use stickslip::linear::singular::{Motion, Singular};
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::intervene::Intervention;
+use stickslip::step::state::Status;
 
 const TABLE_2: (&str, &str) = ("settings.strategy", "table2");
 
@@ -185,7 +189,7 @@ fn one_minor_iteration_per_major_is_a_setting_and_smooth_contact_does_not_mind()
 #[test]
 fn a_held_mode_stays_against_table_2_and_is_marked_until_released() {
     let scene = scene("01-pinned-beam-rough-floor", &[("history.path[2]", "0.2")]);
-    let mut stepper = stickslip::solve::Stepper::new(std::sync::Arc::new(scene.model));
+    let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(scene.model));
     stepper
         .intervene(&Intervention::Force {
             slave: 0,
@@ -209,7 +213,7 @@ fn a_held_mode_stays_against_table_2_and_is_marked_until_released() {
 #[test]
 fn a_new_increment_size_starts_the_increment_again_from_its_exact_start() {
     let scene = scene("02-two-cantilevers-smooth", &[]);
-    let mut stepper = stickslip::solve::Stepper::new(std::sync::Arc::new(scene.model));
+    let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(scene.model));
     while stepper.state().next.increment < 4 {
         stepper.step();
     }
@@ -230,7 +234,7 @@ fn a_new_increment_size_starts_the_increment_again_from_its_exact_start() {
 #[test]
 fn nonsense_is_refused_and_changes_nothing() {
     let scene = scene("01-pinned-beam-rough-floor", &[]);
-    let mut stepper = stickslip::solve::Stepper::new(std::sync::Arc::new(scene.model));
+    let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(scene.model));
     stepper.step();
     let before = stepper.state().clone();
     for nonsense in [
@@ -242,15 +246,15 @@ fn nonsense_is_refused_and_changes_nothing() {
         Intervention::Release { slave: 7 },
         Intervention::Increment(0.0),
         Intervention::Increment(f64::NAN),
-        Intervention::Friction(stickslip::scene::Friction {
+        Intervention::Friction(stickslip::model::Friction {
             angle: 90.0,
             cohesion: 0.0,
         }),
-        Intervention::Friction(stickslip::scene::Friction {
+        Intervention::Friction(stickslip::model::Friction {
             angle: 0.0,
             cohesion: -1.0,
         }),
-        Intervention::Settings(stickslip::scene::Settings {
+        Intervention::Settings(stickslip::model::Settings {
             minors: 0,
             ..Default::default()
         }),

@@ -5,14 +5,19 @@ mod common;
 
 use common::{run, scene};
 use std::sync::Arc;
-use stickslip::contact::decision::Rule;
+use stickslip::contact::table2::Rule;
+use stickslip::interface::census::{Census, census};
+use stickslip::interface::problem::Trials;
+use stickslip::linear::singular::Singular;
+use stickslip::model::{Friction, Mode, Model, Settings};
+use stickslip::model::{InitialState, Jumps, Strategy};
+use stickslip::scene::Scene;
 use stickslip::scene::condensed::{Contact, Matrix, Problem};
-use stickslip::scene::spec::{History, InitialState, Jumps, Strategy};
-use stickslip::scene::{Friction, Mode, Model, Scene, Settings};
-use stickslip::solve::census::{Census, census};
-use stickslip::solve::event::Singular;
-use stickslip::solve::frozen::Trials;
-use stickslip::solve::{Failure, Intervention, NotFound, Outcome, Stepper};
+use stickslip::scene::spec::History;
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::intervene::Intervention;
+use stickslip::step::stepper::Stepper;
+use stickslip::strategy::NotFound;
 
 /// Numbers from 0 to 1, the same every time (Knuth's MMIX generator).
 struct Numbers(u64);

@@ -8,7 +8,8 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use stickslip::scene::Scene;
-use stickslip::solve::{Outcome, Stepper};
+use stickslip::step::event::Outcome;
+use stickslip::step::stepper::Stepper;
 use stickslip::study::{self, Plan, Quantity, Reason, Run, Study, Vary, Watch, csv, figure, plot};
 
 const BEAM: &str = "01-pinned-beam-rough-floor";

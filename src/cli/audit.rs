@@ -7,8 +7,10 @@ use crate::debug::audit::{Audit, Found};
 use crate::debug::judged;
 use crate::debug::report;
 use crate::debug::snapshot::{Applied, Snapshot};
-use crate::scene::{Model, Scene};
-use crate::solve::{Outcome, Stepper};
+use crate::model::Model;
+use crate::scene::Scene;
+use crate::step::event::Outcome;
+use crate::step::stepper::Stepper;
 use std::path::Path;
 use std::sync::Arc;
 

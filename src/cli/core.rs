@@ -10,9 +10,10 @@ use crate::debug::diagnosis::cycling;
 use crate::debug::export::{self, Origin};
 use crate::debug::files::{self, Output};
 use crate::debug::report;
+use crate::model::{AtCycle, AtLimit, Strategy};
 use crate::scene::Scene;
-use crate::scene::spec::{AtCycle, AtLimit, Strategy};
-use crate::solve::{Failure, Outcome, Stepper};
+use crate::step::event::{Failure, Outcome};
+use crate::step::stepper::Stepper;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -85,7 +86,7 @@ fn text(scene: &Scene) -> Result<String, String> {
     if scene.model.settings.at_cycle != AtCycle::Stop {
         tell("settings.at_cycle was put aside; with it the scene may get past this cycle");
     }
-    let (at, load) = (stepper.event().position, stepper.state().aim);
+    let (at, load) = (stepper.event().position, stepper.state().target);
     let problem = stepper
         .frozen()
         .and_then(|problem| cycling(problem, &cycle))

@@ -4,10 +4,10 @@ use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
 use super::{Error, Exit, SetArgs, say, tell};
-use crate::contact::strategy::limit;
 use crate::debug::files;
+use crate::model::{BoundUpdate, Strategy};
 use crate::scene::builtin;
-use crate::scene::spec::{FrictionLimit, Strategy};
+use crate::strategy::limit;
 use crate::study::map::{self, Cell, Map};
 use crate::study::plan::product;
 use crate::study::random::{self, NODES, Population};
@@ -312,7 +312,7 @@ fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
 
 /// Whether T_max may lag or stand in the matrix: other strategies need it there, or choose.
 fn lags(strategy: Strategy) -> bool {
-    strategy != Strategy::Ladder && limit(strategy, FrictionLimit::Lagged) == FrictionLimit::Lagged
+    strategy != Strategy::Ladder && limit(strategy, BoundUpdate::Lagged) == BoundUpdate::Lagged
 }
 
 fn tell_survey(survey: &Survey) {

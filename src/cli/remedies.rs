@@ -4,7 +4,8 @@
 use super::{Error, Exit, SceneArgs, say, tell};
 use crate::debug::remedies::{self, COLUMNS, End};
 use crate::debug::report;
-use crate::solve::{Outcome, Stepper};
+use crate::step::event::Outcome;
+use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]

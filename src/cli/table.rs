@@ -12,8 +12,8 @@
 //! (infinite where none was tested). A minor iteration that could not be solved has no rows.
 
 use crate::debug::report;
-use crate::scene::Model;
-use crate::solve::{Event, Failure, Outcome};
+use crate::model::Model;
+use crate::step::event::{Event, Failure, Outcome};
 use crate::study::csv::field;
 use std::fmt::Write;
 

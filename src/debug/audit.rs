@@ -6,9 +6,10 @@
 
 use crate::contact::feet::place;
 use crate::contact::judge::{Finding, Law};
-use crate::scene::Model;
-use crate::scene::model::{BodyKind, Solid};
-use crate::solve::{Outcome, Stepper};
+use crate::model::Model;
+use crate::model::{BodyKind, Solid};
+use crate::step::event::Outcome;
+use crate::step::stepper::Stepper;
 
 /// Points of every edge of an outline, for the search for nodes inside it.
 const POINTS: usize = 8;
@@ -125,7 +126,7 @@ fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
             continue;
         };
         let slaves: Vec<_> = model
-            .slaves
+            .contacts
             .iter()
             .filter(|s| body.nodes.contains(&s.node))
             .collect();

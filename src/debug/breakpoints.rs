@@ -5,7 +5,7 @@
 
 use crate::debug::report;
 use crate::debug::strip::{Kind, Strip};
-use crate::scene::{Mode, Model};
+use crate::model::{Mode, Model};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

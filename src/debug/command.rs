@@ -9,9 +9,10 @@ use crate::debug::breakpoints::Condition;
 use crate::debug::lesson;
 use crate::debug::tree::Tree;
 use crate::debug::watches::{Quantity, Watch};
-use crate::scene::{Mode, Model, Scene, paths};
-use crate::solve::census::MOST;
-use crate::solve::{Intervention, Start};
+use crate::interface::census::MOST;
+use crate::model::{Mode, Model};
+use crate::scene::{Scene, paths};
+use crate::step::intervene::{Intervention, Start};
 use crate::study::Vary;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -929,7 +930,7 @@ pub fn increment(word: &str) -> Result<f64, String> {
 fn chosen(word: Option<&str>, context: &Context) -> Result<usize, String> {
     match word {
         Some(word) => exact(word, context),
-        None if context.selected < slaves(context)?.slaves.len() => Ok(context.selected),
+        None if context.selected < slaves(context)?.contacts.len() => Ok(context.selected),
         None => Err("this scene has no slave nodes".into()),
     }
 }
@@ -992,7 +993,7 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, String> {
         .position(|node| node.name == word)
         .or(alias);
     if let Some(slave) = model
-        .slaves
+        .contacts
         .iter()
         .position(|slave| Some(slave.node) == node)
     {
@@ -1014,7 +1015,7 @@ fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, String> {
     let mut nodes = Vec::new();
     for word in words.filter(|word| !word.is_empty()) {
         let counted = word.parse::<usize>().ok().and_then(|n| n.checked_sub(1));
-        let count = slaves(context)?.slaves.len();
+        let count = slaves(context)?.contacts.len();
         let slave = match (exact(word, context), counted) {
             (Ok(slave), _) => slave,
             (Err(_), Some(place)) if place < count => place,
@@ -1039,8 +1040,8 @@ fn find(word: &str, context: &Context) -> Result<usize, String> {
         return Ok(slave);
     }
     let model = slaves(context)?;
-    let count = model.slaves.len();
-    let hit = |slave: &usize| model.nodes[model.slaves[*slave].node].name.contains(word);
+    let count = model.contacts.len();
+    let hit = |slave: &usize| model.nodes[model.contacts[*slave].node].name.contains(word);
     (1..=count)
         .map(|step| (context.selected + step) % count)
         .find(hit)
@@ -1055,7 +1056,7 @@ fn find(word: &str, context: &Context) -> Result<usize, String> {
 /// Names of the slave nodes, by slave number.
 fn names(model: &Model) -> impl Iterator<Item = &str> {
     model
-        .slaves
+        .contacts
         .iter()
         .map(|slave| model.nodes[slave.node].name.as_str())
 }
@@ -1064,7 +1065,7 @@ fn names(model: &Model) -> impl Iterator<Item = &str> {
 fn some_names(model: &Model) -> String {
     const SHOWN: usize = 4;
     let mut list = names(model).take(SHOWN).collect::<Vec<_>>().join(", ");
-    if model.slaves.len() > SHOWN {
+    if model.contacts.len() > SHOWN {
         list += ", …";
     }
     list
@@ -1183,8 +1184,8 @@ pub fn markdown() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::model::{Node, Slave};
-    use crate::scene::{Friction, Settings};
+    use crate::model::{Contact, Node};
+    use crate::model::{Friction, Settings};
 
     fn model() -> Model {
         let names = ["beam.1", "beam.4", "beam.5"];
@@ -1194,7 +1195,7 @@ mod tests {
                 at: [0.0; 2],
             })
             .into();
-        let slave = |node| Slave {
+        let slave = |node| Contact {
             node,
             surfaces: vec![],
             friction: Friction::default(),
@@ -1207,7 +1208,7 @@ mod tests {
             nodes,
             bodies: vec![],
             surfaces: vec![],
-            slaves: vec![slave(1), slave(2)],
+            contacts: vec![slave(1), slave(2)],
             dofs: Default::default(),
             loads: vec![],
             prescribed: vec![],
@@ -1217,6 +1218,7 @@ mod tests {
             jumps: Default::default(),
             settings: Settings::default(),
             monitors: vec![],
+            budget: 1e9,
             length: 1.0,
         }
     }
@@ -1473,7 +1475,9 @@ mod tests {
     #[test]
     fn branches_complete_by_number_and_by_label() {
         let model = std::sync::Arc::new(Scene::open("osc-two6", &[]).unwrap().model);
-        let start = crate::solve::Stepper::new(model.clone()).state().clone();
+        let start = crate::step::stepper::Stepper::new(model.clone())
+            .state()
+            .clone();
         let tree = Tree::new(model, start, 1 << 20);
         let context = Context {
             tree: Some(&tree),

@@ -10,8 +10,8 @@ use crate::debug::report;
 use crate::debug::session::Frame;
 use crate::debug::strip::Strip;
 use crate::debug::tree::Tree;
-use crate::scene::{Mode, Model};
-use crate::solve::Position;
+use crate::model::{Mode, Model};
+use crate::step::event::Position;
 
 /// States that differ by less, relatively, are the same.
 pub const SAME: f64 = 1e-7;

@@ -1,12 +1,13 @@
 //! The core of a cycle: the fewest nodes that still cycle when all others go on for ever with what they do.
 //!
 //! A frozen interface problem that cycles is shrunk by giving every node outside a trial set the equations of what it
-//! brings ([`Frozen::reduced`]) and running Table 2 over what is left.
+//! brings ([`InterfaceProblem::reduced`]) and running Table 2 over what is left.
 
-use crate::scene::Mode;
-use crate::solve::event::Cycle;
-use crate::solve::frozen::{Frozen, Trials};
-use crate::solve::state::{NodeState, Trail};
+use crate::contact::state::ContactState;
+use crate::interface::problem::{InterfaceProblem, Trials};
+use crate::model::Mode;
+use crate::step::minor_history::Cycle;
+use crate::step::minor_history::MinorHistory;
 
 /// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
 const EXHAUSTIVE: usize = 10;
@@ -24,7 +25,7 @@ pub struct Core {
     /// Places of its nodes among those of the whole problem.
     pub places: Vec<usize>,
     /// The problem of these nodes alone; their states are where the cycle starts from.
-    pub problem: Frozen,
+    pub problem: InterfaceProblem,
     /// Its cycle; members by place in `problem`.
     pub cycle: Cycle,
 }
@@ -32,7 +33,7 @@ pub struct Core {
 impl Core {
     /// Its problem at a point of the cycle, where the T_max of all rounds has come to rest: of the points of one round,
     /// that into which the nodes bring least.
-    pub fn on_cycle(&self) -> Frozen {
+    pub fn on_cycle(&self) -> InterfaceProblem {
         let mut nodes = self.problem.states();
         let mut around = vec![nodes.clone()];
         if let Some(mut trials) = Trials::new(&self.problem) {
@@ -46,15 +47,15 @@ impl Core {
                     break;
                 };
                 let limits =
-                    |nodes: &[NodeState]| nodes.iter().map(|n| n.t_max).collect::<Vec<_>>();
+                    |nodes: &[ContactState]| nodes.iter().map(|n| n.t_max).collect::<Vec<_>>();
                 if limits(first) == limits(last) {
                     break;
                 }
                 around.drain(..around.len() - 1);
             }
         }
-        let brings = |nodes: &&Vec<NodeState>| {
-            let of = |n: &NodeState| match n.mode {
+        let brings = |nodes: &&Vec<ContactState>| {
+            let of = |n: &ContactState| match n.mode {
                 Mode::Free => 0,
                 Mode::Fixed => 1 + u32::from(n.ratio != 0.0),
                 Mode::Sliding => 2 + u32::from(n.ratio != 0.0),
@@ -72,7 +73,7 @@ impl Core {
 }
 
 /// Shrinks a problem that cycles from what its nodes bring; none where it does not, or where too many nodes take part.
-pub fn core(whole: &Frozen) -> Option<Core> {
+pub fn core(whole: &InterfaceProblem) -> Option<Core> {
     let start = cycle(whole)?;
     let mut members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
     if members.len() > MOST {
@@ -121,10 +122,10 @@ fn changes(pattern: &[Mode]) -> bool {
 
 /// The cycle into which the minor iterations of a frozen problem run; none where they settle or cannot be solved, or
 /// where the settings' limit of minor iterations is too few to tell. Members are places in the problem.
-pub fn cycle(problem: &Frozen) -> Option<Cycle> {
+pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
     let mut nodes = problem.states();
     let mut trials = Trials::new(problem)?;
-    let mut trail = Trail::default();
+    let mut trail = MinorHistory::default();
     for minor in 1..=problem.settings.minors {
         trail.push(&nodes);
         let (_, settled) = trials.minor(&mut nodes)?;

@@ -1,16 +1,17 @@
 //! Why the minor iterations cycle, and what gets out: everything that can be said of a cycle from its frozen interface
 //! problem, as data and in words.
 
-use crate::contact::decision::{Rule, Tested};
+use crate::contact::record::ContactRecord;
+use crate::contact::state::ContactState;
+use crate::contact::table2::{Rule, Tested};
 use crate::debug::core::{Core, core, cycle};
 use crate::debug::influence::{Influence, influences};
 use crate::debug::report;
-use crate::scene::spec::{FrictionLimit, SlipCount};
-use crate::scene::{Mode, Model};
-use crate::solve::census::{Census, MOST, census};
-use crate::solve::event::{Cycle, NodeRecord};
-use crate::solve::frozen::{Assumed, Condition, Frozen, Trials};
-use crate::solve::state::NodeState;
+use crate::interface::census::{Census, MOST, census};
+use crate::interface::problem::{Assumed, Condition, InterfaceProblem, Trials};
+use crate::model::{BoundUpdate, SlipCount};
+use crate::model::{Mode, Model};
+use crate::step::minor_history::Cycle;
 
 /// Most nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size. Of a scene
 /// with more, those that take part in the cycle are looked at ([`cycling`]).
@@ -30,7 +31,7 @@ pub struct Diagnosis {
     /// The problem of all nodes that take part, or of the core where those are too many for a census; the other nodes go
     /// on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
     /// few enough.
-    pub problem: Frozen,
+    pub problem: InterfaceProblem,
     /// What is consistent in it; none where even the core is too large.
     pub census: Option<Census>,
     pub cause: Cause,
@@ -42,7 +43,7 @@ pub struct Diagnosis {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
     /// What it found at each node.
-    pub records: Vec<NodeRecord>,
+    pub records: Vec<ContactRecord>,
     /// For each node whose mode it changes, in the first [`MOST_PHASES`] of them: the change, since the iteration before, that did most to what was tested.
     pub pushes: Vec<Push>,
 }
@@ -91,7 +92,7 @@ pub enum Way {
 impl Diagnosis {
     /// Diagnoses a problem whose nodes' states start a cycle; none where they do not, or where it has more than
     /// [`MOST_NODES`] nodes.
-    pub fn of(problem: &Frozen) -> Option<Diagnosis> {
+    pub fn of(problem: &InterfaceProblem) -> Option<Diagnosis> {
         if problem.nodes.len() > MOST_NODES {
             return None;
         }
@@ -131,7 +132,7 @@ impl Diagnosis {
 
 /// The problem that goes round in a cycle: the whole one, or where that has many nodes only those that take part, all others
 /// going on with what they do. None where that is singular, or too large still. The states are where the cycle starts.
-pub fn cycling(problem: Frozen, cycle: &Cycle) -> Option<Frozen> {
+pub fn cycling(problem: InterfaceProblem, cycle: &Cycle) -> Option<InterfaceProblem> {
     if problem.nodes.len() <= MOST_NODES {
         return Some(problem);
     }
@@ -147,7 +148,7 @@ pub fn cycling(problem: Frozen, cycle: &Cycle) -> Option<Frozen> {
 }
 
 /// The nodes that can do one thing or another, by place.
-pub fn undecided(problem: &Frozen) -> Vec<usize> {
+pub fn undecided(problem: &InterfaceProblem) -> Vec<usize> {
     let choices = |place: &usize| problem.nodes[*place].choices().len();
     let all = 0..problem.nodes.len();
     all.filter(|place| choices(place) > 1).collect()
@@ -162,7 +163,7 @@ pub fn too_many(cycle: &Cycle) -> String {
 }
 
 /// One period of the iterations, with who pushed whom.
-fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
+fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
     let mut trials = Trials::new(problem)?;
     let mut nodes = problem.states();
     // The iteration before the first is the last of the period.
@@ -194,9 +195,9 @@ fn phases(problem: &Frozen, period: u32) -> Option<Vec<Phase>> {
 
 fn push(
     all: &[Influence],
-    before: &[NodeState],
-    now: &[NodeState],
-    records: &[NodeRecord],
+    before: &[ContactState],
+    now: &[ContactState],
+    records: &[ContactRecord],
     node: usize,
 ) -> Option<Push> {
     let tested = fired(records[node].decision.rule)?;
@@ -231,7 +232,12 @@ fn fired(rule: Rule) -> Option<Tested> {
     }
 }
 
-fn cause(whole: &Frozen, phases: &[Phase], problem: &Frozen, census: Option<&Census>) -> Cause {
+fn cause(
+    whole: &InterfaceProblem,
+    phases: &[Phase],
+    problem: &InterfaceProblem,
+    census: Option<&Census>,
+) -> Cause {
     let Some(census) = census else {
         return Cause::Unknown;
     };
@@ -264,8 +270,8 @@ fn cause(whole: &Frozen, phases: &[Phase], problem: &Frozen, census: Option<&Cen
 }
 
 /// Tries what can be tried on the frozen problem alone.
-fn ways(problem: &Frozen, census: Option<&Census>) -> Vec<(Way, bool)> {
-    let settles = |changed: &Frozen| cycle(changed).is_none() && runs(changed);
+fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(Way, bool)> {
+    let settles = |changed: &InterfaceProblem| cycle(changed).is_none() && runs(changed);
     let mut ways = Vec::new();
     for number in 0..census.map_or(0, |c| c.answers.len()) {
         if let Some(started) = census.and_then(|census| started(problem, census, number)) {
@@ -273,8 +279,8 @@ fn ways(problem: &Frozen, census: Option<&Census>) -> Vec<(Way, bool)> {
         }
     }
     let mut other = problem.clone();
-    if problem.settings.t_max == FrictionLimit::Lagged {
-        other.settings.t_max = FrictionLimit::Consistent;
+    if problem.settings.t_max == BoundUpdate::Lagged {
+        other.settings.t_max = BoundUpdate::Consistent;
         ways.push((Way::ConsistentLimit, settles(&other)));
     }
     let mut other = problem.clone();
@@ -287,7 +293,11 @@ fn ways(problem: &Frozen, census: Option<&Census>) -> Vec<(Way, bool)> {
 }
 
 /// The problem with its nodes' states at a consistent state of the census.
-pub fn started(problem: &Frozen, census: &Census, number: usize) -> Option<Frozen> {
+pub fn started(
+    problem: &InterfaceProblem,
+    census: &Census,
+    number: usize,
+) -> Option<InterfaceProblem> {
     let answer = &census.answers.get(number)?.answer;
     let mut started = problem.clone();
     for (node, found) in started.nodes.iter_mut().zip(&answer.nodes) {
@@ -300,7 +310,7 @@ pub fn started(problem: &Frozen, census: &Census, number: usize) -> Option<Froze
 }
 
 /// Whether the minor iterations settle within the settings' limit.
-fn runs(problem: &Frozen) -> bool {
+fn runs(problem: &InterfaceProblem) -> bool {
     let mut nodes = problem.states();
     let Some(mut trials) = Trials::new(problem) else {
         return false;
@@ -311,11 +321,11 @@ fn runs(problem: &Frozen) -> bool {
 }
 
 /// The diagnosis in words, a line each, most important first. Nodes are named as the scene names them.
-pub fn words(model: &Model, problem: &Frozen, diagnosis: &Diagnosis) -> Vec<String> {
+pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Vec<String> {
     let name = |place: usize| report::slave(model, problem.nodes[place].slave);
     let studied = |place: usize| report::slave(model, diagnosis.problem.nodes[place].slave);
     // Nodes that were left out of the problem, and those of it that were left out of the census.
-    let left_out = model.slaves.len() > problem.nodes.len()
+    let left_out = model.contacts.len() > problem.nodes.len()
         || undecided(problem).len() > diagnosis.problem.nodes.len();
     let mut lines = vec![format!(
         "why: {}",

@@ -8,9 +8,11 @@
 
 use super::report;
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
+use crate::linear::norms::Norms;
+use crate::linear::singular::{Motion, Singular};
 use crate::scene::{Scene, paths};
-use crate::solve::event::{Motion, Singular};
-use crate::solve::{Failure, Norms, Status};
+use crate::step::event::Failure;
+use crate::step::state::Status;
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
 
@@ -292,7 +294,7 @@ fn status(status: &Status) -> String {
         Failure::Diverged { .. } => return "diverged".into(),
         Failure::Leapt { .. } => return "jumps".into(),
         Failure::RoundOff { .. } => return "round-off".into(),
-        Failure::Jammed { slave, .. } => Failure::Jammed { slave, gap: 0.0 },
+        Failure::OverConstrained { slave, .. } => Failure::OverConstrained { slave, gap: 0.0 },
         Failure::Singular(Singular::Rigid { motions }) => {
             let motion = |m: &Motion| match m {
                 Motion::Translation(_) => "moves",

@@ -1,7 +1,7 @@
 //! A frozen interface problem written out as a scene of its own: a condensed scene
 //! ([`crate::scene::condensed`]) whose minor iterations are those of the problem.
 //!
-//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`Relation`]); S* moves by
+//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`InterfaceResponse`]); S* moves by
 //! v + p relative to S, with what is prescribed, p. In the scene the slave node moves by u = −(v + p) over a floor at
 //! rest, under F = F₀ + ΔF. Without the springs,
 //!
@@ -13,16 +13,20 @@
 //! The first exists unless something is rigid, the second unless something is loose; where both do, the first is
 //! written. No file leaves here that has not been read back and stepped beside the problem ([`compared`]).
 
+use crate::contact::record::{ContactRecord, Forced};
 use crate::debug::core::Core;
 use crate::debug::report;
+use crate::interface::problem::{InterfaceProblem, ProblemNode, Trials};
+use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
+use crate::model::InitialState;
+use crate::model::{Mode, Model, Settings};
 use crate::scene::condensed::{Contact, Matrix, Problem, at_once};
-use crate::scene::spec::InitialState;
-use crate::scene::{Mode, Model, Scene, Settings, limits};
-use crate::solve::condensed::Relation;
-use crate::solve::event::{Cycle, Failure, Forced, NodeRecord, Position};
-use crate::solve::frozen::{Frozen, FrozenNode, Trials};
-use crate::solve::{Outcome, Stepper};
+use crate::scene::{Scene, limits};
+use crate::step::event::Outcome;
+use crate::step::event::{Failure, Position};
+use crate::step::minor_history::Cycle;
+use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
 /// From this size on of the inverse (relative to the springs) that makes one of the two matrices, too many digits are
@@ -115,7 +119,7 @@ pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Resul
 }
 
 /// The nodes of a problem that a file can have: those over a surface, and with something that moves.
-pub fn writable(problem: &Frozen) -> Vec<usize> {
+pub fn writable(problem: &InterfaceProblem) -> Vec<usize> {
     let can = |place: &usize| {
         let site = &problem.nodes[*place].site;
         site.gap.is_finite() && site.moves != [false; 2]
@@ -128,7 +132,7 @@ pub fn writable(problem: &Frozen) -> Vec<usize> {
 ///
 /// # Errors
 /// Why there is none.
-pub fn whole(model: &Model, origin: &Origin, problem: &Frozen) -> Result<String, String> {
+pub fn whole(model: &Model, origin: &Origin, problem: &InterfaceProblem) -> Result<String, String> {
     let here = writable(problem);
     if here.is_empty() {
         return Err("no slave node is over a surface, so there is no interface problem".into());
@@ -161,7 +165,7 @@ pub fn whole(model: &Model, origin: &Origin, problem: &Frozen) -> Result<String,
 /// The file: stiffness where that exists and steps as the problem does, else compliance.
 fn text(
     model: &Model,
-    problem: &Frozen,
+    problem: &InterfaceProblem,
     title: String,
     mut head: Vec<String>,
 ) -> Result<String, String> {
@@ -242,8 +246,8 @@ fn text(
 }
 
 /// A contact as it stands.
-fn contact(problem: &Frozen, place: usize, id: &str, load: [f64; 2]) -> Contact {
-    let FrozenNode {
+fn contact(problem: &InterfaceProblem, place: usize, id: &str, load: [f64; 2]) -> Contact {
+    let ProblemNode {
         site,
         friction,
         state,
@@ -288,7 +292,7 @@ fn settings(of: &Settings) -> Settings {
 }
 
 /// The scene's diagonal is the length that tolerances are parts of, in the file too.
-fn spacing(problem: &Frozen) -> f64 {
+fn spacing(problem: &InterfaceProblem) -> f64 {
     match problem.nodes.len() {
         1 => problem.length / 2.0,
         count => problem.length / (count - 1) as f64,
@@ -298,8 +302,8 @@ fn spacing(problem: &Frozen) -> f64 {
 type Parts = (Matrix, Vec<f64>, Vec<[f64; 2]>);
 
 /// K, free and loads; none where something is rigid.
-fn stiffness(problem: &Frozen) -> Option<Parts> {
-    let Relation {
+fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
+    let InterfaceResponse {
         stiffness: k,
         start,
         response,
@@ -319,7 +323,7 @@ fn stiffness(problem: &Frozen) -> Option<Parts> {
         .iter()
         .flat_map(|node| node.prescribed)
         .map(|p| -p);
-    let load = |(place, node): (usize, &FrozenNode)| {
+    let load = |(place, node): (usize, &ProblemNode)| {
         [
             -c[2 * place] - node.state.f_n,
             -c[2 * place + 1] - node.state.f_t,
@@ -334,8 +338,8 @@ fn stiffness(problem: &Frozen) -> Option<Parts> {
 }
 
 /// W, free and no loads; none where something is loose.
-fn compliance(problem: &Frozen) -> Option<Parts> {
-    let Relation {
+fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
+    let InterfaceResponse {
         stiffness: k,
         start,
         response,
@@ -390,7 +394,7 @@ fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
 }
 
 /// Ids for the nodes: their names, with - for what no id may have in it, each once.
-fn ids(model: &Model, problem: &Frozen) -> Vec<String> {
+fn ids(model: &Model, problem: &InterfaceProblem) -> Vec<String> {
     let plain = |c: char| {
         if c.is_alphanumeric() || c == '_' {
             c
@@ -446,7 +450,7 @@ fn wrapped(text: &str) -> Vec<String> {
 ///
 /// # Errors
 /// Where the two part.
-pub fn compared(problem: &Frozen, text: &str) -> Result<f64, String> {
+pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, String> {
     let scene = Scene::from_text("what would be written", text, &[]).map_err(|e| e.to_string())?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let mut trials = Trials::new(problem).ok_or("no memory")?;
@@ -472,7 +476,7 @@ pub fn compared(problem: &Frozen, text: &str) -> Result<f64, String> {
             return Err(format!("minor iteration {minor} cannot be solved"));
         }
         for (found, wanted) in event.nodes.iter().zip(&records) {
-            let modes = |r: &NodeRecord| (r.decision.before, r.decision.next);
+            let modes = |r: &ContactRecord| (r.decision.before, r.decision.next);
             worst = worst.max(difference(problem, found, wanted));
             if modes(found) != modes(wanted) || worst > CLOSE {
                 return Err(format!(
@@ -487,7 +491,7 @@ pub fn compared(problem: &Frozen, text: &str) -> Result<f64, String> {
     Ok(worst)
 }
 
-fn difference(problem: &Frozen, a: &NodeRecord, b: &NodeRecord) -> f64 {
+fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) -> f64 {
     let off = |a: f64, b: f64, size: f64| {
         if a == b {
             0.0

@@ -4,10 +4,11 @@
 //! that changed. With M the matrix of the later one, and δ_j the amount by which the earlier answer misses row j of it,
 //! the answers differ by `Σ_j M⁻¹ e_j δ_j`, exactly: each term is what node j's change did.
 
+use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, Motion};
-use crate::solve::frozen::{Frozen, Trials};
-use crate::solve::minor::{self, Given};
-use crate::solve::state::NodeState;
+use crate::interface::kinematics::NodeIncrement;
+use crate::interface::minor;
+use crate::interface::problem::{InterfaceProblem, Trials};
 
 /// What one node's change did to another node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,9 +25,9 @@ pub struct Influence {
 /// What the change of every node did to each of the nodes `targets`, from the iteration that the nodes go into with
 /// `before` to that with `after`; nodes that changed nothing are left out. None where either has no solution.
 pub fn influences(
-    problem: &Frozen,
-    before: &[NodeState],
-    after: &[NodeState],
+    problem: &InterfaceProblem,
+    before: &[ContactState],
+    after: &[ContactState],
     targets: &[usize],
 ) -> Option<Vec<Vec<Influence>>> {
     let mut trials = Trials::new(problem)?;
@@ -68,7 +69,7 @@ pub fn influences(
     Some(found)
 }
 
-fn left_side(row: &Equation, given: &Given) -> f64 {
+fn left_side(row: &Equation, given: &NodeIncrement) -> f64 {
     let motion = match row.motion {
         Motion::None => 0.0,
         Motion::Normal => given.motion[0],

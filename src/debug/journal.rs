@@ -11,7 +11,7 @@ use crate::debug::files;
 use crate::debug::session::Session;
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::scene::{Scene, SceneError, Spec, read};
-use crate::solve::State;
+use crate::step::state::State;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Write as _};
 use std::fs::File;

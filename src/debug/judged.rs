@@ -2,7 +2,7 @@
 
 use crate::contact::judge::{Finding, Law, Numbers};
 use crate::debug::report::slave;
-use crate::scene::Model;
+use crate::model::Model;
 
 /// What a finding says, as a part of a sentence.
 pub fn finding(model: &Model, finding: &Finding) -> String {

@@ -9,6 +9,7 @@
 //!
 //! Pushes and findings are kept by place (branch and step on its line), which never changes its meaning.
 
+use crate::contact::state::ContactState;
 use crate::debug::command::Exported;
 use crate::debug::core::{core, cycle};
 use crate::debug::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
@@ -18,12 +19,14 @@ use crate::debug::influence::{Influence, influences};
 use crate::debug::remedies::{self, Trial};
 use crate::debug::report;
 use crate::debug::smaller::smaller;
-use crate::scene::{Mode, Model};
-use crate::solve::census::{Census, MOST, census};
-use crate::solve::event::Cycle;
-use crate::solve::frozen::Frozen;
-use crate::solve::state::NodeState;
-use crate::solve::{Failure, Intervention, Outcome, Start, State, Status, Stepper};
+use crate::interface::census::{Census, MOST, census};
+use crate::interface::problem::InterfaceProblem;
+use crate::model::{Mode, Model};
+use crate::step::event::{Failure, Outcome};
+use crate::step::intervene::{Intervention, Start};
+use crate::step::minor_history::Cycle;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -57,7 +60,7 @@ pub struct Finding {
     /// Whether the minor iterations cycle from here.
     pub cycles: bool,
     /// The problem that the census was held over.
-    pub problem: Option<Frozen>,
+    pub problem: Option<InterfaceProblem>,
     pub census: Option<Census>,
 }
 
@@ -65,7 +68,7 @@ impl Finding {
     /// The starts that lead to a consistent state of the census; none where there is no such state.
     pub fn starts(&self, number: usize) -> Option<Vec<Start>> {
         let started = started(self.problem.as_ref()?, self.census.as_ref()?, number)?;
-        let start = |node: &crate::solve::frozen::FrozenNode| Start {
+        let start = |node: &crate::interface::problem::ProblemNode| Start {
             slave: node.slave,
             mode: node.state.mode,
             t_max: node.state.t_max,
@@ -370,7 +373,7 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
 /// What pushed a node in the iteration that comes after the way; none where that cannot be told.
 fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
     stepper.restore(&way.state);
-    let mut before: Vec<NodeState> = Vec::new();
+    let mut before: Vec<ContactState> = Vec::new();
     for (place, step) in way.steps.iter().enumerate() {
         if place == way.before {
             before.clone_from(&stepper.state().nodes);
@@ -396,7 +399,7 @@ fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
 }
 
 /// States of a problem's nodes among those of all slave nodes.
-fn pick(problem: &Frozen, nodes: &[NodeState]) -> Vec<NodeState> {
+fn pick(problem: &InterfaceProblem, nodes: &[ContactState]) -> Vec<ContactState> {
     problem.nodes.iter().map(|node| nodes[node.slave]).collect()
 }
 
@@ -476,7 +479,7 @@ fn census_of(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> Finding 
 }
 
 /// What a census finds.
-fn counted(model: &Model, studied: &Frozen, head: &str) -> Finding {
+fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Finding {
     let census = match census(studied) {
         Err(why) => return nothing(&why),
         Ok(census) => census,
@@ -501,8 +504,8 @@ fn counted(model: &Model, studied: &Frozen, head: &str) -> Finding {
 fn going_round(
     stepper: &mut Stepper,
     state: &State,
-    problem: &Frozen,
-) -> Result<Option<(Frozen, Cycle)>, String> {
+    problem: &InterfaceProblem,
+) -> Result<Option<(InterfaceProblem, Cycle)>, String> {
     let by_slave = |cycle: Cycle| Cycle {
         members: cycle
             .members

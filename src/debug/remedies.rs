@@ -6,15 +6,18 @@
 //! that the chosen one can be done again in a branch.
 
 use crate::contact::judge::Law;
+use crate::contact::record::{ContactRecord, Forced};
 use crate::debug::looks;
 use crate::debug::report;
 use crate::debug::strip::Kind;
-use crate::scene::Settings;
-use crate::scene::spec::{AtCycle, FrictionLimit, ResidualMethod, Sticking, Strategy};
-use crate::solve::{
-    Event, Failure, Forced, Intervention, NodeRecord, Norms, NotFound, Outcome, State, Status,
-    Stepper,
-};
+use crate::linear::norms::Norms;
+use crate::model::Settings;
+use crate::model::{AtCycle, BoundUpdate, ResidualMethod, Sticking, Strategy};
+use crate::step::event::{Event, Failure, Outcome};
+use crate::step::intervene::Intervention;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
+use crate::strategy::NotFound;
 use std::cmp::Ordering;
 use std::time::Instant;
 
@@ -119,7 +122,7 @@ pub fn all(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
     ] {
         set(label, &|s| s.strategy = strategy);
     }
-    set("t_max consistent", &|s| s.t_max = FrictionLimit::Consistent);
+    set("t_max consistent", &|s| s.t_max = BoundUpdate::Consistent);
     let (residual, label) = match state.controls.settings.residual {
         ResidualMethod::Stress => (ResidualMethod::Accumulate, "residual accumulate"),
         ResidualMethod::Accumulate => (ResidualMethod::Stress, "residual stress"),
@@ -153,7 +156,7 @@ fn answers(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
     let answer = |number: usize| {
         let starts = finding.starts(number)?;
         const SHOWN: usize = 2;
-        let name = |s: &crate::solve::Start| {
+        let name = |s: &crate::step::intervene::Start| {
             format!("{} {}", report::slave(model, s.slave), report::mode(s.mode))
         };
         let some: Vec<String> = starts.iter().take(SHOWN).map(name).collect();
@@ -250,7 +253,7 @@ fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
 
 /// What is held, and released, after a minor iteration that did not settle.
 fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
-    let near = |record: &NodeRecord| {
+    let near = |record: &ContactRecord| {
         let margins = record.decision.tests.iter().flatten();
         let size = |tested| scale_of(tested, stepper, event);
         margins
@@ -275,8 +278,8 @@ fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
 }
 
 /// The scale of what is tested: a force or a length.
-fn scale_of(tested: crate::contact::decision::Tested, stepper: &Stepper, event: &Event) -> f64 {
-    use crate::contact::decision::Tested;
+fn scale_of(tested: crate::contact::table2::Tested, stepper: &Stepper, event: &Event) -> f64 {
+    use crate::contact::table2::Tested;
     match tested {
         Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
             event.before.scale
@@ -340,7 +343,7 @@ pub fn end_words(end: &End) -> String {
         End::Failed(Failure::MajorCycle(_)) => "majors cycle".into(),
         End::Failed(Failure::Singular(_)) => "singular".into(),
         End::Failed(Failure::Diverged { .. }) => "diverged".into(),
-        End::Failed(Failure::Jammed { .. }) => "jammed".into(),
+        End::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
         End::Failed(Failure::Refused(_)) => "refused".into(),
         End::Failed(Failure::Leapt { .. }) => "jumps".into(),
         End::Failed(Failure::RoundOff { .. }) => "round-off".into(),

@@ -1,16 +1,21 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
-use crate::contact::decision::{Decision, Rule, Tested};
+use crate::contact::table2::{Decision, Rule, Tested};
 use crate::debug::judged;
-use crate::scene::{Mode, Model};
-use crate::solve::event::{Cycle, Motion, RigidMotion, Singular};
-use crate::solve::rounds::{Round, Stop};
-use crate::solve::{Event, Failure, Intervention, Norms, NotFound, Outcome, Position, census};
+use crate::interface::census;
+use crate::linear::norms::Norms;
+use crate::linear::singular::{Motion, RigidMotion, Singular};
+use crate::model::{Mode, Model};
+use crate::step::event::{Event, Failure, Outcome, Position};
+use crate::step::intervene::Intervention;
+use crate::step::major_history::{MajorCycle, Stop};
+use crate::step::minor_history::Cycle;
+use crate::strategy::NotFound;
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
     model
-        .slaves
+        .contacts
         .get(slave)
         .map_or("?", |s| model.nodes[s.node].name.as_str())
 }
@@ -404,7 +409,7 @@ pub fn advice(failure: &Failure) -> &'static str {
         Failure::RoundOff { .. } => {
             "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid"
         }
-        Failure::Jammed { .. } => {
+        Failure::OverConstrained { .. } => {
             "to move the node out of the surface, to free its support, or to turn the surface (reverse)"
         }
     }
@@ -463,7 +468,7 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
             Norms::LOUDEST
         ),
-        Failure::Jammed { slave: s, gap } => format!(
+        Failure::OverConstrained { slave: s, gap } => format!(
             "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
             slave(model, *s),
             -gap
@@ -564,7 +569,7 @@ fn pattern(modes: &[Mode]) -> String {
 }
 
 /// A cycle of major iterations.
-pub fn major_cycle(model: &Model, round: &Round) -> String {
+pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
     let member = |(s, stops): &(usize, Vec<Stop>)| {
         let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
         let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();

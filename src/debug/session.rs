@@ -24,9 +24,14 @@ use crate::debug::strip::{Kind, Strip};
 use crate::debug::tree::{self, Tree};
 use crate::debug::watches::Watch;
 use crate::debug::worker::{Job, Message, Worker};
+use crate::linear::norms::Norms;
+use crate::model::Model;
 use crate::outside::shown;
-use crate::scene::{Model, Scene, paths};
-use crate::solve::{Event, Intervention, Norms, State, Status, Stepper};
+use crate::scene::{Scene, paths};
+use crate::step::event::Event;
+use crate::step::intervene::Intervention;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -748,7 +753,7 @@ impl Session {
     /// Asks, where it is not known yet, what pushed a slave node in the shown minor iteration, and for the diagnosis
     /// where that closed a cycle. Answers come with [`Session::gather_looks`].
     pub fn look(&mut self, slave: usize) {
-        if self.is_running() || slave >= self.model().slaves.len() {
+        if self.is_running() || slave >= self.model().contacts.len() {
             return;
         }
         let place = self.place();
@@ -810,7 +815,7 @@ impl Session {
             Some(event) if matches!(frame.state.status, Status::Failed(_)) => event.position,
             _ => frame.state.next,
         };
-        let mut origin = Origin::of(&self.scene, at, frame.state.aim);
+        let mut origin = Origin::of(&self.scene, at, frame.state.target);
         let changed = self.record().1;
         let words = changed
             .iter()

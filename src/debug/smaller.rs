@@ -2,8 +2,10 @@
 //! scene may have none however small the increment.
 
 use crate::debug::diagnosis::undecided;
-use crate::solve::census::census;
-use crate::solve::{Intervention, State, Stepper};
+use crate::interface::census::census;
+use crate::step::intervene::Intervention;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
 
 /// How often the increment is halved in search of a consistent state.
 const HALVINGS: i32 = 6;

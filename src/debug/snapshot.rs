@@ -4,12 +4,18 @@
 //! Computing it again means to start the scene and to do the same; nothing of the recorded state goes into that.
 //! Floats are written so that they read back to the same bits, NaN and the infinities included.
 
-use crate::contact::decision::Rule;
+use crate::contact::record::Forced;
+use crate::contact::table2::Rule;
 use crate::debug::differences::Differences;
 use crate::debug::files::{self, FileError};
+use crate::linear::norms::Norms;
+use crate::model::{Mode, Model};
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
-use crate::scene::{Mode, Model, Scene, SceneError, Spec, read};
-use crate::solve::{Event, Forced, Intervention, Norms, Outcome, Position, State, Status, Stepper};
+use crate::scene::{Scene, SceneError, Spec, read};
+use crate::step::event::{Event, Outcome, Position};
+use crate::step::intervene::Intervention;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -87,7 +93,7 @@ pub struct SlaveRecord {
 
 /// A rule by its name: RON has no bare words with hyphens.
 mod rule_name {
-    use crate::contact::decision::Rule;
+    use crate::contact::table2::Rule;
     use crate::debug::report;
     use serde::de::IntoDeserializer;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -287,7 +293,7 @@ pub fn compare(a: &Snapshot, b: &Snapshot) -> Differences {
 
 impl Recorded {
     fn of(model: &Model, state: &State, event: Option<&Event>) -> Recorded {
-        let slaves = (0..model.slaves.len())
+        let slaves = (0..model.contacts.len())
             .map(|s| SlaveRecord::of(model, state, event, s))
             .collect();
         let displacements = (0..model.nodes.len())
@@ -319,7 +325,7 @@ fn after(outcome: &Outcome) -> Option<Norms> {
 impl SlaveRecord {
     fn of(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
         let now = &state.nodes[slave];
-        let node = model.nodes[model.slaves[slave].node].name.clone();
+        let node = model.nodes[model.contacts[slave].node].name.clone();
         // A minor iteration that could not be solved has no records.
         match event.and_then(|e| e.nodes.get(slave)) {
             Some(found) => SlaveRecord {

@@ -3,7 +3,7 @@
 use crate::debug::command::{Command, To, Unit};
 use crate::debug::journal::{Entry, JournalError, Record, date};
 use crate::debug::report;
-use crate::scene::Model;
+use crate::model::Model;
 
 /// The story of a session.
 ///
@@ -18,7 +18,7 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
         "A session of {year:04}-{month:02}-{day:02} {hour:02}:{minute:02} UTC with stickslip {}.\n",
         header.version
     );
-    let slaves = model.slaves.len();
+    let slaves = model.contacts.len();
     let names: Vec<&str> = (0..slaves.min(6))
         .map(|s| report::slave(&model, s))
         .collect();

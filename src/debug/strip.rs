@@ -3,8 +3,11 @@
 //! Memory: [`Strip::BYTES_PER_NODE`] bytes for each slave node, and [`Strip::BYTES_PER_ITERATION`] for the iteration. An
 //! iteration that moves a node to another element adds 4 bytes a node, one that begins an increment or ends a major iteration its norms.
 
-use crate::scene::{Mode, Model};
-use crate::solve::{Event, Failure, Forced, Norms, Outcome, Position, State};
+use crate::contact::record::Forced;
+use crate::linear::norms::Norms;
+use crate::model::{Mode, Model};
+use crate::step::event::{Event, Failure, Outcome, Position};
+use crate::step::state::State;
 use std::sync::Arc;
 
 /// How a point of the history came to be.
@@ -167,7 +170,8 @@ impl Strip {
 
     /// The strip of an intervention that led from the strip before to a state.
     pub fn intervention(model: &Model, state: &State, before: &Strip) -> Strip {
-        let mark = |node: &crate::solve::state::NodeState| mark(node.mode, node.mode, node.forced);
+        let mark =
+            |node: &crate::contact::state::ContactState| mark(node.mode, node.mode, node.forced);
         Strip {
             position: before.position,
             load_factor: state.load_factor,
@@ -271,7 +275,7 @@ fn mode(bits: u8) -> Mode {
 
 /// Elements of a state's nodes; the strip's before where they are the same.
 fn elements(model: &Model, state: &State, before: Option<&Strip>) -> Arc<[u32]> {
-    let number = |node: &crate::solve::state::NodeState| match node.spot {
+    let number = |node: &crate::contact::state::ContactState| match node.spot {
         None => NOWHERE,
         Some(spot) => {
             let earlier = model.surfaces.iter().take(spot.surface);

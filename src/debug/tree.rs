@@ -9,11 +9,15 @@
 //! intervention and its monitors, and is computed again from the nearest whole one before it when it is wanted.
 //! The root, the cursor's frame and the tip of every branch are always whole.
 
+use crate::contact::record::ContactRecord;
+use crate::contact::state::ContactState;
 use crate::debug::session::Frame;
 use crate::debug::strip::{Kind, Strip};
-use crate::scene::Model;
-use crate::solve::state::{IncrementStart, NodeState};
-use crate::solve::{Event, Intervention, NodeRecord, State};
+use crate::model::Model;
+use crate::step::event::Event;
+use crate::step::intervene::Intervention;
+use crate::step::state::IncrementStart;
+use crate::step::state::State;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -379,8 +383,8 @@ fn copy(frame: &mut Frame, before: &Frame) {
     state.nodes = state.nodes.clone();
     part(&mut state.u, &before.state.u);
     part(&mut state.start, &before.state.start);
-    part(&mut state.trail, &before.state.trail);
-    part(&mut state.rounds, &before.state.rounds);
+    part(&mut state.minor_history, &before.state.minor_history);
+    part(&mut state.major_history, &before.state.major_history);
     if let Some(event) = &mut frame.event {
         *event = Arc::new(Event::clone(event));
     }
@@ -410,7 +414,7 @@ struct Ledger {
 
 impl Ledger {
     fn add(&mut self, frame: &Frame) {
-        self.bytes += frame.state.nodes.capacity() * size_of::<NodeState>();
+        self.bytes += frame.state.nodes.capacity() * size_of::<ContactState>();
         each_shared(frame, &mut |address, bytes| {
             let frames = self.shared.entry(address).or_insert(0);
             *frames += 1;
@@ -421,7 +425,7 @@ impl Ledger {
     }
 
     fn remove(&mut self, frame: &Frame) {
-        self.bytes -= frame.state.nodes.capacity() * size_of::<NodeState>();
+        self.bytes -= frame.state.nodes.capacity() * size_of::<ContactState>();
         each_shared(frame, &mut |address, bytes| {
             if let Some(frames) = self.shared.get_mut(&address) {
                 *frames -= 1;
@@ -448,9 +452,9 @@ fn each_shared(frame: &Frame, tell: &mut impl FnMut(usize, usize)) {
         + size_of_val(&start.nodes[..])
         + size_of_val(&start.history[..]);
     tell(address(start), own);
-    tell(address(&state.trail), state.trail.bytes());
+    tell(address(&state.minor_history), state.minor_history.bytes());
     if let Some(event) = &frame.event {
-        let bytes = size_of::<Event>() + event.nodes.capacity() * size_of::<NodeRecord>();
+        let bytes = size_of::<Event>() + event.nodes.capacity() * size_of::<ContactRecord>();
         tell(address(event), bytes);
     }
 }

@@ -2,16 +2,16 @@
 
 use crate::debug::report;
 use crate::debug::session::Frame;
-use crate::scene::Model;
+use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
-/// A number of the last minor iteration. Forces and lengths as [`crate::solve::NodeRecord`] has them.
+/// A number of the last minor iteration. Forces and lengths as [`crate::contact::record::ContactRecord`] has them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     Gap,
     NormalForce,
     TangentialForce,
-    FrictionLimit,
+    BoundUpdate,
     Slip,
     Margin,
     /// Relative residual before the present major iteration.
@@ -25,7 +25,7 @@ impl Quantity {
         Quantity::Gap,
         Quantity::NormalForce,
         Quantity::TangentialForce,
-        Quantity::FrictionLimit,
+        Quantity::BoundUpdate,
         Quantity::Slip,
         Quantity::Margin,
         Quantity::Residual,
@@ -38,7 +38,7 @@ impl Quantity {
             Quantity::Gap => "gap",
             Quantity::NormalForce => "f_n",
             Quantity::TangentialForce => "f_t",
-            Quantity::FrictionLimit => "t_max",
+            Quantity::BoundUpdate => "t_max",
             Quantity::Slip => "slip",
             Quantity::Margin => "margin",
             Quantity::Residual => "residual",
@@ -89,7 +89,7 @@ impl Watch {
             Quantity::Gap => found.gap,
             Quantity::NormalForce => found.f_n,
             Quantity::TangentialForce => found.f_t,
-            Quantity::FrictionLimit => found.t_max,
+            Quantity::BoundUpdate => found.t_max,
             Quantity::Slip => found.slip,
             _ => found.decision.margin(),
         })

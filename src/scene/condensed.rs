@@ -13,10 +13,8 @@
 //! y = 0, where u_n = u_y and u_t = −u_x.
 
 use super::error::{Path, Step, at};
-use super::spec::{
-    BodySpec, Friction, History, InitialState, Jumps, LoadSpec, Mode, Nodes, Settings, SlaveSpec,
-    Spec, SurfaceSpec,
-};
+use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
+use crate::model::{Friction, InitialState, Jumps, Mode, Settings};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 

@@ -2,9 +2,9 @@
 
 use super::Scene;
 use super::compile::increments;
-use super::effort::Estimate;
-use super::model::{Beam, Body, BodyKind, Elastic, Form, Linear, Model, Solid, Surface};
-use super::spec::{Solver, Update};
+use crate::linear::estimate::Estimate;
+use crate::model::{Beam, Body, BodyKind, Elastic, Form, Linear, Model, Solid, Surface};
+use crate::model::{Solver, Update};
 use std::fmt;
 
 /// What a scene costs. It prints as a table for a person who is to decide whether that is what was meant.
@@ -70,7 +70,7 @@ impl Cost {
             rotations,
             shears: model.dofs.inner - forces,
             forces,
-            interface: 2 * model.slaves.len(),
+            interface: 2 * model.contacts.len(),
             held: of_bodies - translations - rotations,
             bodies: model.bodies.iter().map(body_line).collect(),
             surfaces: model.surfaces.iter().map(surface_line).collect(),
@@ -144,7 +144,7 @@ fn beam_line(name: &str, beam: &Beam) -> String {
 }
 
 fn solid_line(name: &str, solid: &Solid) -> String {
-    use super::spec::{Law, Plane};
+    use crate::model::{Law, Plane};
     let elements = plural(solid.elements.len(), "element");
     let made_of = |m: &Elastic| {
         let law = match (m.law, m.update) {
@@ -180,10 +180,10 @@ fn surface_line(surface: &Surface) -> String {
 }
 
 fn slaves_line(model: &Model) -> String {
-    use super::spec::Mode;
+    use crate::model::Mode;
     let starts = |mode| {
         model
-            .slaves
+            .contacts
             .iter()
             .filter(|slave| slave.start == mode)
             .count()
@@ -204,7 +204,7 @@ fn slaves_line(model: &Model) -> String {
     }
     format!(
         "{}; they start {}",
-        plural(model.slaves.len(), "node"),
+        plural(model.contacts.len(), "node"),
         parts.join(", ")
     )
 }
@@ -260,7 +260,11 @@ fn without(model: &Model) -> Vec<String> {
         lines.push(format!("no unknowns on surface {}: rigid", surface.name));
     }
     for (k, surface) in model.surfaces.iter().enumerate() {
-        if !model.slaves.iter().any(|slave| slave.surfaces.contains(&k)) {
+        if !model
+            .contacts
+            .iter()
+            .any(|slave| slave.surfaces.contains(&k))
+        {
             lines.push(format!(
                 "no slave nodes on surface {}: nothing can touch it",
                 surface.name
@@ -269,16 +273,20 @@ fn without(model: &Model) -> Vec<String> {
     }
     let scene_wide = [
         (
-            model.slaves.is_empty(),
+            model.contacts.is_empty(),
             "no contact: no slave nodes are named",
         ),
         (
-            !model.slaves.is_empty() && model.slaves.iter().all(|slave| slave.friction.is_smooth()),
+            !model.contacts.is_empty()
+                && model
+                    .contacts
+                    .iter()
+                    .all(|slave| slave.friction.is_smooth()),
             "no friction: angle and cohesion are 0",
         ),
         (
-            model.slaves.iter().all(|s| s.friction.cohesion == 0.0)
-                && !model.slaves.iter().all(|s| s.friction.is_smooth()),
+            model.contacts.iter().all(|s| s.friction.cohesion == 0.0)
+                && !model.contacts.iter().all(|s| s.friction.is_smooth()),
             "no cohesion: it is 0",
         ),
         (

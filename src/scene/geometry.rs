@@ -2,7 +2,7 @@
 
 use super::error::{Fault, Path};
 use super::limits;
-use super::model::Node;
+use crate::model::Node;
 
 /// Refuses chains with an element whose nodes coincide, or whose curve folds back or stands still.
 ///

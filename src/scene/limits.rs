@@ -4,6 +4,7 @@
 //! matter of the memory that it takes ([`super::memory`], [`super::effort`]).
 
 use super::error::{Fault, Path};
+use crate::linear::estimate::bytes;
 
 /// Most bytes of a scene file: a dense matrix of 2,500 contacts to the last digit.
 pub const FILE_BYTES: usize = 512 << 20;
@@ -92,8 +93,8 @@ pub(crate) fn memory(wanted: f64, setting: Option<f64>) -> Result<(), String> {
     }
     Err(format!(
         "{} of memory at least, and {} are free; settings.memory sets what it may take (GB)",
-        super::memory::bytes(wanted),
-        super::memory::bytes(budget)
+        bytes(wanted),
+        bytes(budget)
     ))
 }
 

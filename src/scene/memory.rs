@@ -1,10 +1,9 @@
 //! How much memory a scene may take: what `settings.memory` says, or what the machine has free.
 
+use crate::linear::estimate::GIGABYTE;
 use std::fs;
 use std::sync::OnceLock;
 
-/// Bytes of a gigabyte, as settings and messages count them.
-pub const GIGABYTE: f64 = 1e9;
 /// What may be taken where nothing tells what is free, in bytes.
 const UNTOLD: f64 = 4.0 * GIGABYTE;
 
@@ -16,7 +15,7 @@ pub fn budget(setting: Option<f64>) -> f64 {
 /// Bytes that are free: of the machine, and of the group of processes that this one is confined to, if it is.
 ///
 /// It is read once, so that all solvers of a process choose the same.
-fn free() -> f64 {
+pub fn free() -> f64 {
     static FREE: OnceLock<f64> = OnceLock::new();
     *FREE.get_or_init(read_free)
 }
@@ -40,18 +39,10 @@ fn available(text: &str) -> Option<f64> {
     Some(kilobytes * 1024.0)
 }
 
-/// A number of bytes for a person.
-pub fn bytes(bytes: f64) -> String {
-    match bytes {
-        b if b >= 1e10 => format!("{:.0} GB", b / 1e9),
-        b if b >= 1e9 => format!("{:.1} GB", b / 1e9),
-        b => format!("{:.0} MB", (b / 1e6).max(1.0)),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::estimate::bytes;
 
     #[test]
     fn the_kernels_table_is_read() {

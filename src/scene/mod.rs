@@ -11,12 +11,10 @@
 pub mod builtin;
 pub mod condensed;
 pub mod cost;
-pub mod effort;
 pub mod error;
 pub mod limits;
 pub mod locate;
 pub mod memory;
-pub mod model;
 pub mod nodes;
 pub mod paths;
 pub mod read;
@@ -28,11 +26,11 @@ mod compile;
 mod curves;
 mod geometry;
 
+use crate::model::Model;
 pub use builtin::Builtin;
 pub use cost::Cost;
 pub use error::SceneError;
-pub use model::Model;
-pub use spec::{Friction, Mode, Settings, Spec};
+pub use spec::Spec;
 
 pub(crate) use compile::increments;
 pub(crate) use error::Fault;

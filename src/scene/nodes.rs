@@ -5,8 +5,8 @@ use super::curves::{arc, check_chain_count, check_per_element, intervals, line, 
 use super::error::{Fault, Path, at, did_you_mean, quoted};
 use super::geometry::distance;
 use super::limits;
-use super::model::Node;
 use super::spec::{Nodes, Point, Spec};
+use crate::model::Node;
 use std::collections::{HashMap, HashSet};
 
 /// All nodes of a scene, and every name by which they can be called.

@@ -5,10 +5,13 @@
 
 use super::error::{Path, at, nearest, quoted};
 use super::spec::{
-    AtCycle, AtLimit, Axis, Bar, BodySpec, Component, Friction, FrictionLimit, Geometry,
-    InitialState, Jumps, Law, LoadSpec, Material, Mode, MonitorSpec, Nodes, Plane, Point, Quantity,
-    Region, ResidualMethod, Scale, Settings, Side, Sides, SlipCount, Solver, Spec, Sticking,
-    Strategy, Ties, Touch, Update,
+    Bar, BodySpec, LoadSpec, Material, MonitorSpec, Nodes, Point, Quantity, Region, Scale, Side,
+    Sides, Spec,
+};
+use crate::model::{
+    AtCycle, AtLimit, Axis, BoundUpdate, Component, Friction, Geometry, InitialState, Jumps, Law,
+    Mode, Plane, ResidualMethod, Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch,
+    Update,
 };
 
 /// A value set from outside.
@@ -312,7 +315,7 @@ choices! {
     ResidualMethod { "accumulate" => ResidualMethod::Accumulate, "stress" => ResidualMethod::Stress }
     Solver { "auto" => Solver::Auto, "augmented" => Solver::Augmented, "condensed" => Solver::Condensed }
     Geometry { "consistent" => Geometry::Consistent, "frozen" => Geometry::Frozen }
-    FrictionLimit { "lagged" => FrictionLimit::Lagged, "consistent" => FrictionLimit::Consistent }
+    BoundUpdate { "lagged" => BoundUpdate::Lagged, "consistent" => BoundUpdate::Consistent }
     SlipCount { "increment" => SlipCount::Increment, "major" => SlipCount::Major }
     Sticking { "anchored" => Sticking::Anchored, "increments" => Sticking::Increments }
     Law { "svk" => Law::Svk, "neohookean" => Law::NeoHookean }

@@ -21,7 +21,7 @@
 use super::condensed::{Contact, Matrix, Problem, at_once};
 use super::limits;
 use super::locate::line_and_column;
-use super::spec::{Friction, InitialState, Mode, Settings, Solver};
+use crate::model::{Friction, InitialState, Mode, Settings, Solver};
 
 /// A friction problem in the plane.
 #[derive(Debug, Clone, PartialEq)]

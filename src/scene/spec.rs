@@ -1,9 +1,12 @@
 //! The scene file as its author writes it: one Rust type per RON construct.
 //!
-//! Nothing here is checked beyond what a type can say; [`crate::scene::model`] turns a [`Spec`] into a
-//! [`Model`](crate::scene::Model), and refuses what makes no sense. Every field is either required or has the
+//! Nothing here is checked beyond what a type can say; [`crate::model`] turns a [`Spec`] into a
+//! [`Model`](crate::model::Model), and refuses what makes no sense. Every field is either required or has the
 //! default that its comment names.
 
+use crate::model::{
+    Axis, Component, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update, least,
+};
 use serde::{Deserialize, Serialize};
 
 /// A point or a vector in the plane, `(x, y)`, in the scene's unit of length.
@@ -249,40 +252,6 @@ fn unit() -> f64 {
     1.0
 }
 
-/// How stress follows from strain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Law {
-    /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens and fails under large compression.
-    #[default]
-    Svk,
-    /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too.
-    NeoHookean,
-}
-
-/// What happens across the plane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Plane {
-    /// No strain: a long body.
-    #[default]
-    Strain,
-    /// No stress: a thin sheet.
-    Stress,
-}
-
-/// What strains and stresses are referred to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Update {
-    /// The undeformed shape: the answer does not depend on the increments.
-    #[default]
-    Total,
-    /// The shape at the last accepted increment, as in the paper: stress grows by the small-strain moduli times each
-    /// increment's strain, and the answer depends on the size of the increments (its Fig. 8). Law svk only.
-    Updated,
-}
-
 impl Material {
     /// Its id.
     pub fn id(&self) -> &str {
@@ -407,85 +376,12 @@ pub struct SlaveSpec {
     pub state: InitialState,
 }
 
-/// What a slave node brings into the first minor iteration, as of a step taken over from elsewhere. A node that starts
-/// free brings no forces. Forces that the bodies do not answer yet are out of balance, as after a major iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct InitialState {
-    /// Normal force on the slave node, along the master's outward normal n: compression positive.
-    pub f_n: f64,
-    /// Tangential force along t, which is n turned 90 degrees anticlockwise.
-    pub f_t: f64,
-    /// T_max of the first minor iteration, with its sign.
-    pub t_max: f64,
-    /// Slip u_tS* − u_tS counted so far in the increment (length).
-    pub slip: f64,
-    /// Ratio of tangential to normal travel of a node that has just touched.
-    pub ratio: f64,
-}
-
-/// Mode of interaction of a slave node with its master element (Table 1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Mode {
-    /// Apart: no interaction force.
-    #[default]
-    Free,
-    /// Touching; the tangential force is T_max.
-    Sliding,
-    /// Touching and stuck.
-    Fixed,
-}
-
-/// Coulomb friction, eqn (20).
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Friction {
-    /// Friction angle φ in degrees, 0 <= φ < 90. Default: 0.
-    #[serde(default)]
-    pub angle: f64,
-    /// Cohesion, a force per slave node. Default: 0.
-    #[serde(default)]
-    pub cohesion: f64,
-}
-
-impl Friction {
-    /// tan φ.
-    pub fn coefficient(&self) -> f64 {
-        self.angle.to_radians().tan()
-    }
-
-    /// Whether no tangential force can arise at all.
-    pub fn is_smooth(&self) -> bool {
-        self.angle == 0.0 && self.cohesion == 0.0
-    }
-}
-
 /// Restrained degrees of freedom of nodes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     pub node: String,
     pub fix: Vec<Component>,
-}
-
-/// A degree of freedom of a node. Prints as the scene file has it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Component {
-    X,
-    Y,
-    Rotation,
-}
-
-impl std::fmt::Display for Component {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Component::X => "x",
-            Component::Y => "y",
-            Component::Rotation => "rotation",
-        })
-    }
 }
 
 /// A reference load; what acts is its value times the load factor (or times `scale` of it).
@@ -553,285 +449,11 @@ pub struct History {
     pub jumps: Jumps,
 }
 
-/// What an increment does that jumps to another branch of equilibrium.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Jumps {
-    /// It is accepted whole, marked where it moved beyond what its tangent and the increments before it predict.
-    Accept,
-    /// It is cut; where the least increment still jumps, that is accepted, marked.
-    #[default]
-    Cut,
-    /// It is cut; where the least increment still jumps, the history fails.
-    Stop,
-}
-
-impl Jumps {
-    fn is_default(&self) -> bool {
-        *self == Jumps::default()
-    }
-}
-
 impl History {
     /// Size below which an increment is not cut.
     pub fn least(&self) -> f64 {
         least(self.least, self.increment)
     }
-}
-
-/// Size below which an increment of this size is not cut, if `given` does not say.
-pub fn least(given: Option<f64>, increment: f64) -> f64 {
-    given.unwrap_or(increment / LEAST)
-}
-
-/// How many times smaller than an increment the smallest is that it is cut to, where the scene does not say.
-const LEAST: f64 = 64.0;
-
-/// Choices of the method, and its limits.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Settings {
-    /// How the next modes are chosen. Default: ladder.
-    pub strategy: Strategy,
-    /// How the total force of a slave node is found after a major iteration. Default: stress.
-    pub residual: ResidualMethod,
-    /// What the minor iterations solve. Default: auto.
-    pub solver: Solver,
-    /// Whether the tangent knows that the contact geometry changes. Default: consistent.
-    pub geometry: Geometry,
-    /// How the sliding node's T_max enters the equations. Default: lagged.
-    pub t_max: FrictionLimit,
-    /// Over what the slip of Table 2's sliding row is counted. Default: increment.
-    pub slip: SlipCount,
-    /// What a fixed node holds on to. Default: anchored.
-    pub sticking: Sticking,
-    /// Where a node is held that touches within an increment. Default: auto.
-    pub touch: Touch,
-    /// What a tie in Table 2 does. Default: keep.
-    pub ties: Ties,
-    /// Most minor iterations in a major one. Default: 100.
-    pub minors: u32,
-    /// Most major iterations in an increment. Default: 60.
-    pub majors: u32,
-    /// What happens when `minors` are used up. Default: stop.
-    pub at_minor_limit: AtLimit,
-    /// What happens when the minor iterations cycle. Default: stop.
-    pub at_cycle: AtCycle,
-    /// What happens when `majors` are used up. Default: stop.
-    pub at_major_limit: AtLimit,
-    /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
-    pub tolerance: f64,
-    /// Memory that the scene may take, in GB. Default: what is free.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub memory: Option<f64>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Settings {
-            strategy: Strategy::default(),
-            residual: ResidualMethod::default(),
-            solver: Solver::default(),
-            geometry: Geometry::default(),
-            t_max: FrictionLimit::default(),
-            slip: SlipCount::default(),
-            sticking: Sticking::default(),
-            touch: Touch::default(),
-            ties: Ties::default(),
-            minors: 100,
-            majors: 60,
-            at_minor_limit: AtLimit::default(),
-            at_cycle: AtCycle::default(),
-            at_major_limit: AtLimit::default(),
-            tolerance: 1e-11,
-            memory: None,
-        }
-    }
-}
-
-/// How the modes of the next minor iteration are chosen, as README's list of strategies says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Strategy {
-    /// Table 2 first; where it cycles or cannot go on, what gets out at the least cost: `sliding`, `sliding_least`, `lemke`,
-    /// `census`, with T_max in the matrix. Where none finds a consistent state, the increment is halved, down to
-    /// `history.least`, and grows again afterwards.
-    #[default]
-    Ladder,
-    /// Table 2 as printed.
-    Table2,
-    /// Table 2, but a rough node that touches enters sliding, against its travel.
-    Sliding,
-    /// Table 2, one change at a time: of all nodes that would change, only the first does.
-    Least,
-    /// `sliding`, one change at a time.
-    SlidingLeast,
-    /// `sliding`, all changes at once; one at a time while their number does not fall.
-    Block,
-    /// Semismooth Newton on the projections of the forces; T_max stands in the matrix.
-    Newton,
-    /// Lemke's pivoting on the linear complementarity problem of Coulomb's law in the plane.
-    Lemke,
-    /// All assumptions of what the nodes do, tried; for few nodes.
-    Census,
-}
-
-impl Strategy {
-    /// All of them.
-    pub const ALL: [Strategy; 9] = [
-        Strategy::Ladder,
-        Strategy::Table2,
-        Strategy::Sliding,
-        Strategy::Least,
-        Strategy::SlidingLeast,
-        Strategy::Block,
-        Strategy::Newton,
-        Strategy::Lemke,
-        Strategy::Census,
-    ];
-
-    /// Their names, in the same order.
-    pub const NAMES: [&str; 9] = {
-        let (mut names, mut k) = ([""; 9], 0);
-        while k < names.len() {
-            names[k] = Strategy::ALL[k].name();
-            k += 1;
-        }
-        names
-    };
-
-    /// Its name in scene files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Strategy::Ladder => "ladder",
-            Strategy::Table2 => "table2",
-            Strategy::Sliding => "sliding",
-            Strategy::Least => "least",
-            Strategy::SlidingLeast => "sliding_least",
-            Strategy::Block => "block",
-            Strategy::Newton => "newton",
-            Strategy::Lemke => "lemke",
-            Strategy::Census => "census",
-        }
-    }
-}
-
-/// Where a node is held that touches within an increment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Touch {
-    /// `ratio` where a body is a mesh; `start` where all are given by numbers, as interface problems are posed.
-    #[default]
-    Auto,
-    /// Where its straight way meets the surface (ρ, eqn 14), as in the paper.
-    Ratio,
-    /// At the foot of where it was when the major iteration started: one step of Coulomb's law.
-    Start,
-}
-
-/// The paper's two residual methods ("Formulation of the residual force vector").
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ResidualMethod {
-    /// Method 1: interaction forces at the slave nodes are accumulated over the major iterations.
-    Accumulate,
-    /// Method 2: the interaction force at a slave node is the nodal force of the current stresses less the load.
-    #[default]
-    Stress,
-}
-
-/// What the minor iterations solve; all give the same to round-off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Solver {
-    /// Condensed where the bodies have many times more unknowns than the interface and their displacements there are few
-    /// enough for it to be cheaper, else augmented; the other one where only that fits the memory.
-    #[default]
-    Auto,
-    /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
-    Augmented,
-    /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
-    /// costs a dense solve of the size of the interface.
-    Condensed,
-}
-
-/// Whether the change of normal, projection and gap stands in the tangent of a major iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Geometry {
-    /// It does: major iterations converge quadratically at the end.
-    #[default]
-    Consistent,
-    /// It does not, as in the paper: they converge linearly where nodes slide.
-    Frozen,
-}
-
-/// How T_max enters the equations of a sliding node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum FrictionLimit {
-    /// From the previous minor iteration, as in the paper.
-    #[default]
-    Lagged,
-    /// tan φ ΔF_n stands in the matrix (unsymmetric); no lag.
-    Consistent,
-}
-
-/// Over what the slip of a sliding node is counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SlipCount {
-    /// Since the last converged increment, or since touch.
-    #[default]
-    Increment,
-    /// Over the present major iteration only: the literal reading of Table 2.
-    Major,
-}
-
-/// What a fixed node holds on to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Sticking {
-    /// To the point of the surface where it stuck, which it remembers: what it has gone from there, it takes back.
-    #[default]
-    Anchored,
-    /// To nothing, as in the paper: no tangential motion in a major iteration, but that the slip counted is taken back.
-    Increments,
-}
-
-/// What a tie in Table 2 does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Ties {
-    /// A tie, within the tolerance, keeps the mode that the node has.
-    #[default]
-    Keep,
-    /// The inequalities as printed, without a tolerance: F_n <= 0 opens.
-    Printed,
-}
-
-/// What happens when a limit of iterations is reached.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AtLimit {
-    /// The increment fails.
-    #[default]
-    Stop,
-    /// Go on with what there is, as the paper's studies do; the increment is marked.
-    Accept,
-}
-
-/// What happens when the minor iterations return to where they had been.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AtCycle {
-    /// The increment fails.
-    #[default]
-    Stop,
-    /// Aim the present major iteration at half the load that is left of the increment, and at half of that again,
-    /// until its minor iterations settle; the next major iteration aims at the whole again. For cycles that the
-    /// error of the linearisation makes, as where a force goes to zero. Fails where no part can be taken.
-    Damp,
 }
 
 /// A number to report after every converged increment.
@@ -863,12 +485,4 @@ pub enum Quantity {
         #[serde(default)]
         node: Option<String>,
     },
-}
-
-/// A Cartesian axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Axis {
-    X,
-    Y,
 }

@@ -13,7 +13,7 @@ use super::plan::{Case, Plan};
 use super::result::{End, Run};
 use super::run::{RunError, Watch, one, pool};
 use super::verdict::Verdict;
-use crate::scene::model::{Model, Watched};
+use crate::model::{Model, Watched};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;

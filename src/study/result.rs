@@ -2,7 +2,7 @@
 
 use super::read::Quantity;
 use super::verdict::Verdict;
-use crate::solve::Failure;
+use crate::step::event::Failure;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -72,7 +72,7 @@ pub enum Reason {
     MajorCycle,
     Singular,
     Diverged,
-    Jammed,
+    OverConstrained,
     Refused,
     NoAnswer,
     NotFound,
@@ -89,7 +89,7 @@ impl Reason {
             Reason::MajorLimit => 'M',
             Reason::Singular => 's',
             Reason::Diverged => 'd',
-            Reason::Jammed => 'j',
+            Reason::OverConstrained => 'j',
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
             Reason::RoundOff => 'r',
@@ -107,7 +107,7 @@ impl From<&Failure> for Reason {
             Failure::MajorCycle(_) => Reason::MajorCycle,
             Failure::Singular(_) => Reason::Singular,
             Failure::Diverged { .. } => Reason::Diverged,
-            Failure::Jammed { .. } => Reason::Jammed,
+            Failure::OverConstrained { .. } => Reason::OverConstrained,
             Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
             Failure::Leapt { .. } => Reason::Jump,
@@ -126,7 +126,7 @@ impl fmt::Display for Reason {
             Reason::MajorCycle => "major-cycle",
             Reason::Singular => "singular",
             Reason::Diverged => "diverged",
-            Reason::Jammed => "jammed",
+            Reason::OverConstrained => "jammed",
             Reason::Refused => "refused",
             Reason::NoAnswer => "no-answer",
             Reason::NotFound => "not-found",

@@ -13,10 +13,11 @@
 use super::random::{Drawn, Population};
 use super::result::Reason;
 use super::verdict::Verdict;
+use crate::interface::census::census;
 use crate::scene::condensed::{Matrix, Problem};
 use crate::scene::{Scene, SceneError, increments, paths};
-use crate::solve::census::census;
-use crate::solve::{Outcome, Stepper};
+use crate::step::event::Outcome;
+use crate::step::stepper::Stepper;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -149,7 +150,7 @@ fn one(problem: &Problem, scene: Scene) -> Trial {
 fn violation(problem: &Problem, stepper: &Stepper) -> f64 {
     let (model, state) = (stepper.model(), stepper.state());
     // The contacts are the slaves, in order; n is y and t is −x (`scene::condensed`).
-    let place = |s: usize| model.dofs.first[model.slaves[s].node];
+    let place = |s: usize| model.dofs.first[model.contacts[s].node];
     let slaves = 0..problem.contacts.len();
     let u: Vec<f64> = slaves
         .clone()
@@ -216,7 +217,7 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Friction;
+    use crate::model::Friction;
     use crate::scene::condensed::{Contact, at_once};
 
     /// A node on two unit springs, a load (−1, 1) along n and t, friction μ = 0.5: it slides, u_t = 0.5.

@@ -7,8 +7,8 @@ use crate::debug::command::{
 };
 use crate::debug::lesson::tutor::Kind;
 use crate::debug::lesson::{Guess, Tutor};
+use crate::model::Mode;
 use crate::outside::shown;
-use crate::scene::Mode;
 use crate::tui::branches;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
@@ -687,7 +687,7 @@ impl App {
     }
 
     fn ask(&mut self, question: Question, view: Option<&View>) {
-        let has_slaves = view.is_some_and(|view| !view.model.slaves.is_empty());
+        let has_slaves = view.is_some_and(|view| !view.model.contacts.is_empty());
         match question {
             Question::Mode if !has_slaves => self.complain("this scene has no slave nodes"),
             Question::Mode => self.overlay = Overlay::Mode,

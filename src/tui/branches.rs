@@ -189,7 +189,7 @@ fn comparison(
         theme.faint,
         of(&|side| format!("{:.1e}", side.residual)),
     ));
-    for slave in 0..view.model.slaves.len() {
+    for slave in 0..view.model.contacts.len() {
         let [a, b] = [&sides[0].nodes[slave], &sides[1].nodes[slave]];
         let style = if a.next == b.next {
             theme.text

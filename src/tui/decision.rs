@@ -1,11 +1,11 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
 
-use crate::contact::decision::{Decision, Rule, Test, Tested};
+use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::table2::{Decision, Rule, Test, Tested};
 use crate::debug::looks::Push;
 use crate::debug::report::{self, MODES, TABLE_2};
-use crate::scene::Mode;
-use crate::scene::spec::Ties;
-use crate::solve::{Forced, NodeRecord};
+use crate::model::Mode;
+use crate::model::Ties;
 use crate::tui::app::App;
 use crate::tui::draw;
 use crate::tui::layout::Pane;
@@ -27,7 +27,7 @@ const GRID: usize = 6;
 /// Draws the decision.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let count = view.model.slaves.len();
+    let count = view.model.contacts.len();
     let slave = app.selected.min(count.saturating_sub(1));
     let title = if count == 0 {
         "Decision".into()
@@ -102,7 +102,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 /// Who pushed the node since the minor iteration before: a heading, and the changes that did most to what was tested.
 fn pushes(
     slave: usize,
-    record: Option<&NodeRecord>,
+    record: Option<&ContactRecord>,
     view: &View,
     theme: &Theme,
 ) -> Vec<Line<'static>> {
@@ -182,7 +182,7 @@ fn tested(decision: &Decision) -> Tested {
 const MEASURED: usize = 13;
 
 /// All that the minor iteration found at the node, with a word on each, for the screen that has room for it.
-fn measured(record: &NodeRecord, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+fn measured(record: &ContactRecord, view: &View, theme: &Theme) -> Vec<Line<'static>> {
     let signed = |value: f64| {
         if value < 0.0 {
             long(value)
@@ -457,8 +457,8 @@ fn margin(test: &Test, theme: &Theme) -> (String, Style) {
 }
 
 /// The verdict in words.
-fn words(record: Option<&NodeRecord>, slave: usize, view: &View) -> String {
-    if view.model.slaves.is_empty() {
+fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
+    if view.model.contacts.is_empty() {
         return "This scene has no slave nodes to decide on.".into();
     }
     let next = view.mode(slave);

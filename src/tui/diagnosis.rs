@@ -2,8 +2,8 @@
 //! ones side by side, one of them selected, to start from.
 
 use crate::debug::looks::Finding;
-use crate::solve::census::Census;
-use crate::solve::frozen::NodeAnswer;
+use crate::interface::census::Census;
+use crate::interface::problem::NodeAnswer;
 use crate::tui::app::App;
 use crate::tui::draw;
 use crate::tui::layout::Pane;
@@ -146,13 +146,13 @@ fn differs(census: &Census, place: usize) -> bool {
 fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
     let mode = answer.assumed.mode();
     let letter = match answer.assumed {
-        crate::solve::frozen::Assumed::Plus => "S+",
-        crate::solve::frozen::Assumed::Minus => "S-",
-        crate::solve::frozen::Assumed::Free => "F ",
-        crate::solve::frozen::Assumed::Fixed => "X ",
+        crate::interface::problem::Assumed::Plus => "S+",
+        crate::interface::problem::Assumed::Minus => "S-",
+        crate::interface::problem::Assumed::Free => "F ",
+        crate::interface::problem::Assumed::Fixed => "X ",
     };
     let last = match mode {
-        crate::scene::Mode::Free => answer.gap,
+        crate::model::Mode::Free => answer.gap,
         _ => answer.slip,
     };
     let numbers = [answer.f_n, answer.f_t, last].map(|value| number::cell(value, 10));

@@ -18,7 +18,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Draws everything. Without a view (no scene yet) there is only the chooser.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
-    let slaves = view.map_or(0, |view| view.model.slaves.len());
+    let slaves = view.map_or(0, |view| view.model.contacts.len());
     let outcome = view.map_or(1, |view| status::outcome_lines(app, view, area.width));
     let message = footer::message_lines(app, view, area.width);
     let rows = view.map_or(0, |_| lesson::rows(app, area.width));

@@ -1,9 +1,9 @@
 //! The slave-node table: what the shown minor iteration found at every slave node.
 
-use crate::contact::decision::{Rule, Tested};
+use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::table2::{Rule, Tested};
 use crate::debug::command::{Filter, Sort};
-use crate::scene::Mode;
-use crate::solve::{Forced, NodeRecord};
+use crate::model::Mode;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::view::View;
@@ -86,7 +86,7 @@ impl Columns {
 
 /// Draws the table.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
-    let count = view.model.slaves.len();
+    let count = view.model.contacts.len();
     let selected = app.selected.min(count.saturating_sub(1));
     let order = order(app, view);
     let at = order.iter().position(|slave| *slave == selected);
@@ -146,7 +146,7 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
 
 /// The slave nodes that the table shows, in its order. The selected one is always among them.
 pub fn order(app: &App, view: &View) -> Vec<usize> {
-    let count = view.model.slaves.len();
+    let count = view.model.contacts.len();
     let selected = app.selected.min(count.saturating_sub(1));
     let next = |slave: usize| match app.hides(view, slave) {
         true => view.mode_before(slave),
@@ -180,7 +180,7 @@ pub fn order(app: &App, view: &View) -> Vec<usize> {
 /// The surface that a node is on, or the first that it may touch.
 fn surface(slave: usize, view: &View) -> Option<usize> {
     let spot = view.frame().state.nodes.get(slave)?.spot;
-    let first = || view.model.slaves[slave].surfaces.first().copied();
+    let first = || view.model.contacts[slave].surfaces.first().copied();
     spot.map(|spot| spot.surface).or_else(first)
 }
 
@@ -338,7 +338,7 @@ fn modes(
     ]
 }
 
-fn numbers(record: &NodeRecord, columns: &Columns, app: &App) -> Vec<Span<'static>> {
+fn numbers(record: &ContactRecord, columns: &Columns, app: &App) -> Vec<Span<'static>> {
     let cell = |value| number::cell(value, columns.number);
     let ratio = format!(
         "{:<width$}",
@@ -363,7 +363,7 @@ fn numbers(record: &NodeRecord, columns: &Columns, app: &App) -> Vec<Span<'stati
 }
 
 /// Tested numbers stand out where the test is a tie.
-fn number_style(column: usize, record: &NodeRecord, app: &App) -> Style {
+fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
     let tested = match column {
         0 => Tested::Gap,
         1 => Tested::NormalForce,

@@ -1,7 +1,7 @@
 //! The residual over the major iterations of the shown increment, on a log scale, with the limit it must get under.
 
 use crate::debug::report;
-use crate::solve::Norms;
+use crate::linear::norms::Norms;
 use crate::tui::app::App;
 use crate::tui::canvas::Canvas;
 use crate::tui::draw;

@@ -5,7 +5,7 @@
 
 use crate::contact::projection::tangent;
 use crate::fem::lagrange;
-use crate::scene::model::{BodyKind, Solid};
+use crate::model::{BodyKind, Solid};
 use crate::tui::app::{App, Camera};
 use crate::tui::canvas::{Canvas, Dot};
 use crate::tui::layout::Pane;
@@ -179,7 +179,7 @@ impl Window {
 
 /// Where the selected node is, if there is one and it is anywhere.
 fn selected_place(app: &App, view: &View) -> Option<Point> {
-    let slaves = &view.model.slaves;
+    let slaves = &view.model.contacts;
     let slave = slaves.get(app.selected.min(slaves.len().saturating_sub(1)))?;
     Some(view.place(slave.node)).filter(|place| place.iter().all(|x| x.is_finite()))
 }
@@ -389,7 +389,7 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     if largest == 0.0 {
         return 0.0;
     }
-    for (slave, node) in view.model.slaves.iter().zip(&event.nodes) {
+    for (slave, node) in view.model.contacts.iter().zip(&event.nodes) {
         let (n, t) = (node.normal, tangent(node.normal));
         let scale = FORCE * window.extent / largest;
         let tip = view.place(slave.node);
@@ -406,10 +406,12 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
 /// Letters of the modes at the slave nodes; the selected one is reversed and named.
 fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
     let theme = &app.theme;
-    let selected = app.selected.min(view.model.slaves.len().saturating_sub(1));
-    let others = (0..view.model.slaves.len()).filter(|slave| *slave != selected);
+    let selected = app
+        .selected
+        .min(view.model.contacts.len().saturating_sub(1));
+    let others = (0..view.model.contacts.len()).filter(|slave| *slave != selected);
     for slave in others.chain([selected]) {
-        let Some(node) = view.model.slaves.get(slave).map(|slave| slave.node) else {
+        let Some(node) = view.model.contacts.get(slave).map(|slave| slave.node) else {
             return;
         };
         let Some((x, y)) = canvas.cell(window.dot(view.place(node))) else {

@@ -1,9 +1,11 @@
 //! The top of the screen: which scene, where the solver is, and what the last minor iteration led to.
 
+use crate::contact::record::Forced;
 use crate::debug::report;
-use crate::scene::Model;
-use crate::scene::spec::Strategy;
-use crate::solve::{Event, Forced, Outcome, Status};
+use crate::model::Model;
+use crate::model::Strategy;
+use crate::step::event::{Event, Outcome};
+use crate::step::state::Status;
 use crate::tui::app::App;
 use crate::tui::view::View;
 use crate::tui::{draw, number};
@@ -190,7 +192,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
 
 /// How the user stands behind the modes, if at all.
 fn interventions(view: &View) -> Option<String> {
-    let forced = (0..view.model.slaves.len()).map(|slave| view.forced(slave));
+    let forced = (0..view.model.contacts.len()).map(|slave| view.forced(slave));
     let (mut held, mut once) = (0, 0);
     for forced in forced {
         match forced {
@@ -210,7 +212,7 @@ fn interventions(view: &View) -> Option<String> {
     let settings = (controls.settings != view.model.settings).then(|| "settings changed".into());
     let friction = view
         .model
-        .slaves
+        .contacts
         .iter()
         .zip(&controls.friction)
         .any(|(slave, now)| slave.friction != *now);
@@ -219,8 +221,12 @@ fn interventions(view: &View) -> Option<String> {
     let leads = strategy != Strategy::Table2 && state.status != Status::Finished;
     let parts = [
         leads.then(|| format!("strategy {}", strategy.name())),
-        (state.piece.cut > 0)
-            .then(|| format!("increment cut to {}", number::plain(state.piece.size()))),
+        (state.sub_increment.cut > 0).then(|| {
+            format!(
+                "increment cut to {}",
+                number::plain(state.sub_increment.size())
+            )
+        }),
         (held > 0).then(|| format!("◆ {held} held")),
         (once > 0).then(|| format!("◇ {once} forced")),
         increment,

@@ -5,7 +5,7 @@
 //! hide their grey in the background. Cyan, yellow and magenta tell the modes apart for
 //! colour-blind eyes too; red and green are left to failure and success.
 
-use crate::scene::Mode;
+use crate::model::Mode;
 use ratatui::style::{Color, Modifier, Style};
 
 /// The styles that the panes draw with.

@@ -4,8 +4,8 @@
 //! the cursor are looked at, so that the length of the history costs nothing.
 
 use crate::debug::strip::{Kind, Strip};
-use crate::scene::Mode;
-use crate::solve::{Failure, Outcome};
+use crate::model::Mode;
+use crate::step::event::{Failure, Outcome};
 use crate::tui::app::App;
 use crate::tui::draw;
 use crate::tui::layout::Pane;
@@ -32,7 +32,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let strips = view.strips;
     let mut title = title(view);
-    let count = view.model.slaves.len();
+    let count = view.model.contacts.len();
     let selected = app.selected.min(count.saturating_sub(1));
     let rows = usize::from(area.height.saturating_sub(2 + FRAME));
     if rows < count {
@@ -125,7 +125,7 @@ fn title(view: &View) -> String {
 fn rule(strips: &[Strip], at: usize) -> Option<&'static str> {
     let before = strips.get(at.checked_sub(1)?)?;
     let (then, now) = (before.position, strips[at].position);
-    let of = |at: crate::solve::Position| (at.increment, at.attempt);
+    let of = |at: crate::step::event::Position| (at.increment, at.attempt);
     match before.kind == Kind::Start {
         true => None,
         false if of(then) != of(now) => Some("║"),
@@ -171,7 +171,7 @@ fn headings(buffer: &mut Buffer, inner: Rect, columns: &[Column], strips: &[Stri
         let then = index
             .checked_sub(1)
             .map(|before| strips[columns[before].at].position);
-        let increment = |at: crate::solve::Position| (at.increment, at.attempt);
+        let increment = |at: crate::step::event::Position| (at.increment, at.attempt);
         let anew = then.is_none_or(|then| increment(then) != increment(now));
         let major = anew || then.is_none_or(|then| then.major != now.major);
         for (row, wanted, text) in [(0, anew, now.increment), (1, major, now.major)] {

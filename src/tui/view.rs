@@ -1,11 +1,15 @@
 //! What the panes show: a borrowed, read-only look at a session.
 
+use crate::contact::record::{ContactRecord, Forced};
 use crate::debug::looks::{Finding, Looks, Push};
 use crate::debug::session::{Frame, Session};
 use crate::debug::strip::Strip;
 use crate::debug::tree::Tree;
-use crate::scene::{Mode, Model, Scene};
-use crate::solve::{Event, Forced, Intervention, NodeRecord, Norms, Outcome, Position};
+use crate::linear::norms::Norms;
+use crate::model::{Mode, Model};
+use crate::scene::Scene;
+use crate::step::event::{Event, Outcome, Position};
+use crate::step::intervene::Intervention;
 
 /// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
 #[derive(Debug, Clone)]
@@ -88,13 +92,13 @@ impl<'a> View<'a> {
     }
 
     /// What that minor iteration found at a slave node.
-    pub fn record(&self, slave: usize) -> Option<&'a NodeRecord> {
+    pub fn record(&self, slave: usize) -> Option<&'a ContactRecord> {
         self.event()?.nodes.get(slave)
     }
 
     /// Name of a slave node.
     pub fn slave(&self, slave: usize) -> &'a str {
-        match self.model.slaves.get(slave) {
+        match self.model.contacts.get(slave) {
             Some(slave) => &self.model.nodes[slave.node].name,
             None => "",
         }

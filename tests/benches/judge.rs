@@ -6,8 +6,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::contact::judge::{Judge, Scales, Seen};
-use stickslip::scene::{Model, Scene};
-use stickslip::solve::{Outcome, State, Stepper};
+use stickslip::model::Model;
+use stickslip::scene::Scene;
+use stickslip::step::event::Outcome;
+use stickslip::step::state::State;
+use stickslip::step::stepper::Stepper;
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -31,7 +34,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
     let model = Arc::new(scene.model);
     let mut stepper = Stepper::new(model.clone());
     let nodes = model.nodes.len();
-    let mut judge = Judge::with_capacity(nodes, model.slaves.len());
+    let mut judge = Judge::with_capacity(nodes, model.contacts.len());
     let mut contact = vec![[0.0; 2]; nodes];
     let mut before = positions(&model, stepper.state());
     let (mut run, mut judged, mut increments) = (0.0, 0.0, 0);
@@ -52,7 +55,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
         let nothing = vec![0.0; forces.len()];
         let seen = Seen {
             surfaces: &model.surfaces,
-            slaves: &model.slaves,
+            slaves: &model.contacts,
             friction: &state.controls.friction,
             before: &before,
             now: &now,
@@ -75,14 +78,14 @@ fn row(name: &str, set: &[(&str, &str)]) {
         "| {} | {} | {} | {increments} | {run:.2} | {judged:.4} | {:.2} % |",
         model.title,
         model.dofs.equations,
-        model.slaves.len(),
+        model.contacts.len(),
         100.0 * judged / run
     );
 }
 
 fn positions(model: &Model, state: &State) -> Vec<[f64; 2]> {
     let nodes = model.nodes.iter().zip(&model.dofs.first);
-    let at = |(node, &first): (&stickslip::scene::model::Node, &usize)| {
+    let at = |(node, &first): (&stickslip::model::Node, &usize)| {
         [
             node.at[0] + state.start.u[first],
             node.at[1] + state.start.u[first + 1],

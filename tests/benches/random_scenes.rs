@@ -111,7 +111,7 @@ fn show(name: &str, scene: &Scene) {
     );
     for wrong in &trial.wrong {
         let node = wrong.breach.slave.map(|slave| {
-            let node = scene.model.slaves[slave].node;
+            let node = scene.model.contacts[slave].node;
             scene.model.nodes[node].name.as_str()
         });
         println!(

@@ -10,8 +10,10 @@ use std::sync::Arc;
 use std::time::Instant;
 use stickslip::fem::assembly::{Assembled, Assembly, Moved};
 use stickslip::linalg::{Pattern, SymmetricFactors};
-use stickslip::scene::{Model, Scene};
-use stickslip::solve::{Outcome, Stepper};
+use stickslip::model::Model;
+use stickslip::scene::Scene;
+use stickslip::step::event::Outcome;
+use stickslip::step::stepper::Stepper;
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -75,7 +77,7 @@ fn row(model: &Arc<Model>) {
     println!(
         "| {} | {} | {:.1} | {:.1} | {:.1} | {:.2} | {:.3} | {:.2} | {} |",
         model.dofs.equations,
-        model.slaves.len(),
+        model.contacts.len(),
         1e3 * factorization,
         1e3 * assembly,
         1e3 * major,
@@ -99,7 +101,7 @@ fn parts(model: &Model) -> (f64, f64) {
         .iter()
         .flat_map(|s| s.elements.iter().flatten().copied());
     let mut last: Vec<usize> = masters
-        .chain(model.slaves.iter().map(|s| s.node))
+        .chain(model.contacts.iter().map(|s| s.node))
         .flat_map(|node| [0, 1].map(|k| dofs.equation[dofs.first[node] + k]))
         .flatten()
         .collect();

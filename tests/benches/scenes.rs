@@ -2,8 +2,10 @@
 
 use divan::Bencher;
 use std::sync::Arc;
-use stickslip::scene::{Model, Scene};
-use stickslip::solve::{Outcome, Stepper};
+use stickslip::model::Model;
+use stickslip::scene::Scene;
+use stickslip::step::event::Outcome;
+use stickslip::step::stepper::Stepper;
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),

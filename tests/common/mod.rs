@@ -4,7 +4,10 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 use stickslip::scene::Scene;
-use stickslip::solve::{Event, Failure, Intervention, Outcome, State, Stepper};
+use stickslip::step::event::{Event, Failure, Outcome};
+use stickslip::step::intervene::Intervention;
+use stickslip::step::state::State;
+use stickslip::step::stepper::Stepper;
 
 /// A scene with `--set` like overrides.
 pub fn scene(name: &str, overrides: &[(&str, &str)]) -> Scene {
@@ -74,7 +77,7 @@ pub fn go_on(mut run: Run) -> Run {
 }
 
 /// Forces a slave node in a run that failed.
-pub fn force(run: &mut Run, slave: usize, mode: stickslip::scene::Mode, hold: bool) {
+pub fn force(run: &mut Run, slave: usize, mode: stickslip::model::Mode, hold: bool) {
     run.stepper
         .intervene(&Intervention::Force { slave, mode, hold })
         .unwrap();

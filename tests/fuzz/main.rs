@@ -31,7 +31,7 @@ use stickslip::debug::snapshot::{Snapshot, compare};
 use stickslip::debug::story::story;
 use stickslip::outside::shown;
 use stickslip::scene::{Cost, Scene};
-use stickslip::solve::Stepper;
+use stickslip::step::stepper::Stepper;
 use stickslip::study::chart_file::Chart;
 use stickslip::study::precision;
 use stickslip::study::random::Population;
@@ -181,7 +181,7 @@ fn watch_over(target: &str, over: &AtomicBool, present: &Mutex<String>, done: &A
 
 /// A scene that is solved as quickly as it is read.
 fn is_small(scene: &Scene) -> bool {
-    scene.model.dofs.len() < 400 && scene.model.slaves.len() < 40
+    scene.model.dofs.len() < 400 && scene.model.contacts.len() < 40
 }
 
 /// Reads a scene; a sound one of a handful of unknowns takes some steps, too.

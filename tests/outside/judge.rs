@@ -9,7 +9,7 @@
 //! vertex explains is counted apart.
 
 use super::chain::{At, Chain, Place, Point, Seen as Sight, cross, dot, norm};
-use stickslip::scene::{Friction, Model};
+use stickslip::model::{Friction, Model};
 
 /// Lengths that are no larger than this part of the scene's extent are nothing.
 pub const LENGTH: f64 = 1e-8;
@@ -112,7 +112,7 @@ pub fn judge(
 ) -> Verdict {
     let [then, chains] = [before, now].map(|state| chains(model, state));
     let mut verdict = Verdict::default();
-    for (number, slave) in model.slaves.iter().enumerate() {
+    for (number, slave) in model.contacts.iter().enumerate() {
         let node = Node {
             then: before.positions[slave.node],
             now: now.positions[slave.node],
@@ -140,7 +140,7 @@ pub fn judge(
 
 fn chains(model: &Model, state: &Seen) -> Vec<Chain> {
     let chain =
-        |s: &stickslip::scene::model::Surface| Chain::new(&s.elements, &state.positions, s.endless);
+        |s: &stickslip::model::Surface| Chain::new(&s.elements, &state.positions, s.endless);
     model.surfaces.iter().map(chain).collect()
 }
 

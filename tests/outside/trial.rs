@@ -4,11 +4,13 @@ use super::chain::{Point, norm};
 use super::judge::{Breach, Pull, Scales, Seen, judge};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use stickslip::scene::model::{BodyKind, Form, Monitor, Watched};
-use stickslip::scene::spec::{AtLimit, Component, SlipCount, Sticking, Ties};
-use stickslip::scene::{Model, Scene};
-use stickslip::solve::state::IncrementStart;
-use stickslip::solve::{Failure, Outcome, Stepper};
+use stickslip::model::Model;
+use stickslip::model::{AtLimit, Component, SlipCount, Sticking, Ties};
+use stickslip::model::{BodyKind, Form, Monitor, Watched};
+use stickslip::scene::Scene;
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::state::IncrementStart;
+use stickslip::step::stepper::Stepper;
 
 /// Minor iterations after which a run is given up, so that one that goes on for ever ends the same way everywhere.
 const PATIENCE: usize = 20_000;
@@ -128,8 +130,8 @@ impl Trial {
             let forces = now.forces.iter().map(|f| norm(*f));
             scales.force = pulls.chain(forces).fold(scales.force, f64::max);
             let brought: Vec<f64> = match self.increments {
-                0 => model.slaves.iter().map(|s| -s.state.slip).collect(),
-                _ => vec![0.0; model.slaves.len()],
+                0 => model.contacts.iter().map(|s| -s.state.slip).collect(),
+                _ => vec![0.0; model.contacts.len()],
             };
             let friction = &state.controls.friction;
             let verdict = judge(&model, [&before, &now], friction, &brought, scales);
@@ -215,9 +217,8 @@ fn seen(model: &Model, state: &IncrementStart, reactions: &[f64]) -> Seen {
 }
 
 fn positions(model: &Model, u: &[f64]) -> Vec<Point> {
-    let place = |(node, &d): (&stickslip::scene::model::Node, &usize)| {
-        [node.at[0] + u[d], node.at[1] + u[d + 1]]
-    };
+    let place =
+        |(node, &d): (&stickslip::model::Node, &usize)| [node.at[0] + u[d], node.at[1] + u[d + 1]];
     model
         .nodes
         .iter()

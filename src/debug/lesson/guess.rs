@@ -3,7 +3,7 @@
 use crate::debug::command::{Action, Command, Whose, mode};
 use crate::debug::report;
 use crate::debug::session::Frame;
-use crate::scene::{Mode, Model};
+use crate::model::{Mode, Model};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Predictions, right and wrong.
@@ -116,7 +116,8 @@ impl Guess {
         let right = said == next;
         self.right += u32::from(right);
         self.wrong += u32::from(!right);
-        let changed = |&(_, node): &(usize, &crate::solve::NodeRecord)| node.decision.changes();
+        let changed =
+            |&(_, node): &(usize, &crate::contact::record::ContactRecord)| node.decision.changes();
         let nodes = event
             .into_iter()
             .flat_map(|event| event.nodes.iter().enumerate());

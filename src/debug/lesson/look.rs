@@ -1,10 +1,12 @@
 //! What the solver says about a state: now, some minor iterations on, or at the end of the increment.
 
+use crate::contact::record::ContactRecord;
 use crate::debug::session::Frame;
-use crate::scene::{Mode, Model};
-use crate::solve::census::census;
-use crate::solve::event::Cycle;
-use crate::solve::{Event, Failure, NodeRecord, Outcome, Stepper};
+use crate::interface::census::census;
+use crate::model::{Mode, Model};
+use crate::step::event::{Event, Failure, Outcome};
+use crate::step::minor_history::Cycle;
+use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
 /// Minor iterations after which an increment counts as endless.
@@ -102,7 +104,7 @@ impl Look {
     ///
     /// # Errors
     /// Where there is none.
-    pub fn record(&self, slave: usize) -> Result<&NodeRecord, String> {
+    pub fn record(&self, slave: usize) -> Result<&ContactRecord, String> {
         let record = self.event()?.nodes.get(slave);
         record.ok_or_else(|| "the solve failed before it found this".into())
     }

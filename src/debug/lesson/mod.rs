@@ -17,8 +17,9 @@ pub use look::Look;
 pub use tutor::Tutor;
 
 use crate::debug::command::{self, Action, Context};
+use crate::model::{Mode, Model};
 use crate::scene::error::{Path, SceneError, at, did_you_mean};
-use crate::scene::{Builtin, Fault, Mode, Model, Scene, placed, read};
+use crate::scene::{Builtin, Fault, Scene, placed, read};
 use quantity::{Quantity, Template};
 use spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use std::sync::Arc;

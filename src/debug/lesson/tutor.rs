@@ -9,11 +9,11 @@ use super::guess::Guess;
 use super::look::Look;
 use super::quantity::number;
 use super::{Answer, Ask, Lesson, Step, Truth};
-use crate::contact::decision::{Decision, Rule, Test, Tested};
+use crate::contact::table2::{Decision, Rule, Test, Tested};
 use crate::debug::command::{self, Action, Command, Whose};
 use crate::debug::report::{self, MODES, TABLE_2};
 use crate::debug::session::Frame;
-use crate::scene::Mode;
+use crate::model::Mode;
 use std::sync::Arc;
 
 /// Wrong answers after which the right one is told.

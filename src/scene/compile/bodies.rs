@@ -4,10 +4,11 @@ use super::super::curves::point;
 use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use super::super::geometry;
 use super::super::limits;
-use super::super::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
 use super::super::nodes::{Mesh, Names, unique};
-use super::super::spec::{BodySpec, Law, Material, Point, Region, Spec, Update};
+use super::super::spec::{BodySpec, Material, Point, Region, Spec};
 use super::linear;
+use crate::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
+use crate::model::{Law, Update};
 use std::collections::HashSet;
 
 /// Refuses materials without usable stiffnesses.

@@ -2,7 +2,8 @@
 
 use super::super::error::{Fault, at};
 use super::super::limits;
-use super::super::spec::{History, Settings};
+use super::super::spec::History;
+use crate::model::Settings;
 
 /// Refuses a path that goes nowhere, or that has no end.
 pub(super) fn history(history: &History) -> Result<(), Fault> {

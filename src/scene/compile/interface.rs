@@ -3,10 +3,11 @@
 use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use super::super::geometry;
 use super::super::limits;
-use super::super::model::{Dofs, Slave, Surface};
 use super::super::nodes::{Names, unique};
-use super::super::spec::{Component, Friction, InitialState, Nodes, Side, SlaveSpec, Spec};
+use super::super::spec::{Nodes, Side, SlaveSpec, Spec};
 use super::bodies::{check_chain, elements};
+use crate::model::{Component, Friction, InitialState};
+use crate::model::{Contact, Dofs, Surface};
 use std::collections::HashSet;
 
 /// The surfaces, walked so that the outward side is on the right.
@@ -48,7 +49,7 @@ pub(super) fn slaves(
     names: &Names,
     surfaces: &[Surface],
     length: f64,
-) -> Result<Vec<Slave>, Fault> {
+) -> Result<Vec<Contact>, Fault> {
     friction(&at!["friction"], &spec.friction)?;
     let members: Vec<HashSet<usize>> = surfaces
         .iter()
@@ -81,7 +82,7 @@ pub(super) fn slaves(
             let met = |node: &usize| own_ends.contains(node) && ends.contains(node);
             let fresh_ones: Vec<usize> = found.into_iter().filter(|node| !met(node)).collect();
             for node in fresh_ones {
-                let slave = Slave {
+                let slave = Contact {
                     node,
                     surfaces: on.clone(),
                     friction: group.friction.unwrap_or(spec.friction),
@@ -130,7 +131,7 @@ fn candidates(here: &Path, group: &SlaveSpec, surfaces: &[Surface]) -> Result<Ve
 
 /// Refuses a slave node that is named twice, lies on its own master, or is out of reach of it.
 fn check_slave(
-    slave: &Slave,
+    slave: &Contact,
     fresh: bool,
     names: &Names,
     surfaces: &[Surface],
@@ -228,7 +229,7 @@ pub(super) fn check_use(
     names: &Names,
     on_body: &[bool],
     surfaces: &[Surface],
-    slaves: &[Slave],
+    slaves: &[Contact],
 ) -> Result<(), Fault> {
     let mut used = on_body.to_vec();
     surfaces
@@ -302,7 +303,7 @@ pub(super) fn drop_idle_slaves(
     names: &Names,
     dofs: &Dofs,
     surfaces: &[Surface],
-    slaves: &mut Vec<Slave>,
+    slaves: &mut Vec<Contact>,
 ) {
     let single = |node: usize| {
         let mut all = spec.slaves.iter().flat_map(|group| &group.nodes);
@@ -321,7 +322,7 @@ pub(super) fn check_held_slaves(
     names: &Names,
     dofs: &Dofs,
     surfaces: &[Surface],
-    slaves: &[Slave],
+    slaves: &[Contact],
 ) -> Result<(), Fault> {
     for slave in slaves.iter().filter(|slave| !can_move(dofs, slave.node)) {
         let Some(&rigid) = slave.surfaces.iter().find(|&&s| surfaces[s].rigid) else {

@@ -2,10 +2,11 @@
 
 use super::super::error::{Fault, Path, at};
 use super::super::limits;
-use super::super::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed};
 use super::super::nodes::Names;
-use super::super::spec::{Component, LoadSpec, Point, Spec};
+use super::super::spec::{LoadSpec, Point, Spec};
 use super::tractions;
+use crate::model::Component;
+use crate::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed};
 use std::collections::HashMap;
 
 /// The degrees of freedom while it is found out which are held, and by what.

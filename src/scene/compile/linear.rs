@@ -2,9 +2,9 @@
 
 use super::super::error::{Fault, Path};
 use super::super::limits;
-use super::super::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load};
 use super::super::nodes::Names;
 use super::super::spec::{Bar, BodySpec, Spec};
+use crate::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// A body given by a stiffness or a compliance. Where the forces of a compliance stand is found later, with the other

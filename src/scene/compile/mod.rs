@@ -11,13 +11,14 @@ mod linear;
 mod monitors;
 mod tractions;
 
-use super::effort::Estimate;
 use super::error::{Fault, at};
 use super::geometry;
 use super::limits;
-use super::model::{Body, BodyKind, Model};
 use super::nodes::Names;
-use super::spec::{Settings, Spec, Touch};
+use super::spec::Spec;
+use crate::linear::estimate::Estimate;
+use crate::model::{Body, BodyKind, Model};
+use crate::model::{Settings, Touch};
 pub(crate) use history::increments;
 use layout::Layout;
 
@@ -69,7 +70,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         nodes: names.nodes.clone(),
         bodies,
         surfaces,
-        slaves,
+        contacts: slaves,
         dofs,
         loads,
         prescribed,
@@ -79,6 +80,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         jumps: spec.history.jumps,
         settings,
         monitors,
+        budget: crate::scene::memory::free(),
         length,
     };
     match Estimate::of(&model).too_large(model.settings.solver) {

@@ -2,10 +2,10 @@
 
 use super::super::error::{Fault, Path, at, quoted, some_of};
 use super::super::limits;
-use super::super::model::{Dofs, Monitor, Slave, Watched};
 use super::super::nodes::Names;
 use super::super::spec::{Quantity, Spec};
 use super::layout::no_rotation;
+use crate::model::{Contact, Dofs, Monitor, Watched};
 use std::collections::HashMap;
 
 /// Columns that every CSV has.
@@ -17,7 +17,7 @@ pub(super) fn monitors(
     names: &Names,
     on_body: &[bool],
     dofs: &Dofs,
-    slaves: &[Slave],
+    slaves: &[Contact],
 ) -> Result<Vec<Monitor>, Fault> {
     let mut seen = HashMap::new();
     let mut made = Vec::with_capacity(spec.monitors.len());
@@ -68,7 +68,7 @@ fn watched(
     names: &Names,
     on_body: &[bool],
     dofs: &Dofs,
-    slaves: &[Slave],
+    slaves: &[Contact],
 ) -> Result<Watched, Fault> {
     let node_of = |name: &str| {
         names
@@ -117,7 +117,7 @@ fn slave_numbers(
     name: Option<&str>,
     what: &str,
     names: &Names,
-    slaves: &[Slave],
+    slaves: &[Contact],
 ) -> Result<Vec<usize>, Fault> {
     match name {
         Some(name) => {
@@ -139,7 +139,7 @@ fn slave_number(
     name: &str,
     node: usize,
     names: &Names,
-    slaves: &[Slave],
+    slaves: &[Contact],
 ) -> Result<usize, Fault> {
     slaves
         .iter()

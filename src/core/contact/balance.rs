@@ -1,0 +1,96 @@
+//! Whether forces are in balance: at every node, and on the bodies as a whole with their reactions.
+//!
+//! What a node must bear is internal force − load − contact force. Where it is free to move that vanishes; where it is
+//! held, it is the reaction. Internal forces of bodies that know nothing of where they are add up to nothing, moments
+//! included; so reactions and loads do, too.
+
+use crate::contact::judge::{Finding, Law, Numbers, Scales, Verdict};
+use crate::model::{BodyKind, Model};
+
+/// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
+#[derive(Debug, Clone, Copy)]
+pub struct Forces<'a> {
+    pub internal: &'a [f64],
+    pub load: &'a [f64],
+    pub contact: &'a [[f64; 2]],
+}
+
+/// Adds to a verdict what is not in balance; `now` are the positions of all nodes.
+pub fn check(
+    model: &Model,
+    forces: &Forces,
+    now: &[[f64; 2]],
+    scales: &Scales,
+    verdict: &mut Verdict,
+) {
+    let dofs = &model.dofs;
+    let (mut worst, mut total) = ((0.0_f64, None), Total::default());
+    for (node, (&first, &count)) in dofs.first.iter().zip(&dofs.count).enumerate() {
+        let mut bears = [0.0; 3];
+        for (k, bears) in bears.iter_mut().enumerate().take(count as usize) {
+            let dof = first + k;
+            let contact = forces.contact[node].get(k).copied().unwrap_or(0.0);
+            *bears = forces.internal[dof] - forces.load[dof] - contact;
+            let lever = if k < 2 { 1.0 } else { scales.length };
+            let amount = bears.abs() / lever / scales.force;
+            if dofs.equation[dof].is_some() && (amount > worst.0 || amount.is_nan()) {
+                worst = (amount, Some(node));
+            }
+        }
+        let at = |k: usize| forces.internal[first + k];
+        let moment = if count > 2 { at(2) } else { 0.0 };
+        total.add(now[node], [at(0), at(1)], moment);
+    }
+    let slave = |node| model.contacts.iter().position(|s| s.node == node);
+    verdict.add(Finding {
+        law: Law::Balance,
+        slave: worst.1.and_then(slave),
+        amount: worst.0,
+        allowed: scales.allowed(Law::Balance),
+        numbers: Numbers::default(),
+    });
+    // A body that is given by a matrix may be held by what the matrix stands for.
+    if model
+        .bodies
+        .iter()
+        .any(|body| matches!(body.kind, BodyKind::Linear(_)))
+    {
+        return;
+    }
+    verdict.add(Finding {
+        law: Law::Moments,
+        slave: None,
+        amount: total.size(scales.length) / scales.force,
+        allowed: scales.allowed(Law::Moments),
+        numbers: Numbers::default(),
+    });
+}
+
+/// Sum of forces, and of their moments about the origin.
+#[derive(Debug, Clone, Copy, Default)]
+struct Total {
+    force: [f64; 2],
+    moment: f64,
+    /// Where the forces act on average, so that distance from the origin makes no moment of round-off.
+    middle: [f64; 2],
+    count: f64,
+}
+
+impl Total {
+    fn add(&mut self, at: [f64; 2], force: [f64; 2], moment: f64) {
+        for k in 0..2 {
+            self.force[k] += force[k];
+            self.middle[k] += at[k];
+        }
+        self.moment += moment + at[0] * force[1] - at[1] * force[0];
+        self.count += 1.0;
+    }
+
+    /// The larger of force, and moment about the middle over a length.
+    fn size(&self, length: f64) -> f64 {
+        let [x, y] = self.middle.map(|sum| sum / self.count.max(1.0));
+        let moment = self.moment - (x * self.force[1] - y * self.force[0]);
+        let [f_x, f_y] = self.force;
+        (moment.abs() / length).max((f_x * f_x + f_y * f_y).sqrt())
+    }
+}

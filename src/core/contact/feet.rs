@@ -1,0 +1,287 @@
+//! Where the points of a chain are that lie closest to a given point: all of them, found anew.
+//!
+//! [`super::projection`] follows one S* from iteration to iteration and starts where it was; whoever checks a state must
+//! not. Here every element is searched: the derivative of half the squared distance, (x − p) · x', changes its sign from
+//! minus to plus at a closest point, and at an end of an element it points past the end.
+
+use crate::contact::projection::SurfacePoint;
+use crate::fem::lagrange::{MAX_NODES, Shape, shape};
+use crate::model::Surface;
+use std::sync::LazyLock;
+
+/// Intervals in which an element of m > 2 nodes is searched, for each of its nodes but one.
+const INTERVALS: usize = 2;
+/// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
+const STEPS: u32 = 60;
+/// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
+const BULGE: f64 = 0.5;
+
+/// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
+static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
+    let of = |m: usize| {
+        let intervals = if m == 2 { 1 } else { INTERVALS * (m - 1) };
+        let at = |k: usize| -1.0 + 2.0 * k as f64 / intervals as f64;
+        (0..=intervals).map(|k| (at(k), shape(m, at(k)))).collect()
+    };
+    (0..=MAX_NODES)
+        .map(|m| if m < 2 { Vec::new() } else { of(m) })
+        .collect()
+});
+
+/// Makes what every search uses, so that none of them has to.
+pub fn prepare() {
+    LazyLock::force(&GRID);
+}
+
+/// A point of a surface that is closer than its neighbours on the same element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Foot {
+    pub spot: SurfacePoint,
+    /// Its position.
+    pub at: [f64; 2],
+    /// Its distance (length, not negative).
+    pub distance: f64,
+}
+
+/// Leaves in `feet` all closest points of the surfaces `candidates` whose distance from `point` exceeds the least by no more
+/// than `slack` (length), the closest first. A border between two elements counts for each of them.
+pub fn find(
+    point: [f64; 2],
+    surfaces: &[Surface],
+    candidates: &[usize],
+    positions: &[[f64; 2]],
+    slack: f64,
+    feet: &mut Vec<Foot>,
+) {
+    feet.clear();
+    // Nodes lie on the curves: none of them is closer than the closest point, and few elements reach that far.
+    let chains = candidates.iter().map(|&surface| &surfaces[surface]);
+    let nodes = chains
+        .filter(|chain| !chain.endless)
+        .flat_map(|chain| chain.elements.iter().flatten());
+    let squares = nodes.map(|&n| squared([point[0] - positions[n][0], point[1] - positions[n][1]]));
+    let reach = squares.fold(f64::INFINITY, f64::min).sqrt() + slack;
+    let mut least = f64::INFINITY;
+    for &surface in candidates {
+        let chain = &surfaces[surface];
+        for (element, nodes) in chain.elements.iter().enumerate() {
+            if !chain.endless && lies_beyond(nodes, positions, point, reach.min(least + slack)) {
+                continue;
+            }
+            let mut found = |xi: f64| {
+                let at = place(nodes, positions, xi);
+                let distance = length([point[0] - at[0], point[1] - at[1]]);
+                if distance <= least + slack {
+                    least = least.min(distance);
+                    let spot = SurfacePoint {
+                        surface,
+                        element,
+                        xi,
+                    };
+                    feet.push(Foot { spot, at, distance });
+                }
+            };
+            if chain.endless {
+                found(on_line(nodes, positions, point));
+            } else {
+                minima(nodes, positions, point, &mut found);
+            }
+        }
+    }
+    feet.retain(|foot| foot.distance <= least + slack);
+    feet.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+}
+
+/// Gives every local minimum of the distance over an element.
+fn minima(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], found: &mut impl FnMut(f64)) {
+    let grid = &GRID[nodes.len()];
+    let slope = |s: &Shape| slope(nodes, positions, point, s);
+    let mut left = (-1.0, slope(&grid[0].1));
+    if left.1 >= 0.0 {
+        found(-1.0);
+    }
+    for (xi, s) in &grid[1..] {
+        let right = (*xi, slope(s));
+        let at_end = *xi == 1.0 && right.1 == 0.0;
+        if left.1 < 0.0 && right.1 >= 0.0 && !at_end {
+            found(root(nodes, positions, point, [left, right]));
+        }
+        left = right;
+    }
+    if left.1 <= 0.0 {
+        found(1.0);
+    }
+}
+
+/// The root of (x − p) · x' between two ξ, each with its value, between which it changes its sign from minus to plus:
+/// Newton's method, and halving where that leaves the interval.
+fn root(
+    nodes: &[usize],
+    positions: &[[f64; 2]],
+    point: [f64; 2],
+    [(mut low, below), (mut high, above)]: [(f64, f64); 2],
+) -> f64 {
+    // Both values come along: where a straight line between them vanishes is near.
+    let mut xi = low - below * (high - low) / (above - below);
+    for _ in 0..STEPS {
+        let s = shape(nodes.len(), xi);
+        let value = slope(nodes, positions, point, &s);
+        let newton = xi - value / rise(nodes, positions, point, &s);
+        if (newton - xi).abs() <= f64::EPSILON {
+            return newton.clamp(low, high);
+        }
+        if value < 0.0 {
+            low = xi;
+        } else {
+            high = xi;
+        }
+        xi = if newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+    }
+    xi
+}
+
+/// (x − p) · x' where the shape functions are these.
+fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
+    let (mut to, mut d) = ([-point[0], -point[1]], [0.0; 2]);
+    for ((&node, n), slope) in nodes.iter().zip(s.n).zip(s.d) {
+        let [x, y] = positions[node];
+        to = [to[0] + n * x, to[1] + n * y];
+        d = [d[0] + slope * x, d[1] + slope * y];
+    }
+    to[0] * d[0] + to[1] * d[1]
+}
+
+/// Its derivative by ξ.
+fn rise(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
+    let x = blend(nodes, positions, &s.n);
+    let (d, dd) = (
+        blend(nodes, positions, &s.d),
+        blend(nodes, positions, &s.dd),
+    );
+    squared(d) + (x[0] - point[0]) * dd[0] + (x[1] - point[1]) * dd[1]
+}
+
+/// ξ of the foot on the endless straight line through an element's ends.
+fn on_line(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
+    let (start, end) = (place(nodes, positions, -1.0), place(nodes, positions, 1.0));
+    let along = [end[0] - start[0], end[1] - start[1]];
+    let to = [point[0] - start[0], point[1] - start[1]];
+    2.0 * (to[0] * along[0] + to[1] * along[1]) / squared(along).max(f64::MIN_POSITIVE) - 1.0
+}
+
+/// Position of a point of an element.
+pub fn place(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
+    blend(nodes, positions, &shape(nodes.len(), xi).n)
+}
+
+/// Unit tangent along the walk at a point of an element; none where its curve stands still.
+pub fn direction(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
+    let d = blend(nodes, positions, &shape(nodes.len(), xi).d);
+    let size = length(d);
+    (size > 0.0).then(|| [d[0] / size, d[1] / size])
+}
+
+fn lies_beyond(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], reach: f64) -> bool {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for &n in nodes {
+        for k in 0..2 {
+            low[k] = low[k].min(positions[n][k]);
+            high[k] = high[k].max(positions[n][k]);
+        }
+    }
+    let bulge = BULGE * (high[0] - low[0] + high[1] - low[1]);
+    let out = [0, 1].map(|k| ((low[k] - point[k]).max(point[k] - high[k]) - bulge).max(0.0));
+    length(out) > reach
+}
+
+fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
+    nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
+        [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
+    })
+}
+
+fn squared(v: [f64; 2]) -> f64 {
+    v[0] * v[0] + v[1] * v[1]
+}
+
+fn length(v: [f64; 2]) -> f64 {
+    squared(v).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain(elements: Vec<Vec<usize>>, endless: bool) -> Vec<Surface> {
+        vec![Surface {
+            name: "s".into(),
+            elements,
+            rigid: true,
+            endless,
+        }]
+    }
+
+    fn all(point: [f64; 2], surfaces: &[Surface], positions: &[[f64; 2]], slack: f64) -> Vec<Foot> {
+        let mut feet = Vec::new();
+        find(point, surfaces, &[0], positions, slack, &mut feet);
+        feet
+    }
+
+    #[test]
+    fn a_point_in_a_valley_has_a_foot_on_each_side() {
+        let valley = chain(vec![vec![0, 1], vec![1, 2]], false);
+        let x = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];
+        let feet = all([0.1, 0.5], &valley, &x, 1.0);
+        assert_eq!(feet.len(), 2);
+        assert_eq!((feet[0].spot.element, feet[1].spot.element), (0, 1));
+        assert!((feet[0].distance - 0.4 / 2f64.sqrt()).abs() < 1e-15);
+        assert!((feet[1].distance - 0.6 / 2f64.sqrt()).abs() < 1e-15);
+        let nearest = all([0.1, 0.5], &valley, &x, 0.0);
+        assert_eq!(nearest, feet[..1]);
+    }
+
+    #[test]
+    fn a_point_over_a_ridge_has_its_foot_on_the_border_of_both_sides() {
+        let ridge = chain(vec![vec![0, 1], vec![1, 2]], false);
+        let x = [[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0]];
+        let feet = all([0.0, 0.5], &ridge, &x, 0.0);
+        let spots: Vec<_> = feet.iter().map(|f| (f.spot.element, f.spot.xi)).collect();
+        assert_eq!(spots, [(0, 1.0), (1, -1.0)]);
+        assert_eq!(feet[0].at, [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_curved_element_has_all_its_closest_points_found_wherever_the_search_starts() {
+        let m = 5;
+        let x: Vec<[f64; 2]> = (0..m)
+            .map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4)
+            .map(|a| [a.cos(), a.sin()])
+            .collect();
+        let half_circle = chain(vec![(0..5).collect()], false);
+        // Below the middle both ends are closest, and the top is the furthest.
+        let feet = all([0.0, -0.5], &half_circle, &x, 2.0);
+        let xis: Vec<f64> = feet.iter().map(|f| f.spot.xi).collect();
+        assert!(
+            xis.contains(&-1.0) && xis.contains(&1.0) && xis.len() == 2,
+            "{xis:?}"
+        );
+        let above = all([0.3, 1.2], &half_circle, &x, 0.0);
+        let exact = place(&[0, 1, 2, 3, 4], &x, above[0].spot.xi);
+        assert!((above[0].distance - (1.2_f64.hypot(0.3) - 1.0)).abs() < 2e-3);
+        assert_eq!(above[0].at, exact);
+    }
+
+    #[test]
+    fn an_endless_line_has_one_foot_past_its_ends_too() {
+        let line = chain(vec![vec![0, 1]], true);
+        let feet = all([40.0, 3.0], &line, &[[1.0, 0.0], [0.0, 0.0]], 0.0);
+        assert_eq!(
+            (feet.len(), feet[0].at, feet[0].distance),
+            (1, [40.0, 0.0], 3.0)
+        );
+    }
+}

@@ -1,0 +1,727 @@
+//! Whether a state that is to be accepted obeys the laws of contact and friction, and of balance.
+//!
+//! It is judged from positions and forces alone, now and in the state that was accepted last, whatever the iterations in
+//! between did; nothing of their bookkeeping is used (modes, S*, anchors, counted slip). The laws:
+//!
+//! - no node is inside, none is pressed over a gap, none is pulled; |F_t| <= tan φ F_n + c (eqn 20);
+//! - a node that touches in both states has a net slip along the surface from foot to foot, across the borders of
+//!   elements. Where it has one, friction opposes it at the limit; where friction is within the limit, it has none;
+//! - one that was open, or on another surface, may have touched anywhere on its way. Only friction at its limit that drives
+//!   the whole of the way is against the law: no place of touching explains it;
+//! - in a corner between two sides the force is what both give together ([`super::corner`]);
+//! - every node is in balance, and so are the bodies as a whole with the reactions ([`super::balance`]).
+//!
+//! All amounts are relative to the scene's length or force. Lengths and forces have a tolerance each: where stiffnesses leave
+//! forces less exact, places stay as exact as ever.
+
+use crate::contact::corner::{Side, beyond_sum, beyond_vertex, concave};
+use crate::contact::feet::{self, Foot, direction, place};
+use crate::contact::projection::SurfacePoint;
+use crate::contact::stick_point::distance;
+use crate::fem::lagrange::shape;
+use crate::model::Friction;
+use crate::model::{Contact, Surface};
+use serde::{Deserialize, Serialize};
+
+/// What is judged: an interface, now and in the last accepted state.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen<'a> {
+    pub surfaces: &'a [Surface],
+    pub slaves: &'a [Contact],
+    /// Friction in force, by slave.
+    pub friction: &'a [Friction],
+    /// Positions of all nodes in the last accepted state.
+    pub before: &'a [[f64; 2]],
+    /// Positions of all nodes now.
+    pub now: &'a [[f64; 2]],
+    /// Interaction force on each slave node now (Cartesian).
+    pub forces: &'a [[f64; 2]],
+    /// Slip u_tS* − u_tS that each slave node brought into the last accepted state, where that is the scene's start; else 0.
+    pub brought: &'a [f64],
+    /// Tangential force F_t on each slave node in the last accepted state.
+    pub earlier: &'a [f64],
+    pub scales: Scales,
+}
+
+/// What amounts are relative to, and how large they may be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Scales {
+    pub length: f64,
+    pub force: f64,
+    /// Largest amounts that are nothing: of lengths over `length`, and of forces over `force`.
+    pub lengths: f64,
+    pub forces: f64,
+}
+
+impl Scales {
+    /// Length up to which two places are the same.
+    pub fn near(&self) -> f64 {
+        self.lengths * self.length
+    }
+
+    /// How large an amount against a law may be.
+    pub fn allowed(&self, law: Law) -> f64 {
+        match law {
+            Law::Penetration | Law::Gap => self.lengths,
+            _ => self.forces,
+        }
+    }
+}
+
+/// A law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// No slave node is inside a master (length).
+    Penetration,
+    /// A force acts only where nodes touch (length).
+    Gap,
+    /// F_n >= 0 (force).
+    Tension,
+    /// |F_t| <= tan φ F_n + c (force).
+    Cone,
+    /// A net slip is opposed by friction at its limit; without that there is none (force that friction is short of its limit,
+    /// where there is a slip).
+    Slip,
+    /// Friction opposes the slip of a node that was open before, wherever it touched (force).
+    Touch,
+    /// The forces on every node add up to nothing (force).
+    Balance,
+    /// Forces and moments on the bodies as a whole, with the reactions, add up to nothing (force; a moment over the length).
+    Moments,
+    /// Friction takes work and gives none, by the mean of its forces in both states (force times length). No law of a single
+    /// increment: a node that turns round within one may break it.
+    Work,
+}
+
+impl Law {
+    /// Those that every accepted state obeys.
+    pub const ALL: [Law; 8] = [
+        Law::Penetration,
+        Law::Gap,
+        Law::Tension,
+        Law::Cone,
+        Law::Slip,
+        Law::Touch,
+        Law::Balance,
+        Law::Moments,
+    ];
+
+    /// Its name, as files and messages have it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Law::Penetration => "penetration",
+            Law::Gap => "gap",
+            Law::Tension => "tension",
+            Law::Cone => "cone",
+            Law::Slip => "slip",
+            Law::Touch => "touch",
+            Law::Balance => "balance",
+            Law::Moments => "moments",
+            Law::Work => "work",
+        }
+    }
+}
+
+/// How far a state is from one law, at its worst place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    pub law: Law,
+    /// Where (slave number); none of the whole scene, or of a node that is no slave.
+    pub slave: Option<usize>,
+    /// How much, relative to the scene's length or force, and how much is allowed.
+    pub amount: f64,
+    pub allowed: f64,
+    pub numbers: Numbers,
+}
+
+/// What was seen of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Numbers {
+    /// Distance from the surface (length), negative inside.
+    pub gap: f64,
+    /// Force along the normal and along the tangent of the surface.
+    pub f_n: f64,
+    pub f_t: f64,
+    /// tan φ F_n + c.
+    pub limit: f64,
+    /// How far the node has gone along t from where it touched in the last accepted state, or was over (length).
+    pub slip: f64,
+}
+
+/// A state judged.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The worst place for every law, in the order of [`Law::ALL`]; none where the law applied nowhere.
+    pub worst: [Option<Finding>; 8],
+    /// Where friction gave the most work, if it did.
+    pub work: Option<Finding>,
+}
+
+impl Verdict {
+    fn new() -> Self {
+        Verdict {
+            worst: [None; 8],
+            work: None,
+        }
+    }
+
+    /// Takes a finding in, where it is worse than what there is.
+    pub fn add(&mut self, finding: Finding) {
+        let worst = match finding.law {
+            Law::Work => &mut self.work,
+            law => &mut self.worst[law as usize],
+        };
+        if worst.is_none_or(|w| finding.amount > w.amount || finding.amount.is_nan()) {
+            *worst = Some(finding);
+        }
+    }
+
+    /// The largest violation, within what is allowed or not.
+    pub fn largest(&self) -> Option<Finding> {
+        let all = self.worst.iter().flatten().copied();
+        all.reduce(|worst, next| {
+            if next.times() > worst.times() {
+                next
+            } else {
+                worst
+            }
+        })
+    }
+
+    /// The laws that are broken: amounts that are not within what is allowed.
+    pub fn broken(&self) -> impl Iterator<Item = &Finding> {
+        self.worst
+            .iter()
+            .flatten()
+            .filter(|found| found.is_broken())
+    }
+}
+
+impl Finding {
+    /// Whether the amount is more than is allowed.
+    pub fn is_broken(&self) -> bool {
+        self.times().is_nan() || self.times() > 1.0
+    }
+
+    /// How many times what is allowed the amount is.
+    pub fn times(&self) -> f64 {
+        self.amount / self.allowed
+    }
+}
+
+/// The judge, with the memory that it works in.
+#[derive(Debug)]
+pub struct Judge {
+    feet: Vec<Foot>,
+    earlier: Vec<Foot>,
+    sides: Vec<Touching>,
+    /// The state that was judged last, which is mostly the one accepted before the next.
+    last: Stood,
+    next: Stood,
+}
+
+/// Where all slave nodes stood in a state.
+#[derive(Debug)]
+struct Stood {
+    /// Positions of all nodes, and the length up to which places were the same.
+    at: Vec<[f64; 2]>,
+    near: f64,
+    /// Feet of all slave nodes, one after the other, and where each one's end.
+    feet: Vec<Foot>,
+    ends: Vec<usize>,
+}
+
+impl Stood {
+    fn with_capacity(nodes: usize, slaves: usize) -> Self {
+        Stood {
+            at: Vec::with_capacity(nodes),
+            near: 0.0,
+            // On a border of elements a node has two feet.
+            feet: Vec::with_capacity(2 * slaves + FEW),
+            ends: Vec::with_capacity(slaves),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.feet.clear();
+        self.ends.clear();
+    }
+
+    fn add(&mut self, feet: &[Foot]) {
+        self.feet.extend_from_slice(feet);
+        self.ends.push(self.feet.len());
+    }
+
+    /// Feet of a slave node.
+    fn of(&self, slave: usize) -> &[Foot] {
+        let from = slave.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.feet[from..self.ends[slave]]
+    }
+
+    /// Whether it is this state, seen as sharply.
+    fn is(&self, at: &[[f64; 2]], near: f64, slaves: usize) -> bool {
+        self.ends.len() == slaves && self.near == near && self.at == at
+    }
+}
+
+/// A side of the master on which a node stands.
+#[derive(Debug, Clone, Copy)]
+struct Touching {
+    spot: SurfacePoint,
+    side: Side,
+    tangent: [f64; 2],
+    past: Past,
+}
+
+/// Where a node was in the last accepted state, seen from where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Past {
+    /// It touched, and has gone this far along t since.
+    Touched(f64),
+    /// It was open, and its foot has gone this far.
+    Open(f64),
+    /// It was over another surface, or over none.
+    Elsewhere,
+}
+
+/// How far a force is from the laws on one side, or in a corner; all relative.
+#[derive(Debug, Clone, Copy, Default)]
+struct Amounts {
+    tension: f64,
+    cone: f64,
+    slip: f64,
+    touch: f64,
+    /// Whether it touched in the last accepted state, too.
+    touched: bool,
+    numbers: Numbers,
+}
+
+impl Amounts {
+    fn worst(&self) -> f64 {
+        self.tension.max(self.cone).max(self.slip).max(self.touch)
+    }
+}
+
+/// Feet and sides that a node has at most, as a rule.
+const FEW: usize = 16;
+
+impl Judge {
+    /// A judge with memory for a scene of so many nodes and slave nodes.
+    pub fn with_capacity(nodes: usize, slaves: usize) -> Self {
+        feet::prepare();
+        Judge {
+            feet: Vec::with_capacity(FEW),
+            earlier: Vec::with_capacity(FEW),
+            sides: Vec::with_capacity(FEW),
+            last: Stood::with_capacity(nodes, slaves),
+            next: Stood::with_capacity(nodes, slaves),
+        }
+    }
+
+    /// Judges contact and friction. `contact` gets the interaction force at every node, x and y, as the feet found here
+    /// hand it on to the master.
+    pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {
+        let mut verdict = Verdict::new();
+        contact.fill([0.0; 2]);
+        let near = seen.scales.near();
+        if !self.last.is(seen.before, near, seen.slaves.len()) {
+            self.last.clear();
+        }
+        self.next.clear();
+        for slave in 0..seen.slaves.len() {
+            self.node(seen, slave, contact, &mut verdict);
+        }
+        self.next.near = near;
+        self.next.at.clear();
+        self.next.at.extend_from_slice(seen.now);
+        std::mem::swap(&mut self.last, &mut self.next);
+        verdict
+    }
+
+    /// Where a slave node at `at` touches one of its surfaces, to within `near` (length); none where it does not.
+    pub fn touched(
+        surfaces: &[Surface],
+        slave: &Contact,
+        at: [f64; 2],
+        positions: &[[f64; 2]],
+        near: f64,
+    ) -> Option<SurfacePoint> {
+        let mut feet = Vec::new();
+        feet::find(at, surfaces, &slave.surfaces, positions, 0.0, &mut feet);
+        let foot = feet.first().filter(|foot| foot.distance <= near)?;
+        (!is_past_end_at(foot, at, surfaces, positions, near)).then_some(foot.spot)
+    }
+
+    fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
+        let Contact { node, surfaces, .. } = &seen.slaves[slave];
+        let (point, force) = (seen.now[*node], seen.forces[slave]);
+        let Scales { length, forces, .. } = seen.scales;
+        let near = seen.scales.near();
+        let pressed = size(force) > forces * seen.scales.force;
+        feet::find(
+            point,
+            seen.surfaces,
+            surfaces,
+            seen.now,
+            2.0 * near,
+            &mut self.feet,
+        );
+        self.next.add(&self.feet);
+        let mut report = |law: Law, amount: f64, numbers: Numbers| {
+            verdict.add(Finding {
+                law,
+                slave: Some(slave),
+                amount,
+                allowed: seen.scales.allowed(law),
+                numbers,
+            });
+        };
+        let foot = self
+            .feet
+            .iter()
+            .find(|foot| !is_past_end(foot, point, seen));
+        let Some(foot) = foot.copied() else {
+            if pressed {
+                report(Law::Gap, f64::INFINITY, Numbers::default());
+            }
+            return;
+        };
+        let gap = signed_gap(&foot, point, seen);
+        let numbers = Numbers {
+            gap,
+            ..Numbers::default()
+        };
+        if !pressed {
+            report(Law::Penetration, (-gap / length).max(0.0), numbers);
+            return;
+        }
+        report(Law::Gap, foot.distance / length, numbers);
+        hand_on(seen, *node, force, &foot, contact);
+        if foot.distance > near {
+            return;
+        }
+        self.find_sides(seen, slave, near);
+        let amounts = self.least(seen, slave);
+        let numbers = Numbers {
+            gap,
+            ..amounts.numbers
+        };
+        for (law, amount) in [
+            (Law::Tension, amounts.tension),
+            (Law::Cone, amounts.cone),
+            (Law::Slip, amounts.slip),
+            (Law::Touch, amounts.touch),
+        ] {
+            report(law, amount, numbers);
+        }
+        let mean = 0.5 * (seen.earlier[slave] + numbers.f_t);
+        let work = mean * numbers.slip / (length * seen.scales.force);
+        if amounts.touched && work > 0.0 {
+            report(Law::Work, work, numbers);
+        }
+    }
+
+    /// The sides on which a node stands: those of its feet, and where it stands on a border of elements, both.
+    fn find_sides(&mut self, seen: &Seen, slave: usize, near: f64) {
+        let Contact { node, surfaces, .. } = &seen.slaves[slave];
+        let (point, was) = (seen.now[*node], seen.before[*node]);
+        // What was found of that state when it was judged itself holds still.
+        match self.last.ends.is_empty() {
+            false => {
+                self.earlier.clear();
+                self.earlier.extend_from_slice(self.last.of(slave));
+            }
+            true => feet::find(
+                was,
+                seen.surfaces,
+                surfaces,
+                seen.before,
+                2.0 * near,
+                &mut self.earlier,
+            ),
+        }
+        self.sides.clear();
+        for foot in self.feet.iter().filter(|foot| foot.distance <= near) {
+            let across = [-1.0, 1.0].map(|end| {
+                let border = SurfacePoint {
+                    xi: end,
+                    ..foot.spot
+                };
+                let nodes = &seen.surfaces[border.surface].elements[border.element];
+                let at = place(nodes, seen.now, end);
+                let there = size([point[0] - at[0], point[1] - at[1]]) <= near;
+                there.then(|| beyond_border(seen, border)).flatten()
+            });
+            for spot in [Some(foot.spot), across[0], across[1]]
+                .into_iter()
+                .flatten()
+            {
+                let known = |side: &Touching| {
+                    (side.spot.surface, side.spot.element) == (spot.surface, spot.element)
+                };
+                if !self.sides.iter().any(known)
+                    && let Some(side) = touching(seen, slave, spot, &self.earlier, near)
+                {
+                    self.sides.push(side);
+                }
+            }
+        }
+    }
+
+    /// What is least against the laws: the force of one of the sides, or of two together.
+    fn least(&self, seen: &Seen, slave: usize) -> Amounts {
+        let force = seen.forces[slave];
+        let single = self.sides.iter().map(|side| on_side(seen, force, side));
+        let pairs = self.sides.iter().enumerate().flat_map(|(k, one)| {
+            let rest = self.sides[k + 1..].iter();
+            rest.map(move |other| in_corner(seen, force, one, other))
+        });
+        let best = single.chain(pairs).reduce(|best, next| {
+            if next.worst() < best.worst() {
+                next
+            } else {
+                best
+            }
+        });
+        best.unwrap_or_default()
+    }
+}
+
+/// A side at a spot; none where its curve stands still.
+fn touching(
+    seen: &Seen,
+    slave: usize,
+    spot: SurfacePoint,
+    earlier: &[Foot],
+    near: f64,
+) -> Option<Touching> {
+    let nodes = &seen.surfaces[spot.surface].elements[spot.element];
+    let tangent = direction(nodes, seen.now, spot.xi)?;
+    let friction = &seen.friction[slave];
+    let surface = &seen.surfaces[spot.surface];
+    let way = |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave];
+    let here = earlier.iter().find(|f| f.spot.surface == spot.surface);
+    let was = seen.before[seen.slaves[slave].node];
+    let past = match here {
+        Some(foot) if is_past_end_at(foot, was, seen.surfaces, seen.before, near) => {
+            Past::Elsewhere
+        }
+        Some(foot) if foot.distance <= near => Past::Touched(way(foot)),
+        Some(foot) => Past::Open(way(foot)),
+        None => Past::Elsewhere,
+    };
+    Some(Touching {
+        spot,
+        side: Side {
+            normal: [tangent[1], -tangent[0]],
+            coefficient: friction.coefficient(),
+            cohesion: friction.cohesion,
+        },
+        tangent,
+        past,
+    })
+}
+
+/// The laws on one side alone.
+fn on_side(seen: &Seen, force: [f64; 2], at: &Touching) -> Amounts {
+    let scales = &seen.scales;
+    let numbers = numbers(force, at);
+    let Numbers {
+        f_n,
+        f_t,
+        limit,
+        slip,
+        ..
+    } = numbers;
+    let against = f_t * slip.signum();
+    let slips = slip.abs() > scales.near();
+    let at_limit = limit - f_t.abs() <= scales.forces * scales.force;
+    Amounts {
+        tension: (-f_n).max(0.0) / scales.force,
+        cone: (f_t.abs() - limit).max(0.0) / scales.force,
+        slip: match at.past {
+            Past::Touched(_) if slips => (limit + against).max(0.0) / scales.force,
+            _ => 0.0,
+        },
+        touch: match at.past {
+            Past::Open(_) if slips && at_limit => against.max(0.0) / scales.force,
+            _ => 0.0,
+        },
+        touched: matches!(at.past, Past::Touched(_)),
+        numbers,
+    }
+}
+
+fn numbers(force: [f64; 2], at: &Touching) -> Numbers {
+    let f_n = dot(force, at.side.normal);
+    Numbers {
+        gap: 0.0,
+        f_n,
+        f_t: dot(force, at.tangent),
+        limit: at.side.coefficient * f_n.max(0.0) + at.side.cohesion,
+        slip: match at.past {
+            Past::Touched(slip) | Past::Open(slip) => slip,
+            Past::Elsewhere => 0.0,
+        },
+    }
+}
+
+/// The laws where two sides meet: of a concave corner, or of a convex vertex.
+fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> Amounts {
+    let scales = &seen.scales;
+    let follows = beyond_border(
+        seen,
+        SurfacePoint {
+            xi: 1.0,
+            ..one.spot
+        },
+    );
+    let is = |spot: &SurfacePoint| {
+        (spot.surface, spot.element) == (other.spot.surface, other.spot.element)
+    };
+    let (before, behind) = match follows {
+        Some(next) if is(&next) => (one, other),
+        _ => (other, one),
+    };
+    let meet = (before.spot.surface == behind.spot.surface).then_some(());
+    let numbers = numbers(force, before);
+    let slip = match before.past {
+        Past::Touched(slip) if slip.abs() > scales.near() => slip,
+        _ => 0.0,
+    };
+    if meet.is_some() && concave(before.tangent, behind.tangent).is_none() {
+        let beyond = beyond_vertex(force, &before.side, &behind.side);
+        return Amounts {
+            tension: beyond.tension / scales.force,
+            cone: beyond.cone / scales.force,
+            // Where it slid onto the vertex, neither side's friction is at its limit.
+            slip: if slip == 0.0 { 0.0 } else { f64::INFINITY },
+            touch: 0.0,
+            touched: false,
+            numbers,
+        };
+    }
+    let mobilised = match slip {
+        // Only sides of one chain tell along which of them the node came.
+        _ if meet.is_none() => [None, None],
+        slip if slip > 0.0 => [Some(-1.0), None],
+        slip if slip < 0.0 => [None, Some(1.0)],
+        _ => [None, None],
+    };
+    let beyond = |mobilised| {
+        let sides = [&before.side, &behind.side];
+        beyond_sum(force, sides, mobilised).max(0.0) / scales.force
+    };
+    let cone = beyond([None, None]);
+    Amounts {
+        tension: 0.0,
+        cone,
+        slip: beyond(mobilised) - cone,
+        touch: 0.0,
+        touched: false,
+        numbers,
+    }
+}
+
+/// The spot on the other side of a border of elements, at xi = ±1; none at an end of the chain.
+fn beyond_border(seen: &Seen, border: SurfacePoint) -> Option<SurfacePoint> {
+    let elements = &seen.surfaces[border.surface].elements;
+    let own = &elements[border.element];
+    let ahead = border.xi > 0.0;
+    let step = if ahead { 1 } else { elements.len() - 1 };
+    let element = (border.element + step) % elements.len();
+    let (mine, its) = if ahead {
+        (own.last(), elements[element].first())
+    } else {
+        (own.first(), elements[element].last())
+    };
+    (element != border.element && mine == its).then_some(SurfacePoint {
+        element,
+        xi: -border.xi,
+        ..border
+    })
+}
+
+/// Distance with its sign: negative where the point lies inside.
+fn signed_gap(foot: &Foot, point: [f64; 2], seen: &Seen) -> f64 {
+    let normal = |spot: SurfacePoint| {
+        let nodes = &seen.surfaces[spot.surface].elements[spot.element];
+        let t = direction(nodes, seen.now, spot.xi);
+        t.map_or([0.0; 2], |t| [t[1], -t[0]])
+    };
+    let mut n = normal(foot.spot);
+    if foot.spot.xi.abs() == 1.0
+        && let Some(across) = beyond_border(seen, foot.spot)
+    {
+        let other = normal(across);
+        n = [n[0] + other[0], n[1] + other[1]];
+    }
+    let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
+    if dot(to, n) < 0.0 {
+        -foot.distance
+    } else {
+        foot.distance
+    }
+}
+
+fn is_past_end(foot: &Foot, point: [f64; 2], seen: &Seen) -> bool {
+    is_past_end_at(foot, point, seen.surfaces, seen.now, seen.scales.near())
+}
+
+/// Whether a point lies past an end of the chain that its foot is at, by more than `near`.
+fn is_past_end_at(
+    foot: &Foot,
+    point: [f64; 2],
+    surfaces: &[Surface],
+    positions: &[[f64; 2]],
+    near: f64,
+) -> bool {
+    let SurfacePoint {
+        surface,
+        element,
+        xi,
+    } = foot.spot;
+    let chain = &surfaces[surface];
+    if chain.endless || xi.abs() < 1.0 {
+        return false;
+    }
+    let nodes = &chain.elements[element];
+    let (end, other) = if xi > 0.0 {
+        (nodes.last(), chain.elements.first().and_then(|n| n.first()))
+    } else {
+        (nodes.first(), chain.elements.last().and_then(|n| n.last()))
+    };
+    let is_last = if xi > 0.0 {
+        element + 1 == chain.elements.len()
+    } else {
+        element == 0
+    };
+    let closed = chain.elements.len() > 1 && end == other;
+    if !is_last || closed {
+        return false;
+    }
+    let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
+    let t = direction(nodes, positions, xi).unwrap_or([0.0; 2]);
+    xi * dot(to, t) > near
+}
+
+/// Puts a slave node's force on it, and its reverse on the nodes of the master.
+fn hand_on(seen: &Seen, node: usize, force: [f64; 2], foot: &Foot, contact: &mut [[f64; 2]]) {
+    let nodes = &seen.surfaces[foot.spot.surface].elements[foot.spot.element];
+    let n = shape(nodes.len(), foot.spot.xi).n;
+    for k in 0..2 {
+        contact[node][k] += force[k];
+        for (&master, share) in nodes.iter().zip(n) {
+            contact[master][k] -= share * force[k];
+        }
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn size(v: [f64; 2]) -> f64 {
+    dot(v, v).sqrt()
+}

@@ -1,0 +1,14 @@
+//! The interface between slave nodes and master surfaces.
+
+pub mod balance;
+pub mod corner;
+pub mod feet;
+pub mod geometric_tangent;
+pub mod judge;
+pub mod projection;
+pub mod record;
+pub mod state;
+pub mod stick_point;
+pub mod table1;
+pub mod table2;
+pub mod tracking;

@@ -1,0 +1,460 @@
+//! Projection of a slave node on the chains of interface elements that it may touch (Fig. 2).
+//!
+//! S* is the closest point of all candidate elements. Between two elements that meet at an angle the normal at the
+//! common node is the mean of the two; past an end of a chain there is nothing to touch. Frame: the outward normal n
+//! lies to the right of the walk along the chain, t is n turned 90 degrees anticlockwise, that is, t points along
+//! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
+
+use crate::contact::corner;
+use crate::contact::geometric_tangent::Curve;
+use crate::fem::lagrange::{MAX_NODES, samples, shape};
+use crate::model::Surface;
+
+/// How far past an end of a chain a node still counts as over it, in lengths of the last element.
+const END_TOLERANCE: f64 = 1e-9;
+/// By how much another element must be closer before a node leaves its own, relative to the element's length.
+const STAY_TOLERANCE: f64 = 1e-12;
+/// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
+const BULGE: f64 = 0.5;
+
+/// A point of a chain of interface elements.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SurfacePoint {
+    /// Number of the surface in the scene.
+    pub surface: usize,
+    /// Number of the element in the surface.
+    pub element: usize,
+    /// Coordinate in the element, −1 to 1; without bounds on an endless line.
+    pub xi: f64,
+}
+
+/// Geometry at a projection, frozen during a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projection {
+    /// Position of S*.
+    pub foot: [f64; 2],
+    /// Outward normal.
+    pub normal: [f64; 2],
+    /// (x_S − x_S*) · n.
+    pub gap: f64,
+    /// Shape functions N_i of the master element at S*; entries beyond its nodes are zero.
+    pub shape: [f64; MAX_NODES],
+    /// dN_i/dξ there.
+    pub shape_slope: [f64; MAX_NODES],
+    /// Derivatives of the element's curve; none where S* lies on an end of the element.
+    pub curve: Option<Curve>,
+}
+
+/// n turned 90 degrees anticlockwise.
+pub fn tangent(normal: [f64; 2]) -> [f64; 2] {
+    [-normal[1], normal[0]]
+}
+
+/// Finds S* for a slave node at `slave` among the surfaces `candidates`.
+///
+/// `positions` are the current positions of the scene's nodes; `previous` is the spot that the node had, which it
+/// keeps where another is not truly closer. None past the ends of all chains.
+pub fn project(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    candidates: &[usize],
+    positions: &[[f64; 2]],
+    previous: Option<SurfacePoint>,
+) -> Option<SurfacePoint> {
+    let mut best: Option<Best> = None;
+    if let Some(spot) = previous {
+        consider(slave, surfaces, positions, spot, true, &mut best);
+    }
+    for &surface in candidates {
+        for element in 0..surfaces[surface].elements.len() {
+            let spot = SurfacePoint {
+                surface,
+                element,
+                xi: 0.0,
+            };
+            if previous.is_none_or(|p| (p.surface, p.element) != (surface, element)) {
+                consider(slave, surfaces, positions, spot, false, &mut best);
+            }
+        }
+    }
+    let Best { spot, .. } = best?;
+    (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
+}
+
+/// The closest point so far.
+struct Best {
+    spot: SurfacePoint,
+    distance: f64,
+}
+
+/// Takes the closest point of the element of `spot` if it is truly closer than the best so far; `warm` where its ξ is a
+/// good guess.
+fn consider(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    positions: &[[f64; 2]],
+    spot: SurfacePoint,
+    warm: bool,
+    best: &mut Option<Best>,
+) {
+    let surface = &surfaces[spot.surface];
+    let nodes = &surface.elements[spot.element];
+    let own = Bounds::new(nodes, positions);
+    if let Some(best) = best
+        && !surface.endless
+        && own.lies_beyond(slave, best.distance)
+    {
+        return;
+    }
+    let (distance, xi) = if surface.endless {
+        closest_of_line(nodes, positions, slave)
+    } else {
+        closest(nodes, positions, slave, warm.then_some(spot.xi))
+    };
+    let slack = STAY_TOLERANCE * own.size();
+    if best
+        .as_ref()
+        .is_none_or(|best| distance < best.distance - slack)
+    {
+        *best = Some(Best {
+            spot: SurfacePoint { xi, ..spot },
+            distance,
+        });
+    }
+}
+
+/// The border of two elements of a surface that follow each other, as an end of the first of them; none where they do not.
+pub fn border(
+    surface: &Surface,
+    surface_number: usize,
+    from: usize,
+    to: usize,
+) -> Option<SurfacePoint> {
+    [1.0, -1.0].into_iter().find_map(|xi| {
+        let end = SurfacePoint {
+            surface: surface_number,
+            element: from,
+            xi,
+        };
+        let (across, _) = neighbour(surface, end)?;
+        (across == to).then_some(end)
+    })
+}
+
+/// Half the angle between the normals of the two elements that meet at a border, in radians, where they form a concave
+/// corner; none elsewhere.
+pub fn concave(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> Option<f64> {
+    let (other, xi) = neighbour(surface, border)?;
+    let slope = |element: usize, xi: f64| {
+        let nodes = &surface.elements[element];
+        blend(nodes, positions, &shape(nodes.len(), xi).d)
+    };
+    let (own, across) = (slope(border.element, border.xi), slope(other, xi));
+    if border.xi > 0.0 {
+        corner::concave(own, across)
+    } else {
+        corner::concave(across, own)
+    }
+}
+
+/// Geometry at a spot, for a slave node at `slave`.
+pub fn footing(
+    surfaces: &[Surface],
+    spot: SurfacePoint,
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+) -> Projection {
+    let surface = &surfaces[spot.surface];
+    let nodes = &surface.elements[spot.element];
+    let s = shape(nodes.len(), spot.xi);
+    let foot = blend(nodes, positions, &s.n);
+    let slope = blend(nodes, positions, &s.d);
+    let normal = normal_at(surface, spot, positions, slope);
+    let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
+    let inside = spot.xi.abs() != 1.0 || surface.endless;
+    Projection {
+        foot,
+        normal,
+        gap,
+        shape: s.n,
+        shape_slope: s.d,
+        curve: inside.then(|| Curve {
+            slope,
+            bend: blend(nodes, positions, &s.dd),
+        }),
+    }
+}
+
+/// Outward normal at a spot, dx/dξ of whose element is `slope`: the mean of both sides' where two elements meet.
+fn normal_at(
+    surface: &Surface,
+    spot: SurfacePoint,
+    positions: &[[f64; 2]],
+    slope: [f64; 2],
+) -> [f64; 2] {
+    let own = right_of(slope);
+    let Some((other, xi)) = neighbour(surface, spot) else {
+        return own;
+    };
+    let nodes = &surface.elements[other];
+    let across = right_of(blend(nodes, positions, &shape(nodes.len(), xi).d));
+    unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
+}
+
+/// The element that meets this spot's own there, and where on it; none inside an element or at an end.
+fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
+    let count = surface.elements.len();
+    let own = &surface.elements[spot.element];
+    let (other, xi, node, met) = if spot.xi == 1.0 {
+        let other = (spot.element + 1) % count;
+        (other, -1.0, own.last(), surface.elements[other].first())
+    } else if spot.xi == -1.0 {
+        let other = (spot.element + count - 1) % count;
+        (other, 1.0, own.first(), surface.elements[other].last())
+    } else {
+        return None;
+    };
+    (other != spot.element && node == met).then_some((other, xi))
+}
+
+fn past_end(
+    surface: &Surface,
+    spot: SurfacePoint,
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+) -> bool {
+    if surface.endless || spot.xi.abs() < 1.0 || neighbour(surface, spot).is_some() {
+        return false;
+    }
+    let nodes = &surface.elements[spot.element];
+    let s = shape(nodes.len(), spot.xi);
+    let (foot, slope) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
+    let beyond = spot.xi * ((slave[0] - foot[0]) * slope[0] + (slave[1] - foot[1]) * slope[1]);
+    beyond > END_TOLERANCE * Bounds::new(nodes, positions).size() * length(slope)
+}
+
+/// Distance to the closest point of the endless straight line through an element of two nodes, and its coordinate,
+/// which is not bounded.
+fn closest_of_line(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
+    let at = |xi: f64| blend(nodes, positions, &shape(nodes.len(), xi).n);
+    let (start, end) = (at(-1.0), at(1.0));
+    let (along, to) = (
+        [end[0] - start[0], end[1] - start[1]],
+        [slave[0] - start[0], slave[1] - start[1]],
+    );
+    let part = (to[0] * along[0] + to[1] * along[1])
+        / (along[0] * along[0] + along[1] * along[1]).max(f64::MIN_POSITIVE);
+    let xi = 2.0 * part - 1.0;
+    (length(away(slave, at(xi))), xi)
+}
+
+/// Distance to the closest point of an element, and its coordinate; `guess` is a coordinate that may be close.
+fn closest(
+    nodes: &[usize],
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+    guess: Option<f64>,
+) -> (f64, f64) {
+    let squared = |n: &[f64; MAX_NODES]| {
+        let to = away(slave, blend(nodes, positions, n));
+        to[0] * to[0] + to[1] * to[1]
+    };
+    let guess = guess.map(|xi| xi.clamp(-1.0, 1.0));
+    let guess = guess.map(|xi| (squared(&shape(nodes.len(), xi).n), xi));
+    let samples = samples(nodes.len()).iter();
+    let start = samples.map(|(xi, n)| (squared(n), *xi)).chain(guess).fold(
+        (f64::INFINITY, 0.0),
+        |best, now| {
+            if now.0 < best.0 { now } else { best }
+        },
+    );
+    let refined = descend(nodes, positions, slave, start.1);
+    let ended = (squared(&shape(nodes.len(), refined).n), refined);
+    let (squared, xi) = if ended.0 <= start.0 { ended } else { start };
+    (squared.sqrt(), xi)
+}
+
+/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1, falling back on Gauss-Newton where the curve bends too much
+/// towards the node.
+fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
+    let mut xi = start;
+    for _ in 0..50 {
+        let s = shape(nodes.len(), xi);
+        let (x, d, dd) = (
+            blend(nodes, positions, &s.n),
+            blend(nodes, positions, &s.d),
+            blend(nodes, positions, &s.dd),
+        );
+        let to = [slave[0] - x[0], slave[1] - x[1]];
+        let slope = d[0] * d[0] + d[1] * d[1];
+        let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
+        let denominator = if curvature > 0.1 * slope {
+            curvature
+        } else {
+            slope
+        };
+        if denominator == 0.0 {
+            break;
+        }
+        let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-1.0, 1.0);
+        let step = (next - xi).abs();
+        xi = next;
+        if step <= 2.0 * f64::EPSILON {
+            break;
+        }
+    }
+    xi
+}
+
+/// The unit vector to the right of a direction.
+fn right_of(d: [f64; 2]) -> [f64; 2] {
+    unit([d[1], -d[0]]).unwrap_or([0.0, 1.0])
+}
+
+fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
+    nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
+        [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
+    })
+}
+
+fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
+    [slave[0] - x[0], slave[1] - x[1]]
+}
+
+/// Not hypot, which costs ten times as much: lengths of a scene are far from the ends of the range of numbers.
+fn length(v: [f64; 2]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
+fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
+    let length = length(v);
+    (length > 0.0).then(|| [v[0] / length, v[1] / length])
+}
+
+/// The box around the nodes of an element.
+struct Bounds {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Bounds {
+    fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for &n in nodes {
+            for k in 0..2 {
+                low[k] = low[k].min(positions[n][k]);
+                high[k] = high[k].max(positions[n][k]);
+            }
+        }
+        Bounds { low, high }
+    }
+
+    fn sides(&self) -> [f64; 2] {
+        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+    }
+
+    /// Its diagonal.
+    fn size(&self) -> f64 {
+        length(self.sides())
+    }
+
+    /// Whether the whole element is further from a point than `distance`.
+    fn lies_beyond(&self, point: [f64; 2], distance: f64) -> bool {
+        let [width, height] = self.sides();
+        // More than the diagonal, without a root.
+        let bulge = BULGE * (width + height);
+        let outside = |k: usize| {
+            let out = (self.low[k] - point[k]).max(point[k] - self.high[k]) - bulge;
+            out.max(0.0)
+        };
+        let (x, y) = (outside(0), outside(1));
+        x * x + y * y > distance * distance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(elements: Vec<Vec<usize>>) -> Vec<Surface> {
+        vec![Surface {
+            name: "s".into(),
+            elements,
+            rigid: true,
+            endless: false,
+        }]
+    }
+
+    /// A flat floor of two 3-node elements, walked towards −x, so that +y is outward.
+    fn floor() -> (Vec<Surface>, Vec<[f64; 2]>) {
+        let positions = (0..5).map(|k| [2.0 - k as f64, 0.0]).collect();
+        (surface(vec![vec![0, 1, 2], vec![2, 3, 4]]), positions)
+    }
+
+    #[test]
+    fn a_node_over_a_floor_sees_its_height_as_gap_and_up_as_normal() {
+        let (s, x) = floor();
+        for (slave, element) in [([1.3, 0.2], 0), ([-0.7, -0.1], 1)] {
+            let spot = project(slave, &s, &[0], &x, None).unwrap();
+            let f = footing(&s, spot, &x, slave);
+            assert_eq!(spot.element, element);
+            assert!((f.gap - slave[1]).abs() < 1e-15 && (f.normal[1] - 1.0).abs() < 1e-15);
+            assert!((f.foot[0] - slave[0]).abs() < 1e-14);
+            assert_eq!(tangent(f.normal), [-f.normal[1], f.normal[0]]);
+        }
+    }
+
+    #[test]
+    fn past_an_end_there_is_nothing_to_touch() {
+        let (s, x) = floor();
+        assert!(project([2.01, 0.0], &s, &[0], &x, None).is_none());
+        assert!(project([2.0, -0.3], &s, &[0], &x, None).is_some());
+    }
+
+    #[test]
+    fn an_endless_line_has_no_ends_and_the_same_gap_everywhere() {
+        let mut s = surface(vec![vec![0, 1]]);
+        s[0].endless = true;
+        let x = [[2.0, 1.0], [0.0, 0.0]];
+        let n = [-1.0 / 5f64.sqrt(), 2.0 / 5f64.sqrt()];
+        for along in [-1e3, -1.0, 0.3, 1.0, 40.0] {
+            let slave = [2.0 * along + 0.1 * n[0], along + 0.1 * n[1]];
+            let spot = project(slave, &s, &[0], &x, None).unwrap();
+            let f = footing(&s, spot, &x, slave);
+            assert!((f.gap - 0.1).abs() < 1e-12, "{along}: {}", f.gap);
+            assert!((f.normal[0] - n[0]).abs() < 1e-15 && f.curve.is_some());
+        }
+    }
+
+    #[test]
+    fn a_convex_corner_has_the_mean_normal_and_a_concave_one_the_nearer_side() {
+        let roof = surface(vec![vec![0, 1], vec![1, 2]]);
+        let x = [[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0]];
+        let spot = project([0.0, 0.5], &roof, &[0], &x, None).unwrap();
+        let f = footing(&roof, spot, &x, [0.0, 0.5]);
+        assert!(f.normal[0].abs() < 1e-15 && (f.gap - 0.5).abs() < 1e-15);
+        let valley = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];
+        let spot = project([0.2, 0.5], &roof, &[0], &valley, None).unwrap();
+        assert_eq!(spot.element, 0);
+    }
+
+    #[test]
+    fn the_closest_point_of_a_curve_is_perpendicular_below_the_node() {
+        let m = 5;
+        let positions: Vec<[f64; 2]> = (0..m)
+            .map(|k| k as f64 * 0.4)
+            .map(|a| [-a.cos(), a.sin()])
+            .collect();
+        let s = surface(vec![(0..m).collect()]);
+        for angle in [0.1_f64, 0.77, 1.5] {
+            for radius in [0.9, 1.0, 1.4] {
+                let slave = [-radius * angle.cos(), radius * angle.sin()];
+                let spot = project(slave, &s, &[0], &positions, None).unwrap();
+                let f = footing(&s, spot, &positions, slave);
+                let d = blend(&s[0].elements[0], &positions, &shape(m, spot.xi).d);
+                let off = (slave[0] - f.foot[0]) * d[0] + (slave[1] - f.foot[1]) * d[1];
+                assert!(off.abs() < 1e-14, "{angle} {radius} {off}");
+            }
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What a minor iteration found at one slave node.
+
+use crate::contact::projection::SurfacePoint;
+use crate::contact::table2::Decision;
+use crate::model::Mode;
+use serde::{Deserialize, Serialize};
+
+/// What a minor iteration found at one slave node. Forces are totals, on the slave node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactRecord {
+    /// Table 2's verdict, with the numbers that it compared. `decision.before` is the mode of this solve and
+    /// `decision.next` the mode that the next one takes.
+    pub decision: Decision,
+    /// Whether the mode of this solve, or the next, was forced by the user.
+    pub forced: Forced,
+    /// Gap after this solve, on the frozen geometry; negative is penetration.
+    pub gap: f64,
+    /// Normal force; compression positive.
+    pub f_n: f64,
+    /// Tangential force along t (n turned 90 degrees anticlockwise).
+    pub f_t: f64,
+    /// Largest tangential force that friction can give, with the sign that it would have (eqn 20), from this solve.
+    pub t_max: f64,
+    /// T_max that this solve was made with (the lagged one); equal to `t_max` where it has settled.
+    pub t_max_used: f64,
+    /// Slip u_tS* − u_tS, as the settings count it.
+    pub slip: f64,
+    /// How far it is from where it stuck, along the surface and with the sign of slip; 0 while it is free.
+    pub drift: f64,
+    /// Where S* lies; none past the ends of all surfaces.
+    pub spot: Option<SurfacePoint>,
+    /// Outward normal n at S*.
+    pub normal: [f64; 2],
+    /// Position of S* at the start of this major iteration.
+    pub foot: [f64; 2],
+    /// A force component was left to the support, since nothing else in its equation could move (normal, tangential).
+    pub carried: [bool; 2],
+}
+
+/// How the user stands behind a node's mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Forced {
+    #[default]
+    No,
+    /// Forced for one minor iteration.
+    Once(Mode),
+    /// Forced until released.
+    Held(Mode),
+}

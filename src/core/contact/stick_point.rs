@@ -1,0 +1,200 @@
+//! Where a node stuck, and how far it has gone from there along its surface.
+//!
+//! The paper's fixed mode asks for no tangential motion within a major iteration and does not remember where the node
+//! stuck. A node that closes a gap g without tangential motion lands on its own S*, so that alone makes no drift; but
+//! what slid in one major iteration and is taken back in the next is a sum of steps along tangents that have turned
+//! and stretched since. The anchor is the material point of the master (surface, element, ξ) where the node stuck:
+//!
+//! - it is set where the node touches: where its path, straight over the major iteration, pierces the surface, at
+//!   S* − g ρ t (eqn 14);
+//! - it goes along when an increment is accepted in which the node slides (and with every major iteration, where slip is
+//!   counted over those), and is gone when the node is free, unless the judge has
+//!   asked for the net slip ([`crate::contact::judge`]): then the anchor of the increment's start is kept;
+//! - the drift is the length of the surface from S* to it, positive where it lies ahead of S* along t.
+//!
+//! Drift has the sign of slip, u_tS* − u_tS: what sticking must take back (Table 1).
+
+use crate::contact::projection::{Projection, SurfacePoint, project, tangent};
+use crate::fem::lagrange::shape;
+use crate::model::Surface;
+
+/// Gauss-Legendre points and weights for the length of an element: here rather than made anew, since this is asked for
+/// in every major iteration.
+const POINTS: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+];
+
+/// Where a node that was free at the start of a major iteration touched in it: the point of the surface where its path
+/// pierced. None past the ends of its surface.
+///
+/// `positions` are those at the start of that major iteration, about which `footing` was taken.
+pub fn pierced(
+    surfaces: &[Surface],
+    spot: SurfacePoint,
+    footing: &Projection,
+    ratio: f64,
+    positions: &[[f64; 2]],
+) -> Option<SurfacePoint> {
+    if ratio == 0.0 {
+        return Some(spot);
+    }
+    let t = tangent(footing.normal);
+    let point = [0, 1].map(|k| footing.foot[k] - footing.gap * ratio * t[k]);
+    project(point, surfaces, &[spot.surface], positions, Some(spot))
+}
+
+/// Length of a surface from one point of it to another, positive along the walk; the shorter way round a closed one.
+///
+/// Both spots must lie on `surface`.
+pub fn distance(
+    surface: &Surface,
+    from: SurfacePoint,
+    to: SurfacePoint,
+    positions: &[[f64; 2]],
+) -> f64 {
+    let open = if from.element <= to.element {
+        walk(surface, from, to, positions)
+    } else {
+        -walk(surface, to, from, positions)
+    };
+    if from.element == to.element || !closed(surface) {
+        return open;
+    }
+    let whole: f64 = surface
+        .elements
+        .iter()
+        .map(|nodes| length(nodes, -1.0, 1.0, positions))
+        .sum();
+    let other = open - whole.copysign(open);
+    if other.abs() < open.abs() {
+        other
+    } else {
+        open
+    }
+}
+
+/// The same where `from` does not lie behind `to` by whole elements.
+fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
+    if from.element == to.element {
+        return length(&surface.elements[from.element], from.xi, to.xi, positions);
+    }
+    let between = &surface.elements[from.element + 1..to.element];
+    length(&surface.elements[from.element], from.xi, 1.0, positions)
+        + between
+            .iter()
+            .map(|nodes| length(nodes, -1.0, 1.0, positions))
+            .sum::<f64>()
+        + length(&surface.elements[to.element], -1.0, to.xi, positions)
+}
+
+fn closed(surface: &Surface) -> bool {
+    let first = surface.elements.first().and_then(|nodes| nodes.first());
+    let last = surface.elements.last().and_then(|nodes| nodes.last());
+    surface.elements.len() > 1 && first == last
+}
+
+/// Length of an element's curve from one ξ to another; negative backwards.
+fn length(nodes: &[usize], from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
+    if from == to {
+        return 0.0;
+    }
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let speed = |xi: f64| {
+        let d = shape(nodes.len(), xi).d;
+        let sum =
+            |k: usize| -> f64 { nodes.iter().zip(d).map(|(&n, d)| d * positions[n][k]).sum() };
+        let (x, y) = (sum(0), sum(1));
+        (x * x + y * y).sqrt()
+    };
+    let sum: f64 = POINTS
+        .iter()
+        .map(|(x, w)| w * speed(middle + half * x))
+        .sum();
+    half * sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::projection::footing;
+
+    fn surface(elements: Vec<Vec<usize>>) -> Surface {
+        Surface {
+            name: "s".into(),
+            elements,
+            rigid: true,
+            endless: false,
+        }
+    }
+
+    fn spot(element: usize, xi: f64) -> SurfacePoint {
+        SurfacePoint {
+            surface: 0,
+            element,
+            xi,
+        }
+    }
+
+    /// Two 5-node elements on a quarter of the unit circle each, walked anticlockwise.
+    fn arc() -> (Surface, Vec<[f64; 2]>) {
+        let positions = (0..9)
+            .map(|k| f64::from(k) * std::f64::consts::PI / 12.0)
+            .map(|a| [a.cos(), a.sin()])
+            .collect();
+        (surface(vec![(0..5).collect(), (4..9).collect()]), positions)
+    }
+
+    #[test]
+    fn the_points_are_those_of_the_gauss_rule() {
+        for ((x, w), (exact_x, exact_w)) in POINTS.iter().zip(crate::fem::lagrange::gauss(5)) {
+            assert!((x - exact_x).abs() < 1e-15 && (w - exact_w).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn distances_are_lengths_of_the_curve_also_across_element_borders() {
+        let (s, x) = arc();
+        for (from, to, angle) in [
+            (spot(0, -1.0), spot(0, 1.0), 60.0),
+            (spot(0, 0.0), spot(1, 0.5), 75.0),
+            (spot(1, 0.5), spot(0, 0.0), -75.0),
+            (spot(0, 1.0), spot(1, -1.0), 0.0),
+        ] {
+            let exact = f64::to_radians(angle);
+            let found = distance(&s, from, to, &x);
+            // The 5-node element is a circle to 1e-4 only.
+            assert!((found - exact).abs() < 1e-4, "{found} {exact}");
+        }
+        assert_eq!(distance(&s, spot(1, 0.3), spot(1, 0.3), &x), 0.0);
+    }
+
+    #[test]
+    fn round_a_closed_surface_the_shorter_way_counts() {
+        // A square of side 1, walked anticlockwise.
+        let x = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let s = surface(vec![vec![0, 1], vec![1, 2], vec![2, 3], vec![3, 0]]);
+        let there = distance(&s, spot(0, 0.0), spot(3, 0.0), &x);
+        assert!((there + 1.0).abs() < 1e-15, "{there}");
+        let back = distance(&s, spot(3, 0.0), spot(0, 0.0), &x);
+        assert!((back - 1.0).abs() < 1e-15, "{back}");
+    }
+
+    #[test]
+    fn a_node_touches_where_its_straight_path_pierces_the_surface() {
+        let x = [[3.0, 0.0], [-1.0, 0.0]];
+        let s = [surface(vec![vec![0, 1]])];
+        // From (0, 0.5), one to the right for every one down: through the floor at (0.5, 0).
+        let slave = [0.0, 0.5];
+        let start = project(slave, &s, &[0], &x, None).unwrap();
+        let at = footing(&s, start, &x, slave);
+        // Travel of S* relative to S along t (towards −x) and n (up): (−1, −1) · step has both reversed.
+        let (normal, tangential) = (1.0, 1.0);
+        let touched = pierced(&s, start, &at, tangential / normal, &x).unwrap();
+        let d = distance(&s[0], touched, start, &x);
+        assert!((d - 0.5).abs() < 1e-14, "{d}");
+    }
+}

@@ -1,0 +1,185 @@
+//! Table 1: the two equations that a slave node adds in each mode, and T_max (eqn 20).
+//!
+//! The unknowns are the increments ΔF_n, ΔF_t of the interaction force. The paper writes a known ΔF_t as a load on
+//! slave and master; here it stays an unknown whose equation gives its value, which is the same system with one row
+//! more and the same columns in every mode:
+//!
+//! ```text
+//! slave row:    −n ΔF_n − t ΔF_t      (added to K Δu = ΔP)
+//! master row i:  N_i (n ΔF_n + t ΔF_t)
+//! fixed:    Δu_nS* − Δu_nS = g          Δu_tS* − Δu_tS = g ρ
+//! sliding:  Δu_nS* − Δu_nS = g          ΔF_t = T_max − F_t
+//! free:     ΔF_n = −F_n                 ΔF_t = −F_t
+//! ```
+//!
+//! A node that slid in an earlier major iteration of the increment and is then found to stick did not slip at all:
+//! sticking takes that slip back, as measured from the point where it stuck ([`crate::contact::stick_point`]) or as counted;
+//! in the paper's reading, counted over a single major iteration, there is nothing to take back.
+
+use crate::model::{Friction, Mode};
+
+/// What an equation says of the motion of S* relative to S.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Nothing.
+    None,
+    /// Its normal component Δu_nS* − Δu_nS has the factor one.
+    Normal,
+    /// Its tangential component Δu_tS* − Δu_tS has the factor one.
+    Tangential,
+}
+
+/// One equation: motion + d_n ΔF_n + d_t ΔF_t = value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equation {
+    pub motion: Motion,
+    pub d_n: f64,
+    pub d_t: f64,
+    pub value: f64,
+}
+
+/// What a slave node brings into its equations: numbers of the (k−1)th major and the previous minor iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Known {
+    /// Gap g^(k−1), length.
+    pub gap: f64,
+    /// Ratio ρ of tangential to normal travel, where the node touched in this major iteration; else 0.
+    pub ratio: f64,
+    /// Slip already made that sticking must take back (length): the drift from the anchor, or what was counted.
+    pub slip: f64,
+    /// Total forces F_n^(k−1), F_t^(k−1).
+    pub f_n: f64,
+    pub f_t: f64,
+    /// The tangential force of sliding.
+    pub limit: Limit,
+}
+
+/// The tangential force of a sliding node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Limit {
+    /// T_max of the previous minor iteration.
+    Lagged(f64),
+    /// T_max follows F_n within the solve: sign · (coefficient · F_n + cohesion).
+    Consistent {
+        sign: f64,
+        coefficient: f64,
+        cohesion: f64,
+    },
+}
+
+/// Table 1's equations of a node in a mode: normal, then tangential.
+pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
+    let normal = Equation {
+        motion: Motion::Normal,
+        d_n: 0.0,
+        d_t: 0.0,
+        value: known.gap,
+    };
+    match mode {
+        Mode::Fixed => [
+            normal,
+            Equation {
+                motion: Motion::Tangential,
+                d_n: 0.0,
+                d_t: 0.0,
+                value: known.gap * known.ratio - known.slip,
+            },
+        ],
+        Mode::Sliding => [normal, sliding(known)],
+        Mode::Free => [gone(1.0, 0.0, known.f_n), gone(0.0, 1.0, known.f_t)],
+    }
+}
+
+/// The equation that makes a force component vanish.
+pub fn gone(d_n: f64, d_t: f64, force: f64) -> Equation {
+    Equation {
+        motion: Motion::None,
+        d_n,
+        d_t,
+        value: -force,
+    }
+}
+
+fn sliding(known: &Known) -> Equation {
+    let (d_n, value) = match known.limit {
+        Limit::Lagged(t_max) => (0.0, t_max - known.f_t),
+        Limit::Consistent {
+            sign,
+            coefficient,
+            cohesion,
+        } => (
+            -sign * coefficient,
+            sign * (coefficient * known.f_n + cohesion) - known.f_t,
+        ),
+    };
+    Equation {
+        motion: Motion::None,
+        d_n,
+        d_t: 1.0,
+        value,
+    }
+}
+
+/// T_max (eqn 20) for a normal force and a direction (the sign of the tangential force, or 0).
+pub fn t_max(friction: &Friction, f_n: f64, sign: f64) -> f64 {
+    (f_n.abs() * friction.coefficient() + friction.cohesion) * sign
+}
+
+/// The direction of T_max: that of the tangential force; of the slip where there is no such force, so that a node
+/// that enters sliding unloaded does not stay without friction for ever; else the one it had.
+pub fn direction(f_t: f64, tiny_force: f64, slip: f64, tiny_slip: f64, had: f64) -> f64 {
+    if f_t.abs() > tiny_force {
+        f_t.signum()
+    } else if slip.abs() > tiny_slip {
+        slip.signum()
+    } else {
+        had
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KNOWN: Known = Known {
+        gap: -0.2,
+        ratio: 1.5,
+        slip: 0.0,
+        f_n: 3.0,
+        f_t: -1.0,
+        limit: Limit::Lagged(-1.7),
+    };
+
+    #[test]
+    fn the_equations_are_those_of_table_1() {
+        let [n, t] = equations(Mode::Fixed, &KNOWN);
+        assert_eq!((n.motion, n.value), (Motion::Normal, -0.2));
+        assert_eq!((t.motion, t.value), (Motion::Tangential, -0.2 * 1.5));
+        let [n, t] = equations(Mode::Sliding, &KNOWN);
+        assert_eq!((n.motion, n.value), (Motion::Normal, -0.2));
+        assert_eq!((t.d_n, t.d_t, t.value), (0.0, 1.0, -1.7 + 1.0));
+        let [n, t] = equations(Mode::Free, &KNOWN);
+        assert_eq!((n.d_n, n.d_t, n.value), (1.0, 0.0, -3.0));
+        assert_eq!((t.d_n, t.d_t, t.value), (0.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn a_consistent_limit_makes_the_total_force_obey_coulomb_for_any_increment() {
+        let limit = Limit::Consistent {
+            sign: -1.0,
+            coefficient: 0.5,
+            cohesion: 0.1,
+        };
+        let [_, t] = equations(Mode::Sliding, &Known { limit, ..KNOWN });
+        let d_f_n = 0.7;
+        let d_f_t = (t.value - t.d_n * d_f_n) / t.d_t;
+        assert!((KNOWN.f_t + d_f_t + (0.5 * (KNOWN.f_n + d_f_n) + 0.1)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_unloaded_sliding_node_takes_the_direction_of_its_slip() {
+        assert_eq!(direction(0.0, 1e-12, -3.0, 1e-12, 0.0), -1.0);
+        assert_eq!(direction(2.0, 1e-12, -3.0, 1e-12, 0.0), 1.0);
+        assert_eq!(direction(0.0, 1e-12, 0.0, 1e-12, 1.0), 1.0);
+    }
+}

@@ -1,0 +1,343 @@
+//! Table 2: which mode a slave node takes next, and why.
+
+use crate::model::Mode;
+use serde::{Deserialize, Serialize};
+
+/// The cell of Table 2 that fired (row: mode before; column: mode after).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// F_n > 0 and |F_t| < |T_max|.
+    FixedStays,
+    /// F_n > 0 and |F_t| > |T_max|.
+    FixedSlides,
+    /// Its supports drag it over a surface that does not move either: no force can stick it there.
+    FixedDragged,
+    /// F_n <= 0.
+    FixedOpens,
+    /// F_n > 0 and T_max · slip < 0.
+    SlidingSticks,
+    /// F_n > 0 and T_max · slip > 0.
+    SlidingStays,
+    /// F_n <= 0.
+    SlidingOpens,
+    /// g < 0, rough interface.
+    FreeSticks,
+    /// g < 0, smooth interface: straight to sliding.
+    FreeSlides,
+    /// g < 0, rough interface, by a strategy that lets it slide against its travel.
+    FreeEnters,
+    /// g > 0.
+    FreeStays,
+    /// The node's projection lies past an end of every surface: nothing to touch.
+    OffSurface,
+    /// The user holds the mode; Table 2 was not obeyed.
+    Held,
+    /// One change at a time: another node comes first.
+    Waits,
+    /// Newton: F_n − k g <= 0.
+    NewtonOpens,
+    /// Newton: F_n − k g > 0, and |F_t + k slip| within the limit that this gives.
+    NewtonSticks,
+    /// Newton: F_n − k g > 0, and |F_t + k slip| beyond that limit.
+    NewtonSlides,
+    /// A step of Lemke's pivoting, on the problem relaxed by the covering variable.
+    Pivots,
+    /// The state that was found consistent, by pivoting or by the census.
+    Found,
+}
+
+/// What an inequality of Table 2 compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Tested {
+    /// F_n against 0 (force).
+    NormalForce,
+    /// |F_t| against |T_max| (force).
+    ShearForce,
+    /// sgn(T_max) · slip against 0 (length).
+    Slip,
+    /// g against 0 (length).
+    Gap,
+    /// F_n − k g against 0, for the interface's spring stiffness k (force).
+    Pressure,
+    /// |F_t + k slip| against tan φ (F_n − k g) + c (force).
+    Drag,
+    /// The covering variable of Lemke's pivoting against 0: how far the problem is still relaxed (relative).
+    Cover,
+}
+
+/// One inequality of Table 2 with its numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Test {
+    pub tested: Tested,
+    /// Left-hand side.
+    pub value: f64,
+    /// Right-hand side.
+    pub bound: f64,
+    /// Signed distance from switching: positive keeps the mode, negative changes it; force or length.
+    pub margin: f64,
+    /// |margin| is within the tie tolerance.
+    pub tie: bool,
+}
+
+/// Table 2's verdict on one node.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Decision {
+    pub before: Mode,
+    pub next: Mode,
+    pub rule: Rule,
+    /// The inequalities that were tested, in Table 2's order (F_n first); one or two.
+    pub tests: [Option<Test>; 2],
+    /// What Table 2 wanted; differs from `next` only where the user holds the mode.
+    pub wanted: Mode,
+}
+
+/// What Table 2 looks at, for one node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Numbers {
+    pub mode: Mode,
+    /// Gap (length), negative where the node penetrates.
+    pub gap: f64,
+    /// Total normal and tangential force.
+    pub f_n: f64,
+    pub f_t: f64,
+    /// T_max of this solve, signed.
+    pub t_max: f64,
+    /// u_tS* − u_tS as counted (length).
+    pub slip: f64,
+    /// How it enters contact.
+    pub entry: Entry,
+}
+
+/// How a free node enters contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entry {
+    /// A rough node, by Table 2.
+    Fixed,
+    /// A smooth one, by Table 2.
+    Smooth,
+    /// A rough one, by a strategy that lets it slide.
+    Sliding,
+}
+
+/// What counts as a tie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ties {
+    /// Forces closer than this tie.
+    pub force: f64,
+    /// Lengths closer than this tie.
+    pub length: f64,
+    /// Ties keep the mode; else the inequalities hold as printed, and neither tolerance is used.
+    pub keep: bool,
+}
+
+/// Table 2.
+pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
+    let opens = ties.test(
+        Tested::NormalForce,
+        numbers.f_n,
+        0.0,
+        numbers.f_n,
+        ties.force,
+    );
+    let (next, rule, tests) = match numbers.mode {
+        Mode::Free => {
+            let test = ties.test(Tested::Gap, numbers.gap, 0.0, numbers.gap, ties.length);
+            let (next, rule) = match (ties.switches(&test, false), numbers.entry) {
+                (false, _) => (Mode::Free, Rule::FreeStays),
+                (true, Entry::Fixed) => (Mode::Fixed, Rule::FreeSticks),
+                (true, Entry::Smooth) => (Mode::Sliding, Rule::FreeSlides),
+                (true, Entry::Sliding) => (Mode::Sliding, Rule::FreeEnters),
+            };
+            (next, rule, [Some(test), None])
+        }
+        Mode::Fixed if ties.switches(&opens, true) => {
+            (Mode::Free, Rule::FixedOpens, [Some(opens), None])
+        }
+        Mode::Sliding if ties.switches(&opens, true) => {
+            (Mode::Free, Rule::SlidingOpens, [Some(opens), None])
+        }
+        Mode::Fixed => {
+            let (shear, limit) = (numbers.f_t.abs(), numbers.t_max.abs());
+            let test = ties.test(Tested::ShearForce, shear, limit, limit - shear, ties.force);
+            match ties.switches(&test, false) {
+                true => (Mode::Sliding, Rule::FixedSlides, [Some(opens), Some(test)]),
+                false => (Mode::Fixed, Rule::FixedStays, [Some(opens), Some(test)]),
+            }
+        }
+        Mode::Sliding => {
+            let slip = if numbers.t_max == 0.0 {
+                0.0
+            } else {
+                numbers.t_max.signum() * numbers.slip
+            };
+            let test = ties.test(Tested::Slip, slip, 0.0, slip, ties.length);
+            match ties.switches(&test, false) {
+                true => (Mode::Fixed, Rule::SlidingSticks, [Some(opens), Some(test)]),
+                false => (Mode::Sliding, Rule::SlidingStays, [Some(opens), Some(test)]),
+            }
+        }
+    };
+    Decision {
+        before: numbers.mode,
+        next,
+        rule,
+        tests,
+        wanted: next,
+    }
+}
+
+impl Ties {
+    pub fn test(
+        &self,
+        tested: Tested,
+        value: f64,
+        bound: f64,
+        margin: f64,
+        tolerance: f64,
+    ) -> Test {
+        let tie = if self.keep {
+            margin.abs() <= tolerance
+        } else {
+            margin == 0.0
+        };
+        Test {
+            tested,
+            value,
+            bound,
+            margin,
+            tie,
+        }
+    }
+
+    /// Whether a test changes the mode; `at_zero` says what the printed table does with an exact tie.
+    fn switches(&self, test: &Test, at_zero: bool) -> bool {
+        if test.tie {
+            !self.keep && at_zero
+        } else {
+            test.margin < 0.0
+        }
+    }
+}
+
+impl Decision {
+    /// The inequality that decided: the one that changed the mode, or else the last that was tested.
+    pub fn decisive(&self) -> Option<&Test> {
+        self.tests[1].as_ref().or(self.tests[0].as_ref())
+    }
+
+    /// Signed distance of the deciding inequality from switching (force or length); positive kept the mode.
+    pub fn margin(&self) -> f64 {
+        self.decisive().map_or(f64::INFINITY, |t| t.margin)
+    }
+
+    /// A fixed node that slips all the same, by so much (length): nothing that is unknown can move to stop it, so it slides.
+    pub fn dragged(self, slip: f64) -> Self {
+        let test = Test {
+            tested: Tested::Slip,
+            value: slip.abs(),
+            bound: 0.0,
+            margin: -slip.abs(),
+            tie: false,
+        };
+        Decision {
+            next: Mode::Sliding,
+            wanted: Mode::Sliding,
+            rule: Rule::FixedDragged,
+            tests: [self.tests[0], Some(test)],
+            ..self
+        }
+    }
+
+    /// Whether the mode changes.
+    pub fn changes(&self) -> bool {
+        self.before != self.next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TIES: Ties = Ties {
+        force: 1e-10,
+        length: 1e-10,
+        keep: true,
+    };
+    const PRINTED: Ties = Ties {
+        keep: false,
+        ..TIES
+    };
+
+    fn numbers(mode: Mode) -> Numbers {
+        Numbers {
+            mode,
+            gap: 0.1,
+            f_n: 2.0,
+            f_t: -0.5,
+            t_max: -1.0,
+            slip: -0.01,
+            entry: Entry::Fixed,
+        }
+    }
+
+    fn verdict(n: Numbers, ties: &Ties) -> (Mode, Rule) {
+        let d = decide(&n, ties);
+        (d.next, d.rule)
+    }
+
+    #[test]
+    fn every_cell_of_table_2_fires_on_its_inequality() {
+        use Mode::*;
+        let (x, s, f) = (numbers(Fixed), numbers(Sliding), numbers(Free));
+        let cases = [
+            (x, Fixed, Rule::FixedStays),
+            (Numbers { f_t: -1.5, ..x }, Sliding, Rule::FixedSlides),
+            (Numbers { f_n: -0.1, ..x }, Free, Rule::FixedOpens),
+            (Numbers { slip: 0.01, ..s }, Fixed, Rule::SlidingSticks),
+            (s, Sliding, Rule::SlidingStays),
+            (Numbers { f_n: -0.1, ..s }, Free, Rule::SlidingOpens),
+            (Numbers { gap: -0.1, ..f }, Fixed, Rule::FreeSticks),
+            (
+                Numbers {
+                    gap: -0.1,
+                    entry: Entry::Smooth,
+                    ..f
+                },
+                Sliding,
+                Rule::FreeSlides,
+            ),
+            (f, Free, Rule::FreeStays),
+        ];
+        for (n, next, rule) in cases {
+            assert_eq!(verdict(n, &TIES), (next, rule));
+            assert_eq!(verdict(n, &PRINTED), (next, rule));
+            let d = decide(&n, &TIES);
+            assert_eq!(
+                d.changes(),
+                d.margin() < 0.0,
+                "the margin's sign tells the change: {d:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn ties_keep_the_mode_and_the_printed_table_opens_without_force() {
+        let stuck = Numbers {
+            f_n: 1e-12,
+            f_t: 0.0,
+            t_max: 0.0,
+            ..numbers(Mode::Fixed)
+        };
+        assert_eq!(verdict(stuck, &TIES).0, Mode::Fixed);
+        let unloaded = Numbers { f_n: 0.0, ..stuck };
+        assert_eq!(verdict(unloaded, &TIES).0, Mode::Fixed);
+        assert_eq!(verdict(unloaded, &PRINTED).0, Mode::Free);
+        let touching = Numbers {
+            gap: 0.0,
+            ..numbers(Mode::Free)
+        };
+        assert_eq!(verdict(touching, &TIES).0, Mode::Free);
+        assert_eq!(verdict(touching, &PRINTED).0, Mode::Free);
+    }
+}

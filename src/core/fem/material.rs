@@ -1,0 +1,242 @@
+//! Elastic materials in the plane: stress and its exact derivative for a given Green-Lagrange strain.
+//!
+//! Strains and stresses are triples (11, 22, 12), the shear *strain* doubled, so that S · δE is the work. With Lamé's
+//! λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)), C = I + 2E and J = det F (of all three dimensions):
+//!
+//! ```text
+//! St Venant-Kirchhoff   S = λ tr(E) I + 2μ E
+//! neo-Hookean           W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²,   S = μ (I − C⁻¹) + λ ln J C⁻¹
+//! ```
+//!
+//! Plane strain has E33 = 0. Plane stress has S33 = 0, and E33 is eliminated exactly: with λ' = 2λμ/(λ + 2μ) for
+//! λ in the first law, by a scalar Newton iteration in the second.
+
+use crate::model::Elastic;
+use crate::model::{Law, Plane};
+use nalgebra::{Matrix2, Matrix3, Vector3};
+
+/// Most steps of the scalar iteration of plane stress; it converges monotonically, in five or six.
+const MOST_STEPS: usize = 50;
+
+/// An elastic material, ready for use.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Lamé's first constant.
+    pub lambda: f64,
+    /// Shear modulus.
+    pub mu: f64,
+    /// The law.
+    pub law: Law,
+    /// What the third direction does.
+    pub plane: Plane,
+    /// Thickness in the reference configuration.
+    pub thickness: f64,
+}
+
+/// What a material answers to a strain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response {
+    /// Second Piola-Kirchhoff stress S11, S22, S12.
+    pub stress: Vector3<f64>,
+    /// dS/dE, the shear strain doubled; symmetric.
+    pub tangent: Matrix3<f64>,
+    /// E33, zero in plane strain.
+    pub thickening: f64,
+}
+
+impl Material {
+    /// The material of a scene.
+    pub fn new(elastic: &Elastic) -> Self {
+        let Elastic { young, poisson, .. } = *elastic;
+        Material {
+            lambda: young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
+            mu: young / (2.0 * (1.0 + poisson)),
+            law: elastic.law,
+            plane: elastic.plane,
+            thickness: elastic.thickness,
+        }
+    }
+
+    /// Stress and tangent at a strain E11, E22, 2 E12; none where the law has no answer, since a neo-Hookean material
+    /// cannot be turned inside out.
+    pub fn response(&self, strain: &Vector3<f64>) -> Option<Response> {
+        match self.law {
+            Law::Svk => Some(self.linear(strain)),
+            Law::NeoHookean => self.neo_hookean(strain),
+        }
+    }
+
+    /// S = C : E with the constant moduli of the plane. The updated-Lagrangian stress update has it for every
+    /// increment.
+    pub fn linear(&self, strain: &Vector3<f64>) -> Response {
+        let (mu, trace) = (self.mu, strain.x + strain.y);
+        // λ / (λ + 2μ) = ν / (1 − ν).
+        let share = self.lambda / (self.lambda + 2.0 * mu);
+        let (lambda, thickening) = match self.plane {
+            Plane::Strain => (self.lambda, 0.0),
+            Plane::Stress => (2.0 * mu * share, -share * trace),
+        };
+        let direct = lambda + 2.0 * mu;
+        let tangent = Matrix3::new(direct, lambda, 0.0, lambda, direct, 0.0, 0.0, 0.0, mu);
+        let stress = Vector3::new(
+            direct * strain.x + lambda * strain.y,
+            lambda * strain.x + direct * strain.y,
+            mu * strain.z,
+        );
+        Response {
+            stress,
+            tangent,
+            thickening,
+        }
+    }
+
+    fn neo_hookean(&self, strain: &Vector3<f64>) -> Option<Response> {
+        let (lambda, mu) = (self.lambda, self.mu);
+        let e = Matrix2::new(strain.x, 0.5 * strain.z, 0.5 * strain.z, strain.y);
+        // det C − 1 of the plane, without the difference of numbers near one.
+        let swelling = 2.0 * e.trace() + 4.0 * e.determinant();
+        if swelling.is_nan() || swelling <= -1.0 {
+            return None;
+        }
+        let inverse = (Matrix2::identity() + 2.0 * e).try_inverse()?;
+        let log = swelling.ln_1p();
+        // μ − λ ln J appears in stress and tangent; in plane stress it is μ C33.
+        let (pressure, direct, thickening) = match self.plane {
+            Plane::Strain => (0.5 * lambda * log, lambda, 0.0),
+            Plane::Stress => {
+                let x = self.log_of_c33(log)?;
+                let c33 = x.exp();
+                let direct = 2.0 * lambda * mu * c33 / (lambda + 2.0 * mu * c33);
+                (-mu * x.exp_m1(), direct, 0.5 * x.exp_m1())
+            }
+        };
+        let s = inverse * (2.0 * mu * e + Matrix2::identity() * pressure);
+        let (a, b, c) = (inverse[(0, 0)], inverse[(1, 1)], inverse[(0, 1)]);
+        let v = Vector3::new(a, b, c);
+        let both = Matrix3::new(
+            a * a,
+            c * c,
+            a * c,
+            c * c,
+            b * b,
+            b * c,
+            a * c,
+            b * c,
+            0.5 * (a * b + c * c),
+        );
+        Some(Response {
+            stress: Vector3::new(s[(0, 0)], s[(1, 1)], 0.5 * (s[(0, 1)] + s[(1, 0)])),
+            tangent: direct * v * v.transpose() + 2.0 * (mu - pressure) * both,
+            thickening,
+        })
+    }
+
+    /// x = ln C33 of plane stress, where `log` is ln det C of the plane: μ (eˣ − 1) + λ/2 (log + x) = 0.
+    ///
+    /// The function is convex and rises, so Newton's steps, from the first on, come from above.
+    fn log_of_c33(&self, log: f64) -> Option<f64> {
+        let (half, mu) = (0.5 * self.lambda, self.mu);
+        let mut x = -half * log / (mu + half);
+        for _ in 0..MOST_STEPS {
+            let step = (mu * x.exp_m1() + half * (log + x)) / (mu * x.exp() + half);
+            x -= step;
+            if step.abs() <= 4.0 * f64::EPSILON * x.abs() {
+                return Some(x);
+            }
+        }
+        x.is_finite().then_some(x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Update;
+
+    fn material(law: Law, plane: Plane, nu: f64) -> Material {
+        Material::new(&Elastic {
+            young: 100.0,
+            poisson: nu,
+            law,
+            plane,
+            thickness: 1.0,
+            update: Update::Total,
+        })
+    }
+
+    fn all() -> impl Iterator<Item = Material> {
+        let laws = [Law::Svk, Law::NeoHookean];
+        let pairs = laws
+            .into_iter()
+            .flat_map(|law| [(law, Plane::Strain), (law, Plane::Stress)]);
+        pairs.flat_map(|(law, plane)| [0.0, 0.3, 0.49].map(|nu| material(law, plane, nu)))
+    }
+
+    const STRAINS: [[f64; 3]; 5] = [
+        [0.0, 0.0, 0.0],
+        [0.3, -0.2, 0.25],
+        [-0.35, 0.6, -0.3],
+        [-0.4, -0.3, 0.1],
+        [2.0, 1.5, 1.0],
+    ];
+
+    #[test]
+    fn the_tangent_is_the_derivative_of_the_stress() {
+        for m in all() {
+            for strain in STRAINS.map(Vector3::from) {
+                let at = m.response(&strain).unwrap();
+                let scale = at.tangent.amax();
+                for k in 0..3 {
+                    let mut h = Vector3::zeros();
+                    h[k] = 1e-5;
+                    let plus = m.response(&(strain + h)).unwrap().stress;
+                    let minus = m.response(&(strain - h)).unwrap().stress;
+                    let difference = (plus - minus) / 2e-5;
+                    let error = (difference - at.tangent.column(k)).amax();
+                    assert!(error < 1e-7 * scale, "{m:?} {strain:?}: {error:e}");
+                }
+                assert!((at.tangent - at.tangent.transpose()).amax() < 1e-15 * scale);
+            }
+        }
+    }
+
+    #[test]
+    fn the_laws_agree_for_small_strains_to_the_last_digits() {
+        for plane in [Plane::Strain, Plane::Stress] {
+            let [svk, neo] = [Law::Svk, Law::NeoHookean].map(|law| material(law, plane, 0.3));
+            let strain = Vector3::new(3e-14, -1e-14, 2e-14);
+            let (a, b) = (
+                svk.response(&strain).unwrap().stress,
+                neo.response(&strain).unwrap().stress,
+            );
+            assert!((a - b).amax() < 1e-12 * a.amax(), "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn plane_stress_has_no_stress_across_the_plane() {
+        for nu in [0.0, 0.3, 0.49] {
+            for strain in STRAINS.map(Vector3::from) {
+                let e = Matrix2::new(strain.x, 0.5 * strain.z, 0.5 * strain.z, strain.y);
+                let svk = material(Law::Svk, Plane::Stress, nu);
+                let e33 = svk.response(&strain).unwrap().thickening;
+                let s33 = svk.lambda * (e.trace() + e33) + 2.0 * svk.mu * e33;
+                assert!(s33.abs() < 1e-13 * svk.lambda.max(1.0));
+                let neo = material(Law::NeoHookean, Plane::Stress, nu);
+                let c33 = 1.0 + 2.0 * neo.response(&strain).unwrap().thickening;
+                let log_j = 0.5 * ((Matrix2::identity() + 2.0 * e).determinant() * c33).ln();
+                let s33 = neo.mu * (1.0 - 1.0 / c33) + neo.lambda * log_j / c33;
+                assert!(s33.abs() < 1e-12 * neo.lambda.max(neo.mu), "{nu} {s33:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_neo_hookean_material_is_not_pressed_to_nothing() {
+        let m = material(Law::NeoHookean, Plane::Strain, 0.3);
+        assert!(m.response(&Vector3::new(-0.5, 0.0, 0.0)).is_none());
+        assert!(m.response(&Vector3::new(f64::NAN, 0.0, 0.0)).is_none());
+        let near = m.response(&Vector3::new(-0.499_999, 0.0, 0.0)).unwrap();
+        assert!(near.stress.x < -1e6);
+    }
+}

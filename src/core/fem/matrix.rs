@@ -1,0 +1,114 @@
+//! Linear bodies, given by a matrix about the undeformed state.
+//!
+//! ```text
+//! stiffness:   f = K u
+//! compliance:  f = y,   u − W y = free λ
+//! ```
+//!
+//! W may be singular, so its forces y stay unknowns beside the displacements. The right-hand side `free λ` is a load on
+//! their equations.
+
+use crate::fem::assembly::{Assembled, NOWHERE};
+use crate::linalg::Pattern;
+use crate::model::{Body, Dofs, Form, Linear};
+
+/// The matrix, in degrees of freedom of the scene.
+pub struct Element {
+    /// Degree of freedom of each row, and where its entries end; they begin where those of the row before end.
+    rows: Vec<(usize, usize)>,
+    /// Degree of freedom of each entry's column.
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    /// Place of each entry in the array of values.
+    slots: Vec<u32>,
+}
+
+impl Element {
+    /// The matrix of a body of the scene whose degrees of freedom these are.
+    pub fn new(dofs: &Dofs, body: &Body, linear: &Linear) -> Self {
+        let place = |k: usize| dofs.first[body.nodes[k / 2]] + k % 2;
+        let mut element = Element {
+            rows: Vec::new(),
+            columns: Vec::new(),
+            values: Vec::new(),
+            slots: Vec::new(),
+        };
+        match linear.form {
+            Form::Stiffness => {
+                for row in linear.entries.chunk_by(|a, b| a.0 == b.0) {
+                    let entries = row.iter().map(|&(_, j, value)| (place(j), value));
+                    element.add_row(place(row[0].0), entries);
+                }
+            }
+            Form::Compliance { first_force } => {
+                for k in 0..2 * body.nodes.len() {
+                    element.add_row(place(k), std::iter::once((first_force + k, 1.0)));
+                }
+                for row in linear.entries.chunk_by(|a, b| a.0 == b.0) {
+                    let k = row[0].0;
+                    let forces = row.iter().map(|&(_, j, value)| (first_force + j, -value));
+                    let entries = std::iter::once((place(k), 1.0)).chain(forces);
+                    element.add_row(first_force + k, entries);
+                }
+            }
+        }
+        element
+    }
+
+    fn add_row(&mut self, dof: usize, entries: impl Iterator<Item = (usize, f64)>) {
+        for (column, value) in entries {
+            self.columns.push(column);
+            self.values.push(value);
+        }
+        self.rows.push((dof, self.columns.len()));
+    }
+
+    /// Row, in degrees of freedom, and range of entries of each row.
+    fn ranges(&self) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> + '_ {
+        let starts = std::iter::once(0).chain(self.rows.iter().map(|row| row.1));
+        let rows = self.rows.iter().zip(starts);
+        rows.map(|(&(dof, end), start)| (dof, start..end))
+    }
+
+    /// Entries `(row, column)` in equations.
+    pub fn entries<'a>(&'a self, dofs: &'a Dofs) -> impl Iterator<Item = (usize, usize)> + 'a {
+        self.ranges().flat_map(move |(dof, range)| {
+            let row = dofs.equation[dof];
+            let columns = self.columns[range].iter();
+            columns.filter_map(move |&column| Some((row?, dofs.equation[column]?)))
+        })
+    }
+
+    /// Finds the place of every entry in a pattern that has them all.
+    pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern) {
+        let mut slots = Vec::with_capacity(self.columns.len());
+        for (dof, range) in self.ranges() {
+            for &column in &self.columns[range] {
+                let slot = dofs.equation[dof]
+                    .zip(dofs.equation[column])
+                    .and_then(|(i, j)| pattern.slot(i, j))
+                    .and_then(|slot| u32::try_from(slot).ok());
+                slots.push(slot.unwrap_or(NOWHERE));
+            }
+        }
+        self.slots = slots;
+    }
+
+    /// Adds forces at displacements `u`, the matrix, and what `step` of the held degrees of freedom does.
+    pub fn add(&self, dofs: &Dofs, u: &[f64], step: &[f64], out: &mut Assembled<'_>) {
+        for (dof, range) in self.ranges() {
+            let mut force = 0.0;
+            for k in range {
+                let (column, value) = (self.columns[k], self.values[k]);
+                force += value * u[column];
+                if self.slots[k] != NOWHERE {
+                    out.values[self.slots[k] as usize] += value;
+                } else if let (Some(row), None) = (dofs.equation[dof], dofs.equation[column]) {
+                    out.coupling[row] += value * step[column];
+                }
+            }
+            out.force[dof] += force;
+            out.size[dof] += force.abs();
+        }
+    }
+}

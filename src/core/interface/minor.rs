@@ -1,0 +1,244 @@
+//! One minor iteration at one slave node: Table 1's equations before the solve, the strategy's verdict after it.
+//!
+//! Pure functions of what the node brings and what the solve gave, so that a minor iteration on a frozen interface
+//! problem alone ([`super::frozen`]) is the same as one of the stepper.
+
+use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::state::ContactState;
+use crate::contact::table1::{Equation, Known, Limit, direction, equations, gone, t_max};
+use crate::contact::table2::{Entry, Numbers, Rule, Ties, decide};
+use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
+use crate::model::{BoundUpdate, SlipCount, Strategy, Touch};
+use crate::model::{Friction, Mode, Settings};
+use crate::strategy;
+
+/// What the modes are checked by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Check {
+    /// Those in force: the strategy is never the ladder itself ([`crate::step::state::State::settings`]).
+    pub settings: Settings,
+    pub ties: Ties,
+    /// Stiffness of the springs that compare lengths with forces.
+    pub stiffness: f64,
+}
+
+/// Table 1's rows of a node; a row in which nothing can move is given to the support ([`carried`]).
+pub fn rows(
+    node: &ContactState,
+    site: &NodeKinematics,
+    friction: &Friction,
+    settings: &Settings,
+) -> [Equation; 2] {
+    let limit = match settings.t_max {
+        BoundUpdate::Lagged => Limit::Lagged(node.t_max),
+        BoundUpdate::Consistent => Limit::Consistent {
+            sign: node.sign,
+            coefficient: friction.coefficient(),
+            cohesion: friction.cohesion,
+        },
+    };
+    let known = Known {
+        gap: if site.gap.is_finite() { site.gap } else { 0.0 },
+        ratio: node.ratio,
+        slip: node.slipped(settings),
+        f_n: node.f_n,
+        f_t: node.f_t,
+        limit,
+    };
+    supported(node.mode, &known, site.moves)
+}
+
+/// Table 1's equations, those in which nothing can move given to the support.
+pub(super) fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equation; 2] {
+    let [mut normal, mut tangential] = equations(mode, known);
+    let carried = carried(mode, moves);
+    if carried[0] {
+        normal = gone(1.0, 0.0, known.f_n);
+    }
+    if carried[1] {
+        tangential = gone(0.0, 1.0, known.f_t);
+    }
+    [normal, tangential]
+}
+
+/// Which force components a mode asks the node to hold a motion with that no unknown takes part in (normal, tangential):
+/// they are left to the support.
+pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
+    [
+        mode != Mode::Free && !moves[0],
+        mode == Mode::Fixed && !moves[1],
+    ]
+}
+
+/// Checks a node's mode and leaves that of the next minor iteration in it; returns the record and whether mode and
+/// T_max have settled.
+pub fn judge(
+    node: &mut ContactState,
+    site: &NodeKinematics,
+    given: NodeIncrement,
+    friction: &Friction,
+    check: &Check,
+) -> (ContactRecord, bool) {
+    let before = *node;
+    let ties = &check.ties;
+    let (record, turned) = record(&before, site, given, friction, check);
+    let [normal, tangential] = given.motion;
+    node.travel = if normal.abs() > f64::MIN_POSITIVE {
+        tangential / normal
+    } else {
+        0.0
+    };
+    let sense = sense(&before, &record, tangential, &check.settings);
+    node.sign = turned
+        .unwrap_or_else(|| direction(record.f_t, ties.force, sense, ties.length, before.sign));
+    node.t_max = t_max(friction, record.f_n, node.sign);
+    node.mode = record.decision.next;
+    if let Forced::Once(_) = node.forced {
+        node.forced = Forced::No;
+    }
+    leave_or_enter(node, &before, check.settings.touch);
+    let lag = before.mode == Mode::Sliding
+        && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
+    let settled = !record.decision.changes() && !lag;
+    let record = ContactRecord {
+        t_max: node.t_max,
+        ..record
+    };
+    (record, settled)
+}
+
+/// What a minor iteration found at a node, and the direction of T_max where the strategy knows it.
+fn record(
+    node: &ContactState,
+    site: &NodeKinematics,
+    given: NodeIncrement,
+    friction: &Friction,
+    check: &Check,
+) -> (ContactRecord, Option<f64>) {
+    let (settings, ties) = (&check.settings, &check.ties);
+    let (f_n, f_t) = (node.f_n + given.force[0], node.f_t + given.force[1]);
+    let [normal, tangential] = given.motion;
+    let here = tangential
+        - if node.ratio == 0.0 {
+            0.0
+        } else {
+            site.gap * node.ratio
+        };
+    let slip = match (node.mode, settings.slip) {
+        (Mode::Free, _) => 0.0,
+        (_, SlipCount::Increment) => node.slipped(settings) + here,
+        (_, SlipCount::Major) => tangential,
+    };
+    let sign = direction(f_t, ties.force, slip, ties.length, node.sign);
+    let limit = t_max(friction, f_n, sign);
+    let entry = if friction.is_smooth() {
+        Entry::Smooth
+    } else if strategy::enters_sliding(settings.strategy) {
+        Entry::Sliding
+    } else {
+        Entry::Fixed
+    };
+    let numbers = Numbers {
+        mode: node.mode,
+        gap: site.gap - normal,
+        f_n,
+        f_t,
+        t_max: limit,
+        slip,
+        entry,
+    };
+    let (mut decision, turned) = match settings.strategy {
+        Strategy::Newton => {
+            let slip = node.slipped(settings) + here;
+            let numbers = Numbers { slip, ..numbers };
+            let (stiffness, had) = (check.stiffness, node.sign);
+            let (decision, sign) = strategy::newton(&numbers, friction, stiffness, had, ties);
+            (decision, Some(sign))
+        }
+        _ => (decide(&numbers, ties), None),
+    };
+    let fixed = decision.before == Mode::Fixed && decision.next == Mode::Fixed;
+    if fixed && !site.moves[1] && slip.abs() > ties.length {
+        decision = decision.dragged(slip);
+    }
+    if site.gap.is_infinite() {
+        decision.rule = Rule::OffSurface;
+        (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
+    } else if let Forced::Held(mode) = node.forced {
+        decision.next = mode;
+        if decision.wanted != mode {
+            decision.rule = Rule::Held;
+        }
+    }
+    let record = ContactRecord {
+        decision,
+        forced: node.forced,
+        gap: numbers.gap,
+        f_n,
+        f_t,
+        t_max: limit,
+        t_max_used: match (node.mode, settings.t_max) {
+            (Mode::Sliding, BoundUpdate::Lagged) => node.t_max,
+            (Mode::Sliding, BoundUpdate::Consistent) => f_t,
+            _ => limit,
+        },
+        slip,
+        drift: match node.mode {
+            Mode::Free => 0.0,
+            _ => node.drift + here,
+        },
+        spot: node.spot,
+        normal: site.normal,
+        foot: site.foot,
+        carried: carried(node.mode, site.moves),
+    };
+    (record, turned)
+}
+
+/// Lets only the first of all nodes change that would: the others wait, as they came into the iteration.
+pub fn one_at_a_time(
+    nodes: &mut [ContactState],
+    before: &[ContactState],
+    records: &mut [ContactRecord],
+) {
+    let all = nodes.iter_mut().zip(before).zip(records);
+    let changing = all.filter(|(_, record)| record.decision.changes());
+    for ((node, before), record) in changing.skip(1) {
+        *node = ContactState {
+            travel: node.travel,
+            forced: node.forced,
+            ..*before
+        };
+        (record.decision.next, record.decision.rule) = (before.mode, Rule::Waits);
+    }
+}
+
+/// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free, from its
+/// anchor on where it keeps one.
+fn sense(
+    before: &ContactState,
+    record: &ContactRecord,
+    tangential: f64,
+    settings: &Settings,
+) -> f64 {
+    if before.mode == Mode::Free {
+        match before.kept {
+            true => before.slipped(settings) + tangential,
+            false => tangential,
+        }
+    } else {
+        record.slip
+    }
+}
+
+/// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens. One that has kept its anchor goes back
+/// there.
+fn leave_or_enter(node: &mut ContactState, before: &ContactState, touch: Touch) {
+    match (before.mode, node.mode) {
+        (_, Mode::Free) => node.ratio = 0.0,
+        (Mode::Free, _) if touch != Touch::Start && !before.kept => {
+            node.ratio = node.travel;
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,84 @@
+//! How the interface of the condensed bodies answers (eqn 6).
+//!
+//! For springs of stiffness k between every slave node and its S*, the interface forces answer gaps z that the springs
+//! are given by `ΔF = start + response z`, and the relative motion is `v = z + ΔF / k`. Where k is infinite, z is the
+//! motion itself.
+
+use crate::contact::table1::{Equation, Motion};
+use serde::{Deserialize, Serialize};
+
+/// How the interface of the condensed bodies answers; normal and tangential components of each slave node in turn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InterfaceResponse {
+    /// Stiffness k of the springs; may be infinite.
+    pub stiffness: f64,
+    /// ΔF at z = 0.
+    pub start: Vec<f64>,
+    /// Change of ΔF by z, column by column.
+    pub response: Vec<f64>,
+}
+
+impl InterfaceResponse {
+    /// Number of z.
+    pub fn count(&self) -> usize {
+        self.start.len()
+    }
+
+    /// Writes row `2 slave + k` of the matrix that an equation (k: 0 normal, 1 tangential) of a slave node makes in z,
+    /// and returns its right-hand side; `prescribed` is the relative motion, along n and t, that no unknown takes part
+    /// in.
+    pub fn place_row(
+        &self,
+        slave: usize,
+        k: usize,
+        row: &Equation,
+        prescribed: [f64; 2],
+        matrix: &mut [f64],
+    ) -> f64 {
+        let count = self.count();
+        let moving = match row.motion {
+            Motion::None => None,
+            Motion::Normal => Some(0),
+            Motion::Tangential => Some(1),
+        };
+        // motion = z + ΔF / k, so that the factors of ΔF are these.
+        let mut factor = [row.d_n, row.d_t];
+        let mut value = row.value;
+        if let Some(component) = moving {
+            factor[component] += 1.0 / self.stiffness;
+            value -= prescribed[component];
+        }
+        let here = 2 * slave;
+        let columns = matrix.chunks_exact_mut(count);
+        for (column, response) in columns.zip(self.response.chunks_exact(count)) {
+            column[here + k] = factor[0] * response[here] + factor[1] * response[here + 1];
+        }
+        if let Some(component) = moving {
+            matrix[(here + component) * count + here + k] += 1.0;
+        }
+        value - factor[0] * self.start[here] - factor[1] * self.start[here + 1]
+    }
+
+    /// ΔF_n, ΔF_t of a slave node, and its normal and tangential relative motion, for these z.
+    pub fn answer(&self, z: &[f64], slave: usize, prescribed: [f64; 2]) -> [[f64; 2]; 2] {
+        let [mut force, mut motion] = self.change(z, slave);
+        for component in 0..2 {
+            let start = self.start[2 * slave + component];
+            force[component] += start;
+            motion[component] += start / self.stiffness + prescribed[component];
+        }
+        [force, motion]
+    }
+
+    /// Change of the same by these z.
+    pub fn change(&self, z: &[f64], slave: usize) -> [[f64; 2]; 2] {
+        let (mut force, mut motion) = ([0.0; 2], [0.0; 2]);
+        for component in 0..2 {
+            let row = 2 * slave + component;
+            let answers = self.response.iter().skip(row).step_by(self.count());
+            force[component] = answers.zip(z).map(|(response, z)| response * z).sum();
+            motion[component] = z[row] + force[component] / self.stiffness;
+        }
+        [force, motion]
+    }
+}

@@ -1,0 +1,142 @@
+//! A slave node's part of the linearised system: what moves in its equations, and where that stands in the matrices.
+
+use crate::contact::geometric_tangent::Variation;
+use crate::contact::projection::{Projection, tangent};
+use crate::contact::state::ContactState;
+use crate::linalg::Pattern;
+use crate::linear::bodies::Bodies;
+use crate::model::Model;
+
+/// What moves, in a slave node's equations: one Cartesian displacement with its share in u_S* − u_S.
+#[derive(Debug, Clone, Copy)]
+pub struct Link {
+    pub dof: usize,
+    pub axis: usize,
+    pub weight: f64,
+    /// Derivative of the share by ξ.
+    pub slope: f64,
+    pub variation: Variation,
+    /// Places of (normal row, dof), (dof, normal column), (tangential row, dof), (dof, tangential column); none
+    /// where the degree of freedom has no equation.
+    pub slots: Option<[usize; 4]>,
+    /// Its number among the unknowns of the condensed bodies' interface.
+    pub unknown: Option<usize>,
+}
+
+/// A slave node's part of the system.
+#[derive(Debug, Default)]
+pub struct Interface {
+    pub footing: Option<Projection>,
+    pub links: Vec<Link>,
+    /// The element that `links` reach into, once they are listed.
+    linked: Option<Option<(usize, usize)>>,
+    /// Whether their places are those of the present matrices.
+    pub placed: bool,
+    /// Place of (link i, link j), row by row, for the geometric tangent: in the whole system's values, or in the
+    /// condensed matrix, as [`Interface::find_slots`] or [`Interface::find_unknowns`] was last; none where either
+    /// has no equation.
+    pub pairs: Vec<Option<usize>>,
+    /// Places of the 2 by 2 block of ΔF_n, ΔF_t.
+    pub block: [usize; 4],
+    /// Whether the normal and the tangential motion have any coefficient on an unknown.
+    pub moves: [bool; 2],
+    /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.
+    pub prescribed: [f64; 2],
+}
+
+impl Interface {
+    /// n and t, frozen; where there is no surface, those that the node had.
+    pub fn frame(&self, node: &ContactState) -> [[f64; 2]; 2] {
+        let normal = self.footing.map_or(node.normal, |f| f.normal);
+        [normal, tangent(normal)]
+    }
+
+    /// Lists the displacements of S and S*; on the element of before, only their shares are renewed.
+    pub fn link(&mut self, model: &Model, node: &ContactState, slave: usize) {
+        let on = node.spot.zip(self.footing);
+        let element = on.map(|(spot, _)| (spot.surface, spot.element));
+        if self.linked != Some(element) {
+            (self.linked, self.placed) = (Some(element), false);
+            self.links.clear();
+            self.list(model, slave);
+            if let Some((surface, element)) = element {
+                for &n in &model.surfaces[surface].elements[element] {
+                    self.list(model, n);
+                }
+            }
+        }
+        self.links[..2]
+            .iter_mut()
+            .for_each(|link| link.weight = -1.0);
+        if let Some((_, footing)) = on {
+            let shares = footing.shape.iter().zip(&footing.shape_slope);
+            for (pair, (&weight, &slope)) in self.links[2..].chunks_exact_mut(2).zip(shares) {
+                for link in pair {
+                    (link.weight, link.slope) = (weight, slope);
+                }
+            }
+        }
+    }
+
+    fn list(&mut self, model: &Model, node: usize) {
+        let first = model.dofs.first[node];
+        self.links.extend((0..2).map(|axis| Link {
+            dof: first + axis,
+            axis,
+            weight: 0.0,
+            slope: 0.0,
+            variation: Variation::default(),
+            slots: None,
+            unknown: None,
+        }));
+    }
+
+    /// Finds its places, unless it has them, in the whole system, where its two equations are from row `row` on.
+    pub fn find_slots(&mut self, model: &Model, pattern: &Pattern, row: usize) {
+        if std::mem::replace(&mut self.placed, true) {
+            return;
+        }
+        let slot = |i, j| pattern.slot(i, j);
+        for link in &mut self.links {
+            link.slots = model.dofs.equation[link.dof].and_then(|e| {
+                Some([
+                    slot(row, e)?,
+                    slot(e, row)?,
+                    slot(row + 1, e)?,
+                    slot(e, row + 1)?,
+                ])
+            });
+        }
+        let equations = |l: &Link| model.dofs.equation[l.dof];
+        self.pairs.clear();
+        for i in self.links.iter().map(equations) {
+            let pair = |j: Option<usize>| slot(i?, j?);
+            self.pairs
+                .extend(self.links.iter().map(equations).map(pair));
+        }
+        let block = [
+            (row, row),
+            (row, row + 1),
+            (row + 1, row),
+            (row + 1, row + 1),
+        ];
+        for (place, (i, j)) in self.block.iter_mut().zip(block) {
+            *place = slot(i, j).unwrap_or(*place);
+        }
+    }
+
+    /// Finds its places, unless it has them, in the condensed bodies.
+    pub fn find_unknowns(&mut self, model: &Model, bodies: &Bodies) {
+        if std::mem::replace(&mut self.placed, true) {
+            return;
+        }
+        for link in &mut self.links {
+            link.unknown = model.dofs.equation[link.dof].and_then(|e| bodies.number(e));
+        }
+        self.pairs.clear();
+        for row in &self.links {
+            let place = |col: &Link| bodies.place(row.unknown?, col.unknown?);
+            self.pairs.extend(self.links.iter().map(place));
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! What deforms: beams, continua of elements, and bodies that are given by a matrix.
+
+use serde::{Deserialize, Serialize};
+
+/// A deformable body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    pub name: String,
+    /// Distinct nodes of the body, along the chain for a beam.
+    pub nodes: Vec<usize>,
+    pub kind: BodyKind,
+}
+
+/// What a body is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BodyKind {
+    Beam(Beam),
+    Solid(Solid),
+    Linear(Linear),
+}
+
+impl BodyKind {
+    /// The lines of a drawing of it: a beam's elements, a solid's outline, bars between two nodes.
+    pub fn lines(&self) -> &[Vec<usize>] {
+        match self {
+            BodyKind::Beam(beam) => &beam.elements,
+            BodyKind::Solid(solid) => &solid.edges,
+            BodyKind::Linear(linear) => &linear.bars,
+        }
+    }
+}
+
+/// A chain of m-node beam elements with one section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beam {
+    /// Node numbers of each element, all of the same count (2 to 9).
+    pub elements: Vec<Vec<usize>>,
+    /// Axial stiffness (force).
+    pub ea: f64,
+    /// Bending stiffness (force · length²).
+    pub ei: f64,
+    /// Shear stiffness (force); none is shear-rigid.
+    pub ga: Option<f64>,
+    /// First shear degree of freedom of the body, where shear-rigid: element e, Gauss point p has
+    /// `first_shear + e * (m - 1) + p`.
+    pub first_shear: Option<usize>,
+}
+
+/// A continuum of 8-node quadrilaterals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Nodes of each element: the corners anticlockwise, then the middles of the sides that start at them.
+    pub elements: Vec<[usize; 8]>,
+    /// What it is made of.
+    pub materials: Vec<Elastic>,
+    /// Index into `materials` of each element.
+    pub material_of: Vec<usize>,
+    /// Elements of 3 nodes around it, anticlockwise from the lower left corner.
+    pub edges: Vec<Vec<usize>>,
+}
+
+/// An elastic continuum's numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elastic {
+    /// Young's modulus (force by area).
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    pub law: Law,
+    pub plane: Plane,
+    /// Thickness across the plane, undeformed (length).
+    pub thickness: f64,
+    pub update: Update,
+}
+
+/// How stress follows from strain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Law {
+    /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens and fails under large compression.
+    #[default]
+    Svk,
+    /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too.
+    NeoHookean,
+}
+
+/// What happens across the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Plane {
+    /// No strain: a long body.
+    #[default]
+    Strain,
+    /// No stress: a thin sheet.
+    Stress,
+}
+
+/// What strains and stresses are referred to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Update {
+    /// The undeformed shape: the answer does not depend on the increments.
+    #[default]
+    Total,
+    /// The shape at the last accepted increment, as in the paper: stress grows by the small-strain moduli times each
+    /// increment's strain, and the answer depends on the size of the increments (its Fig. 8). Law svk only.
+    Updated,
+}
+
+/// A body that is given by a matrix over the x and y of its nodes, in their order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linear {
+    pub form: Form,
+    /// Row, column and value of the matrix' entries, row by row; the whole diagonal, and what else is not zero.
+    pub entries: Vec<(usize, usize, f64)>,
+    /// Pairs of nodes that bars join, for a drawing.
+    pub bars: Vec<Vec<usize>>,
+}
+
+/// What the matrix of a [`Linear`] body is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// f = K u.
+    Stiffness,
+    /// u = free λ + W f. The forces f are unknowns of their own, from this degree of freedom on, in the order of the
+    /// matrix; their equations are u − W f = free λ. The displacements where no force acts are loads there.
+    Compliance { first_force: usize },
+}
+
+impl Linear {
+    /// Whether the matrix is the same when rows and columns change places, to the last bit.
+    pub fn is_symmetric(&self) -> bool {
+        let mut turned: Vec<(usize, usize, f64)> =
+            self.entries.iter().map(|&(i, j, v)| (j, i, v)).collect();
+        turned.sort_unstable_by_key(|&(i, j, _)| (i, j));
+        turned == self.entries
+    }
+}

@@ -1,0 +1,63 @@
+//! Numbering of the degrees of freedom and of the unknowns among them.
+
+use serde::{Deserialize, Serialize};
+
+/// Numbering of the degrees of freedom and of the unknowns among them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Dofs {
+    /// First degree of freedom of each node.
+    pub first: Vec<usize>,
+    /// 2 or 3 per node.
+    pub count: Vec<u8>,
+    /// Number of the equation of each degree of freedom; none where restrained or prescribed.
+    pub equation: Vec<Option<usize>>,
+    /// Number of equations.
+    pub equations: usize,
+    /// Number of the bodies' own unknowns among them, which belong to no node and come last.
+    pub inner: usize,
+}
+
+impl Dofs {
+    /// Number of degrees of freedom, restrained ones included.
+    pub fn len(&self) -> usize {
+        self.equation.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.equation.is_empty()
+    }
+
+    /// The degree of freedom of a node's component, if the node has it.
+    pub fn dof(&self, node: usize, component: Component) -> Option<usize> {
+        let k = component as usize;
+        (k < self.count[node] as usize).then(|| self.first[node] + k)
+    }
+}
+
+/// A degree of freedom of a node. Prints as the scene file has it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Component {
+    X,
+    Y,
+    Rotation,
+}
+
+impl std::fmt::Display for Component {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Component::X => "x",
+            Component::Y => "y",
+            Component::Rotation => "rotation",
+        })
+    }
+}
+
+/// A Cartesian axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    X,
+    Y,
+}

@@ -1,0 +1,72 @@
+//! What drives a scene: loads, prescribed motions, and the path of the load factor.
+
+use serde::{Deserialize, Serialize};
+
+/// A dead load on one degree of freedom (a force, or a moment).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    pub dof: usize,
+    pub value: f64,
+    pub scale: Factor,
+}
+
+/// A prescribed value of one degree of freedom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prescribed {
+    pub dof: usize,
+    pub value: f64,
+    pub scale: Factor,
+}
+
+/// A load's own factor as a function of the scene's load factor.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Factor(pub Vec<(f64, f64)>);
+
+impl Factor {
+    /// The factor at a load factor: piecewise linear, constant beyond the ends; without points the load factor
+    /// itself.
+    pub fn at(&self, load_factor: f64) -> f64 {
+        let points = &self.0;
+        let (Some(first), Some(last)) = (points.first(), points.last()) else {
+            return load_factor;
+        };
+        if load_factor <= first.0 {
+            return first.1;
+        }
+        for pair in points.windows(2) {
+            let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
+            if load_factor <= x1 {
+                return y0 + (y1 - y0) * (load_factor - x0) / (x1 - x0);
+            }
+        }
+        last.1
+    }
+}
+
+/// What an increment does that jumps to another branch of equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Jumps {
+    /// It is accepted whole, marked where it moved beyond what its tangent and the increments before it predict.
+    Accept,
+    /// It is cut; where the least increment still jumps, that is accepted, marked.
+    #[default]
+    Cut,
+    /// It is cut; where the least increment still jumps, the history fails.
+    Stop,
+}
+
+impl Jumps {
+    /// Whether it is what a scene that does not name it has.
+    pub fn is_default(&self) -> bool {
+        *self == Jumps::default()
+    }
+}
+
+/// Size below which an increment of this size is not cut, if `given` does not say.
+pub fn least(given: Option<f64>, increment: f64) -> f64 {
+    given.unwrap_or(increment / LEAST)
+}
+
+/// How many times smaller than an increment the smallest is that it is cut to, where the scene does not say.
+const LEAST: f64 = 64.0;

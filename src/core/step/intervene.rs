@@ -1,0 +1,193 @@
+//! What a user does to a run: force a mode, change the increment, friction or settings.
+
+use crate::contact::record::Forced;
+use crate::contact::state::ContactState;
+use crate::contact::table1::t_max;
+use crate::linear::estimate::Estimate;
+use crate::model::{Friction, Settings, Touch, least};
+use crate::model::{Mode, Model};
+use crate::step::state::{Search, State, Status};
+use crate::step::sub_increment::SubIncrement;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A change from outside; recorded in snapshots and replayed from them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Intervention {
+    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
+    Force {
+        slave: usize,
+        mode: Mode,
+        hold: bool,
+    },
+    /// Start several slave nodes at once from a state that is known: each in a mode, for the next minor iteration.
+    Assume(Vec<Start>),
+    /// Give a slave node back to Table 2.
+    Release { slave: usize },
+    /// Change the increment size and start the present increment again.
+    Increment(f64),
+    /// Replace the friction of every slave node.
+    Friction(Friction),
+    /// Replace the settings.
+    Settings(Settings),
+}
+
+/// Where a slave node is to start from in the next minor iteration, as [`crate::debug::diagnosis::started`] has it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    pub slave: usize,
+    pub mode: Mode,
+    /// T_max, signed (force).
+    pub t_max: f64,
+}
+
+impl State {
+    /// Applies an intervention. The position stays, except that a new increment size starts the present increment
+    /// again.
+    ///
+    /// # Errors
+    /// A message for values that make no sense, and when the history is done.
+    pub fn intervene(&mut self, model: &Model, intervention: &Intervention) -> Result<(), String> {
+        if self.status == Status::Finished {
+            return Err("the history is done; step back first".into());
+        }
+        match intervention {
+            Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,
+            Intervention::Assume(starts) => self.assume(starts)?,
+            Intervention::Release { slave } => self.node_mut(*slave)?.forced = Forced::No,
+            Intervention::Increment(increment) => self.retry(model, *increment)?,
+            Intervention::Friction(friction) => self.rub(friction)?,
+            Intervention::Settings(settings) => self.set(model, settings)?,
+        }
+        self.search = Search::default();
+        self.forget_trail();
+        self.forget_rounds();
+        Ok(())
+    }
+
+    /// Forgets what went into the minor iterations so far.
+    pub(super) fn forget_trail(&mut self) {
+        if !self.minor_history.is_empty() {
+            Arc::make_mut(&mut self.minor_history).clear();
+        }
+    }
+
+    /// Forgets what went into the major iterations so far.
+    pub(super) fn forget_rounds(&mut self) {
+        if !self.major_history.is_empty() {
+            Arc::make_mut(&mut self.major_history).clear();
+        }
+    }
+
+    /// Sets out on the increment that follows `start`.
+    pub(super) fn begin(&mut self) {
+        (self.next.major, self.next.minor) = (1, 1);
+        (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
+        self.net = false;
+        self.load_factor = self.sub_increment.target();
+        self.search = Search::default();
+        (self.target, self.last_target) = (self.load_factor, self.start.load_factor);
+        self.forget_trail();
+        self.forget_rounds();
+    }
+
+    fn node_mut(&mut self, slave: usize) -> Result<&mut ContactState, String> {
+        let count = self.nodes.len();
+        self.nodes.get_mut(slave).ok_or_else(|| {
+            format!("there are {count} slave nodes, numbered from 0; {slave} is none")
+        })
+    }
+
+    fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), String> {
+        let touch = self.controls.settings.touch;
+        let node = self.node_mut(slave)?;
+        if node.spot.is_none() && mode != Mode::Free {
+            return Err("the node is past the end of its surface: it has nothing to touch".into());
+        }
+        if node.mode == Mode::Free && mode != Mode::Free && touch != Touch::Start && !node.kept {
+            node.ratio = node.travel;
+        }
+        node.mode = mode;
+        node.forced = if hold {
+            Forced::Held(mode)
+        } else {
+            Forced::Once(mode)
+        };
+        Ok(())
+    }
+
+    fn assume(&mut self, starts: &[Start]) -> Result<(), String> {
+        let mut assumed = self.clone();
+        for start in starts {
+            assumed.force(start.slave, start.mode, false)?;
+            let node = assumed.node_mut(start.slave)?;
+            node.ratio = 0.0;
+            node.t_max = start.t_max;
+            node.sign = match start.t_max {
+                0.0 => 0.0,
+                t_max => t_max.signum(),
+            };
+        }
+        *self = assumed;
+        Ok(())
+    }
+
+    fn rub(&mut self, friction: &Friction) -> Result<(), String> {
+        let sound = (0.0..90.0).contains(&friction.angle)
+            && (0.0..f64::INFINITY).contains(&friction.cohesion);
+        if !sound {
+            return Err(
+                "a friction angle is at least 0 and less than 90 degrees, a cohesion not negative"
+                    .into(),
+            );
+        }
+        Arc::make_mut(&mut self.controls).friction.fill(*friction);
+        for node in &mut self.nodes {
+            node.t_max = t_max(friction, node.f_n, node.sign);
+        }
+        Ok(())
+    }
+
+    fn set(&mut self, model: &Model, settings: &Settings) -> Result<(), String> {
+        if settings.minors == 0 || settings.majors == 0 {
+            return Err("limits of iterations are at least 1".into());
+        }
+        if settings.solver != self.controls.settings.solver
+            && let Some(why) = Estimate::of(model).too_large(settings.solver)
+        {
+            return Err(why);
+        }
+        Arc::make_mut(&mut self.controls).settings = *settings;
+        Ok(())
+    }
+
+    fn retry(&mut self, model: &Model, increment: f64) -> Result<(), String> {
+        if !(increment.is_finite() && increment > 0.0) {
+            return Err(format!(
+                "an increment is a positive number, not {increment}"
+            ));
+        }
+        let controls = Arc::make_mut(&mut self.controls);
+        controls.increment = increment;
+        controls.least = least(model.least, increment).min(increment);
+        self.sub_increment = SubIncrement::whole(model, &self.start, increment);
+        self.start_again();
+        Ok(())
+    }
+
+    /// Starts the present increment again, from its start to the end of the present piece.
+    pub(super) fn start_again(&mut self) {
+        self.u = self.start.u.clone();
+        for (node, start) in self.nodes.iter_mut().zip(&self.start.nodes) {
+            let forced = node.forced;
+            *node = *start;
+            node.forced = Forced::No;
+            if let Forced::Held(mode) = forced {
+                (node.forced, node.mode) = (forced, mode);
+            }
+        }
+        self.next.attempt += 1;
+        self.status = Status::Running;
+        self.begin();
+    }
+}

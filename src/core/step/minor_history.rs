@@ -1,0 +1,127 @@
+//! What went into the minor iterations of a major one, and the cycle that they close.
+
+use crate::contact::state::ContactState;
+use crate::model::Mode;
+use serde::{Deserialize, Serialize};
+
+/// A true cycle of minor iterations: same modes, same numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cycle {
+    /// Minor iteration from which on it repeats.
+    pub start: u32,
+    /// Number of minor iterations after which it repeats.
+    pub period: u32,
+    /// Contact nodes (by slave number) that change in it, with the modes that each takes over one period.
+    pub members: Vec<(usize, Vec<Mode>)>,
+}
+
+/// What went into each minor iteration of the present major one: while the geometry is frozen, a minor iteration is
+/// a function of this alone.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct MinorHistory {
+    /// One entry a slave node, iteration after iteration.
+    entries: Vec<Input>,
+}
+
+/// What one slave node brings into a minor iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Input {
+    pub mode: Mode,
+    /// T_max, where the node slides; else 0.
+    pub t_max: f64,
+    /// Ratio ρ, where the node touches; else 0.
+    pub ratio: f64,
+}
+
+impl Input {
+    fn of(node: &ContactState) -> Self {
+        Input {
+            mode: node.mode,
+            t_max: if node.mode == Mode::Sliding {
+                node.t_max
+            } else {
+                0.0
+            },
+            ratio: if node.mode == Mode::Free {
+                0.0
+            } else {
+                node.ratio
+            },
+        }
+    }
+
+    /// Same mode, and numbers that differ by less than these: T_max absolutely, the ratio relatively.
+    fn repeats(&self, other: &Input, force: f64, ratio: f64) -> bool {
+        self.mode == other.mode
+            && (self.t_max - other.t_max).abs() <= force
+            && (self.ratio - other.ratio).abs()
+                <= ratio * (1.0 + self.ratio.abs().max(other.ratio.abs()))
+    }
+}
+
+impl MinorHistory {
+    /// Forgets everything, keeping its memory.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Whether nothing is remembered.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        self.entries.capacity() * size_of::<Input>()
+    }
+
+    /// Remembers what goes into the next minor iteration.
+    pub fn push(&mut self, nodes: &[ContactState]) {
+        self.entries.extend(nodes.iter().map(Input::of));
+    }
+
+    /// Number of iterations remembered.
+    pub fn len(&self, nodes: usize) -> usize {
+        self.entries.len() / nodes.max(1)
+    }
+
+    /// What the first of the iterations started from.
+    pub fn first(&self, nodes: usize) -> &[Input] {
+        &self.entries[..nodes.min(self.entries.len())]
+    }
+
+    /// The cycle that is closed where the iteration after `minor`, which `nodes` go into, starts from the same as an
+    /// earlier one; none if there is none. Forces are the same that differ by less than `force`, ratios relatively.
+    pub fn cycle(
+        &self,
+        nodes: &[ContactState],
+        minor: u32,
+        force: f64,
+        ratio: f64,
+    ) -> Option<Cycle> {
+        let width = nodes.len().max(1);
+        let same = |then: &[Input]| {
+            then.iter()
+                .zip(nodes)
+                .all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
+        };
+        let found = self.entries.chunks_exact(width).rposition(same)?;
+        let round = || self.entries[found * width..].chunks_exact(width);
+        let period = round().len() as u32;
+        let takes_part = |s: &usize| {
+            let mut inputs = round().map(|inputs| inputs[*s]);
+            let first = inputs.next();
+            first.is_some_and(|first| inputs.any(|other| !other.repeats(&first, force, ratio)))
+        };
+        let pattern = |s: usize| round().map(|inputs| inputs[s].mode).collect();
+        Some(Cycle {
+            // The last round starts with what iteration `minor + 1 - period` started from.
+            start: minor + 1 - period,
+            period,
+            members: (0..nodes.len())
+                .filter(takes_part)
+                .map(|s| (s, pattern(s)))
+                .collect(),
+        })
+    }
+}

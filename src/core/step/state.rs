@@ -1,0 +1,200 @@
+//! Everything that the next minor iteration depends on, as plain data.
+//!
+//! A state is cheap to clone, since what changes seldom is shared; restoring one and going on gives the same bits as
+//! never having left. What can be computed again from it (geometry, stiffness, factors) is not in it.
+
+use crate::contact::judge::Verdict;
+use crate::contact::state::ContactState;
+use crate::fem::assembly::history_len;
+use crate::model::{BoundUpdate, Strategy, least};
+use crate::model::{Friction, Model, Settings};
+use crate::step::event::{Failure, Position};
+use crate::step::jump::Pace;
+use crate::step::major_history::MajorHistory;
+use crate::step::minor_history::MinorHistory;
+use crate::step::sub_increment::SubIncrement;
+use crate::strategy::{LADDER, limit};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The solver between two minor iterations.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// The minor iteration that comes next.
+    pub next: Position,
+    /// Load factor at the end of the present increment.
+    pub load_factor: f64,
+    /// Values of all degrees of freedom ([`crate::model::Dofs`]) at the start of the present major iteration.
+    pub u: Arc<Vec<f64>>,
+    /// The interface, one entry a slave node.
+    pub nodes: Vec<ContactState>,
+    /// Where the present increment started.
+    pub start: Arc<IncrementStart>,
+    /// What the user can turn during a run.
+    pub controls: Arc<Controls>,
+    /// What went into the minor iterations of the present major one so far, to recognise a cycle.
+    #[serde(rename = "trail")]
+    pub minor_history: Arc<MinorHistory>,
+    /// What went into the major iterations of the present increment so far, to recognise a cycle of theirs.
+    #[serde(rename = "rounds")]
+    pub major_history: Arc<MajorHistory>,
+    /// Load factor that the present major iteration aims at: `load_factor`, unless it was damped.
+    #[serde(rename = "aim")]
+    pub target: f64,
+    /// Load factor that the last major iteration aimed at; at first the one at the start of the increment.
+    #[serde(rename = "reached")]
+    pub last_target: f64,
+    /// How far the strategy has come in the present increment.
+    pub search: Search,
+    /// The part of an increment that is aimed at.
+    #[serde(rename = "piece")]
+    pub sub_increment: SubIncrement,
+    /// Minor iterations done in the present increment attempt.
+    pub minors: u32,
+    /// Loops of the present attempt that were ended by a limit and accepted.
+    pub unsettled: u32,
+    /// Whether nodes that touched when the increment started keep their anchors from there: the judge has refused a state of
+    /// the present attempt ([`crate::contact::judge`]).
+    #[serde(default)]
+    pub net: bool,
+    /// Largest displacement change in the last major iteration over the length scale.
+    pub correction: f64,
+    /// How fast the scene moves.
+    #[serde(default)]
+    pub pace: Pace,
+    /// Whether and how it can go on.
+    pub status: Status,
+}
+
+/// Whether the solver can go on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Status {
+    /// In the middle of an increment, or before one.
+    Running,
+    /// The last minor iteration made the increment fail; stepping on is allowed.
+    Failed(Failure),
+    /// The history is done.
+    Finished,
+}
+
+/// The last accepted state, from which an increment can be tried again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct IncrementStart {
+    /// Load factor there.
+    pub load_factor: f64,
+    /// Leg of the path on which the present increment lies: from corner `leg` to corner `leg + 1`.
+    pub leg: usize,
+    pub u: Arc<Vec<f64>>,
+    pub nodes: Vec<ContactState>,
+    /// What the elements remember of it ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
+    pub history: Vec<f64>,
+    /// What the judge found when it was accepted; none before the first increment.
+    #[serde(default)]
+    pub verdict: Option<Verdict>,
+}
+
+/// How far the strategy has come ([`crate::strategy`]).
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Search {
+    /// The rung of the ladder that the increment has come to.
+    pub rung: usize,
+    /// What the first rung failed of in the present major iteration.
+    pub first: Option<Box<Failure>>,
+    /// Fewest nodes that changed at once in the present major iteration, and the rounds since then.
+    pub fewest: Option<usize>,
+    pub rounds: u32,
+    /// How far pivoting has come in the present major iteration, and how many states that it found were not confirmed.
+    pub pivoting: Pivoting,
+    pub unconfirmed: usize,
+}
+
+/// How far pivoting, or the census, has come in a major iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Pivoting {
+    /// The modes that the iteration began with are tried first.
+    #[default]
+    Not,
+    /// The next minor iteration is this pivot, from this start; of a census, this answer of it.
+    At { start: usize, pivot: usize },
+    /// A state was found from this start, and the next minor iteration checks it.
+    Found { start: usize },
+}
+
+/// What the user can turn during a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Controls {
+    /// Increment of the load factor.
+    pub increment: f64,
+    /// Size below which an increment that fails is not cut.
+    pub least: f64,
+    /// Friction of each slave node.
+    pub friction: Vec<Friction>,
+    pub settings: Settings,
+}
+
+impl State {
+    /// The scene before its first increment.
+    pub fn new(model: &Model) -> Self {
+        let u = Arc::new(vec![0.0; model.dofs.len()]);
+        let nodes: Vec<ContactState> = model
+            .contacts
+            .iter()
+            .map(|slave| ContactState::new(slave.start, &slave.state))
+            .collect();
+        let load_factor = model.path[0];
+        let controls = Controls {
+            increment: model.increment,
+            least: least(model.least, model.increment),
+            friction: model.contacts.iter().map(|s| s.friction).collect(),
+            settings: model.settings,
+        };
+        let start = IncrementStart {
+            load_factor,
+            leg: 0,
+            u: u.clone(),
+            nodes: nodes.clone(),
+            history: vec![0.0; history_len(model)],
+            verdict: None,
+        };
+        let sub_increment = SubIncrement::whole(model, &start, controls.increment);
+        let target = sub_increment.target();
+        State {
+            next: Position {
+                increment: 1,
+                attempt: 1,
+                major: 1,
+                minor: 1,
+            },
+            load_factor: target,
+            u,
+            nodes,
+            start: Arc::new(start),
+            controls: Arc::new(controls),
+            minor_history: Arc::default(),
+            major_history: Arc::default(),
+            target,
+            last_target: load_factor,
+            search: Search::default(),
+            sub_increment,
+            minors: 0,
+            unsettled: 0,
+            net: false,
+            correction: 0.0,
+            pace: Pace::default(),
+            status: Status::Running,
+        }
+    }
+
+    /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
+    pub fn settings(&self) -> Settings {
+        let mut settings = self.controls.settings;
+        if settings.strategy == Strategy::Ladder {
+            settings.strategy = LADDER[self.search.rung.min(LADDER.len() - 1)];
+            if self.search.rung > 0 {
+                settings.t_max = BoundUpdate::Consistent;
+            }
+        }
+        settings.t_max = limit(settings.strategy, settings.t_max);
+        settings
+    }
+}

@@ -1,0 +1,82 @@
+//! Increments along the path of the load factor, whole or cut into halves.
+
+use crate::model::Model;
+use crate::step::state::IncrementStart;
+use serde::{Deserialize, Serialize};
+
+/// An increment, or what it was cut to: a part of it, halved some times.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct SubIncrement {
+    /// Load factors at the start and at the end of the whole increment.
+    pub from: f64,
+    pub to: f64,
+    /// How often it was halved, and which of the parts this is, from 0.
+    pub cut: u32,
+    pub part: u32,
+}
+
+impl SubIncrement {
+    /// The whole increment after `start`.
+    pub fn whole(model: &Model, start: &IncrementStart, increment: f64) -> Self {
+        SubIncrement {
+            from: start.load_factor,
+            to: next_load_factor(&model.path, start, increment),
+            cut: 0,
+            part: 0,
+        }
+    }
+
+    /// Load factor at its end.
+    pub fn target(&self) -> f64 {
+        let parts = 2_u64.pow(self.cut);
+        if u64::from(self.part) + 1 == parts {
+            return self.to;
+        }
+        self.from + (self.to - self.from) * f64::from(self.part + 1) / parts as f64
+    }
+
+    /// Size.
+    pub fn size(&self) -> f64 {
+        (self.to - self.from).abs() / 2_f64.powi(self.cut as i32)
+    }
+
+    /// Its first half.
+    pub fn halved(self) -> Self {
+        SubIncrement {
+            cut: self.cut + 1,
+            part: 2 * self.part,
+            ..self
+        }
+    }
+
+    /// The piece after it, as large as the halves allow; none where the whole increment is done.
+    pub fn next(mut self) -> Option<Self> {
+        self.part += 1;
+        while self.cut > 0 && self.part.is_multiple_of(2) {
+            (self.cut, self.part) = (self.cut - 1, self.part / 2);
+        }
+        (self.cut > 0).then_some(self)
+    }
+}
+
+/// The load factor one increment after `start` along the path; the end of the leg where it is that close.
+pub fn next_load_factor(path: &[f64], start: &IncrementStart, increment: f64) -> f64 {
+    let target = path[start.leg + 1];
+    let left = target - start.load_factor;
+    if left.abs() <= increment * (1.0 + 1e-9) {
+        return target;
+    }
+    tidy(start.load_factor + increment * left.signum(), path)
+}
+
+/// MajorHistory off what summing decimal increments leaves behind, so that 0.07 is not 0.07000000000000002.
+fn tidy(load_factor: f64, path: &[f64]) -> f64 {
+    let size = path.iter().fold(load_factor.abs(), |m, p| m.max(p.abs()));
+    let unit = 10f64.powi(13 - size.log10().ceil() as i32);
+    let rounded = (load_factor * unit).round() / unit;
+    if rounded.is_finite() {
+        rounded
+    } else {
+        load_factor
+    }
+}
