@@ -1,0 +1,312 @@
+//! Work-precision charts: what they measure, against what, and that failures are drawn.
+
+use crate::program::{code, err, program, well};
+use std::collections::HashMap;
+use std::path::Path;
+use std::process::Output;
+
+fn ran(directory: &Path, arguments: &[&str]) -> Output {
+    let chart = [&["chart"], arguments].concat();
+    program(directory, &chart).output().unwrap()
+}
+
+fn rows(output: &Output) -> Vec<HashMap<String, String>> {
+    crate::program::rows(&well(output))
+}
+
+fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+    row[column]
+        .parse()
+        .unwrap_or_else(|_| panic!("{column}: {row:?}"))
+}
+
+const CIRCLE: &str = "04-cantilever-rigid-circle";
+const BEAM: &str = "01-pinned-beam-rough-floor";
+
+#[test]
+fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = [
+        CIRCLE,
+        "--over",
+        "refine=1,2,4",
+        "--set",
+        "history.increment=0.5",
+        "--target",
+        "2e-4",
+        "--cost",
+        "minors",
+        "--repeats",
+        "1",
+        "--csv",
+        "-",
+        "--svg",
+        "a.svg",
+        "--png",
+        "a.png",
+    ];
+    let output = ran(directory.path(), &arguments);
+    let table = rows(&output);
+    let errors: Vec<f64> = table.iter().map(|r| number(r, "error")).collect();
+    // As in `tests/references.rs`, over both displacements and fewer loads.
+    let limits = [4e-4, 2e-4, 4e-5];
+    assert!(
+        errors.iter().zip(limits).all(|(e, limit)| *e < limit),
+        "{errors:?}"
+    );
+    assert!(errors.windows(2).all(|e| e[1] < e[0]));
+    assert!(
+        table
+            .iter()
+            .all(|r| number(r, "seconds") > 0.0 && r["increments"] == "7")
+    );
+    let told = err(&output);
+    assert!(
+        told.contains("04-cantilever-rigid-circle.csv Cantilever wrapping"),
+        "{told}"
+    );
+    assert!(told.contains("at 7 loads"), "{told}");
+    let cheapest = told
+        .lines()
+        .find(|l| l.starts_with("The cheapest run with an error of at most 0.0002"));
+    assert!(cheapest.unwrap().contains("refine=2"), "{told}");
+    let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
+    for part in [
+        "minor iterations",
+        "beaten by none",
+        "wanted 0.0002",
+        "Scene: 04",
+        "cores",
+        "failed",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    let png = std::fs::read(directory.path().join("a.png")).unwrap();
+    assert_eq!(&png[1..4], b"PNG");
+}
+
+#[test]
+fn without_a_table_the_finest_run_is_the_reference_and_says_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = [
+        "05-cantilever-elastic-block",
+        "--over",
+        "refine=1,2",
+        "--set",
+        "history.path[1]=0.1",
+        "--set",
+        "history.increment=0.1",
+        "--repeats",
+        "1",
+        "--csv",
+        "-",
+    ];
+    let output = ran(directory.path(), &arguments);
+    let table = rows(&output);
+    assert_eq!(
+        (table[0]["status"].as_str(), table[1]["status"].as_str()),
+        ("whole", "reference")
+    );
+    assert!(
+        number(&table[0], "error") > 1e-6 && table[1]["error"].is_empty(),
+        "{table:?}"
+    );
+    assert!(
+        err(&output).contains("the finest run of the set (refine, refine=2)"),
+        "{}",
+        err(&output)
+    );
+}
+
+#[test]
+fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = [
+        BEAM,
+        "--over",
+        "majors=60,1",
+        "--repeats",
+        "1",
+        "--csv",
+        "-",
+        "--svg",
+        "a.svg",
+    ];
+    let output = ran(directory.path(), &arguments);
+    let table = rows(&output);
+    assert_eq!(table[0]["status"], "whole");
+    assert!(number(&table[0], "error") < 1e-8, "{table:?}");
+    // Of 0.01, the increment was cut six times, down to the least.
+    assert_eq!(table[1]["status"], "major-limit at load 0.00015625");
+    assert!(table[1]["error"].is_empty() && table[1]["front"] == "false");
+    let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
+    assert!(
+        svg.contains("✗ majors, majors=1: major-limit") && svg.contains("#C00000"),
+        "{svg}"
+    );
+}
+
+#[test]
+fn a_table_of_ones_own_is_a_reference_with_its_legs() {
+    let directory = tempfile::tempdir().unwrap();
+    let fine = program(
+        directory.path(),
+        &[
+            "run",
+            BEAM,
+            "--set",
+            "history.increment=0.05",
+            "--csv",
+            "own.csv",
+        ],
+    )
+    .output()
+    .unwrap();
+    assert!(fine.status.success());
+    let arguments = [
+        BEAM,
+        "--over",
+        "increment=0.05,0.025",
+        "--reference",
+        "own.csv",
+        "--repeats",
+        "1",
+        "--csv",
+        "-",
+    ];
+    let output = ran(directory.path(), &arguments);
+    let table = rows(&output);
+    // The same run as its own reference, over both legs: on the way back each load has another displacement.
+    assert_eq!(number(&table[0], "error"), 0.0);
+    assert!(number(&table[1], "error") < 1e-6, "{table:?}");
+    assert!(err(&output).contains("at 10 loads"), "{}", err(&output));
+}
+
+#[test]
+fn the_middle_of_the_times_is_taken_and_the_counts_are_those_of_a_run() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = [
+        CIRCLE,
+        "--over",
+        "increment=0.5,1.75",
+        "--repeats",
+        "3",
+        "--csv",
+        "-",
+    ];
+    let output = ran(directory.path(), &arguments);
+    let table = rows(&output);
+    assert!(table.iter().all(|r| r["repeats"] == "3"));
+    let run = program(
+        directory.path(),
+        &[
+            "run",
+            CIRCLE,
+            "--set",
+            "history.increment=0.5",
+            "--csv",
+            "-",
+        ],
+    )
+    .output()
+    .unwrap();
+    let text = String::from_utf8(run.stdout).unwrap();
+    let counted: u64 = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').nth(2).unwrap().parse::<u64>().unwrap())
+        .sum();
+    assert_eq!(table[0]["majors"], counted.to_string());
+}
+
+#[test]
+fn wrong_usage_is_refused_with_2() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("bad.csv"), "load,u_x\n1,x\n").unwrap();
+    for (arguments, part) in [
+        (vec![], "required"),
+        (vec![CIRCLE, "--target", "0"], "above 0"),
+        (vec![CIRCLE, "--cost", "money"], "one of time"),
+        (vec![CIRCLE, "--over", "nonsense=1"], "no value"),
+        (
+            vec![BEAM, "--over", "increment=0.05", "--reference", "bad.csv"],
+            "bad.csv:2:3: \"x\" under u_x",
+        ),
+        (
+            vec![BEAM, "--over", "increment=0.05", "--reference", "none.csv"],
+            "none.csv: ",
+        ),
+        (vec!["no-such-scene"], "no such file"),
+    ] {
+        let output = ran(directory.path(), &arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert!(
+            err(&output).contains(part),
+            "{arguments:?}: {}",
+            err(&output)
+        );
+    }
+}
+
+#[test]
+fn a_table_is_drawn_again_as_it_was_and_tables_of_other_programs_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let first = [
+        CIRCLE,
+        "--over",
+        "refine=1,2",
+        "--set",
+        "history.increment=0.5",
+        "--repeats",
+        "1",
+        "--csv",
+        "a.csv",
+    ];
+    assert!(ran(directory.path(), &first).status.success());
+    let output = ran(
+        directory.path(),
+        &["--from", "a.csv", "--csv", "-", "--target", "1"],
+    );
+    let again = rows(&output);
+    let table = std::fs::read_to_string(directory.path().join("a.csv")).unwrap();
+    assert_eq!(again.len(), 2);
+    for row in &again {
+        assert!(table.contains(&row["error"]) && table.contains(&row["seconds"]));
+    }
+    assert!(
+        err(&output).contains("The cheapest run with an error of at most 1.0"),
+        "{}",
+        err(&output)
+    );
+    let peers = "# two programs\nscene,series,run,status,error,seconds\nA,one,\"n=1, m=2\",whole,1e-3,0.5\nA,two,n=1,died,,9\n";
+    std::fs::write(directory.path().join("peers.csv"), peers).unwrap();
+    let output = ran(
+        directory.path(),
+        &["--from", "peers.csv", "--svg", "b.svg", "--csv", "-"],
+    );
+    let table = rows(&output);
+    assert_eq!(
+        (table[0]["run"].as_str(), table[0]["front"].as_str()),
+        ("n=1, m=2", "true")
+    );
+    let svg = std::fs::read_to_string(directory.path().join("b.svg")).unwrap();
+    assert!(svg.contains("✗ two, n=1: died") && svg.contains("two programs"));
+    for (text, part) in [
+        ("", "no header"),
+        ("a,b\n", "no table of a chart"),
+        ("scene,series,run,status,error,seconds\n", "no rows"),
+        (
+            "scene,series,run,status,error,seconds\nA,b,c,whole,x,1\n",
+            "c.csv:2:13: \"x\" under error",
+        ),
+        (
+            "scene,series,run,status,error,seconds\nA,b,c\n",
+            "c.csv:2:1: the row has 3 fields",
+        ),
+    ] {
+        std::fs::write(directory.path().join("c.csv"), text).unwrap();
+        let output = ran(directory.path(), &["--from", "c.csv"]);
+        assert_eq!(code(&output), 2, "{text}");
+        assert!(err(&output).contains(part), "{}", err(&output));
+    }
+}

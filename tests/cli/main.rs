@@ -1,0 +1,13 @@
+//! The program from outside, without a terminal: exit codes, streams, tables, files.
+
+#[path = "../common/program.rs"]
+mod program;
+
+// run, check, list, record, replay: what ends with which code, and where its words go.
+mod run;
+// Studies run what they list, in that order, with the bits of a run alone.
+mod study;
+// Stability maps count honestly, and a kill loses nothing.
+mod map;
+// Work-precision charts draw what they measured, failures too.
+mod chart;

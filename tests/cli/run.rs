@@ -1,0 +1,473 @@
+//! The program from outside: exit codes, what goes to which stream, and what happens to files.
+
+use crate::program::{code, err, interrupted, names, out, program};
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const BEAM: &str = "01-pinned-beam-rough-floor";
+const ROUGH: &str = "02-two-cantilevers-rough";
+const OSC: &str = "osc-inclined-cantilever";
+/// Makes a run so long that it cannot end before it is stopped.
+const LONG: [&str; 2] = ["--set", "history.increment=5e-6"];
+
+/// Runs in a directory of its own.
+fn ran_in(directory: &Path, arguments: &[&str]) -> Output {
+    program(directory, arguments).output().unwrap()
+}
+
+fn ran(arguments: &[&str]) -> Output {
+    ran_in(&std::env::current_dir().unwrap(), arguments)
+}
+
+/// A table is whole if it ends with a line end and all its rows have as many fields as its header.
+fn whole_rows(table: &str) -> usize {
+    assert!(table.ends_with('\n'), "cut off: {table:?}");
+    let fields: Vec<usize> = table.lines().map(|l| l.split(',').count()).collect();
+    assert!(fields.iter().all(|n| *n == fields[0]), "{table}");
+    fields.len() - 1
+}
+
+#[test]
+fn a_run_that_converges_ends_with_0_and_writes_only_data_to_standard_output() {
+    let output = ran(&["run", BEAM, "--csv", "-"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let table = out(&output);
+    assert_eq!(whole_rows(&table), 50);
+    let header = "increment,load,majors,minors,u_x,u_y,rotation,contact_x,contact_y,jumped";
+    assert_eq!(table.lines().next(), Some(header));
+    for (k, row) in table.lines().skip(1).enumerate() {
+        let fields: Vec<f64> = row.split(',').map(|f| f.parse().unwrap()).collect();
+        assert_eq!(fields[0], k as f64 + 1.0);
+        assert!(fields[3] >= fields[2], "a major iteration has a minor one");
+    }
+    assert!(err(&output).contains("50 increments accepted"));
+    let quiet = ran(&["run", BEAM, "--csv", "-", "--quiet"]);
+    assert_eq!((out(&quiet), err(&quiet)), (table, String::new()));
+}
+
+#[test]
+fn without_csv_a_run_prints_a_summary_with_the_monitors_to_standard_error() {
+    let output = ran(&["run", ROUGH]);
+    assert_eq!(code(&output), 0);
+    assert_eq!(out(&output), "");
+    assert!(err(&output).contains("up to load 2.5"), "{}", err(&output));
+    assert!(err(&output).contains("contact_y"), "{}", err(&output));
+}
+
+#[test]
+fn a_trace_has_a_row_for_every_minor_iteration_and_agrees_with_the_csv() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = ["run", BEAM, "--csv", "a.csv", "--trace", "-", "-q"];
+    let output = ran_in(directory.path(), &arguments);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let trace = out(&output);
+    assert!(trace.starts_with(
+        "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual\n"
+    ));
+    let csv = std::fs::read_to_string(directory.path().join("a.csv")).unwrap();
+    let minors = csv
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').nth(3).unwrap());
+    let minors: usize = minors.map(|n| n.parse::<usize>().unwrap()).sum();
+    assert_eq!(whole_rows(&trace), minors, "one slave node");
+    for word in ["sliding-sticks", "fixed-slides", "beam.5"] {
+        assert!(trace.contains(word), "{word}");
+    }
+    let rows = trace.lines().skip(1);
+    let last = rows.last().unwrap().rsplit(',').next().unwrap();
+    let last: f64 = last.parse().unwrap();
+    assert!(last < 1e-10, "the residual at the end of a major: {last}");
+}
+
+#[test]
+fn a_cycle_ends_with_3_and_is_told_with_place_nodes_and_what_to_try() {
+    let output = ran(&["run", OSC, "--csv", "-", "--set", "history.increment=0.02"]);
+    assert_eq!(code(&output), 3);
+    assert_eq!(whole_rows(&out(&output)), 2, "what converged before");
+    let told = err(&output);
+    for part in [
+        "increment 3 (load 0.06), major 1, minor 2",
+        "2-cycle",
+        "beam.5 free > fixed",
+        "load 0.04",
+        "try ",
+    ] {
+        assert!(told.contains(part), "{part:?} is not in {told}");
+    }
+}
+
+#[test]
+fn a_mechanism_is_named_with_body_and_motion() {
+    let free = ["run", BEAM, "--set", "slaves[0].start=free"];
+    let by_table_2 = ["--set", "settings.strategy=table2", "-q"];
+    let output = ran(&[&free[..], &by_table_2].concat());
+    assert_eq!(code(&output), 3);
+    let motion = "beam can turn about (0, 2.8284)";
+    assert!(err(&output).contains(motion), "{}", err(&output));
+    // The ladder says the same, and finds the state in which the floor holds the beam.
+    let output = ran(&free);
+    assert_eq!(code(&output), 0);
+    assert!(err(&output).contains(motion), "{}", err(&output));
+}
+
+#[test]
+fn an_increment_that_is_accepted_unsettled_is_not_accepted_in_silence() {
+    let limits = [
+        "run",
+        BEAM,
+        "--quiet",
+        "--set",
+        "settings.minors=1",
+        "--set",
+        "settings.at_minor_limit=accept",
+        "--set",
+        "settings.majors=1",
+        "--set",
+        "settings.at_major_limit=accept",
+        "--set",
+        "history.path[1]=0.02",
+        "--set",
+        "history.path[2]=0.03",
+    ];
+    let output = ran(&limits);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let told = err(&output);
+    assert!(
+        told.contains("increment 1 (load 0.01) was accepted, although"),
+        "{told}"
+    );
+}
+
+#[test]
+fn bad_input_ends_with_2_and_one_line() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(
+        directory.path().join("bad.ron"),
+        "(title: \"a\",\n  nose: 3)",
+    )
+    .unwrap();
+    std::fs::write(directory.path().join("noise.ron"), [0xff, 0, 7, 0xfe]).unwrap();
+    for arguments in [
+        &["run", "no-such-scene"][..],
+        &["run", "bad.ron"],
+        &["check", "bad.ron"],
+        &["check", "noise.ron"],
+        &["run", "."],
+        &["check", BEAM, "--set", "friction.angel=3"],
+        &["check", BEAM, "--set", "friction.angle=95"],
+        &["run", BEAM, "--csv", "no/such/directory/a.csv"],
+        &["run", BEAM, "--csv", "-", "--trace", "-"],
+        &["replay", "no-such-file.ron"],
+        &["replay", "noise.ron"],
+        &["replay", "bad.ron"],
+        &["diff", "bad.ron", "bad.ron"],
+        &["record", BEAM, "--at", "77"],
+        &["record", BEAM, "--at", "1.2.500"],
+    ] {
+        let output = ran_in(directory.path(), arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}: {}", err(&output));
+        assert_eq!(out(&output), "", "{arguments:?}");
+        assert_eq!(err(&output).lines().count(), 1, "{}", err(&output));
+    }
+    assert_eq!(names(directory.path()), ["bad.ron", "noise.ron"]);
+    let output = ran_in(directory.path(), &["check", "bad.ron"]);
+    assert!(err(&output).starts_with("bad.ron:2:"), "{}", err(&output));
+}
+
+#[test]
+fn bad_usage_ends_with_2() {
+    for arguments in [
+        &["run"][..],
+        &["run", BEAM, "--sett", "a=b"],
+        &["run", BEAM, "--set", "friction.angle"],
+        &["record", BEAM],
+        &["record", BEAM, "--at", "0"],
+        &["record", BEAM, "--at", "1.2.3.4"],
+        &["replay"],
+        &["diff", "one"],
+    ] {
+        let output = ran(arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert_eq!(out(&output), "");
+        assert!(!err(&output).is_empty());
+    }
+    for arguments in [&["--help"][..], &["--version"], &["run", "--help"]] {
+        assert_eq!(code(&ran(arguments)), 0, "{arguments:?}");
+    }
+}
+
+#[test]
+fn without_a_terminal_the_debugger_says_so_and_names_run() {
+    for arguments in [&[][..], &[BEAM], &[BEAM, "--set", "friction.angle=20"]] {
+        let output = ran(arguments);
+        assert_eq!(code(&output), 2);
+        assert_eq!(out(&output), "");
+        let told = err(&output);
+        assert!(told.contains("terminal"), "{told}");
+        assert!(told.contains("stickslip run"), "{told}");
+    }
+}
+
+#[test]
+fn list_and_check_tell_what_there_is() {
+    let output = ran(&["list"]);
+    assert_eq!((code(&output), err(&output)), (0, String::new()));
+    let builtin = stickslip::scene::builtin::list();
+    assert_eq!(out(&output).lines().count(), builtin.len());
+    for (line, scene) in out(&output).lines().zip(builtin) {
+        assert!(line.starts_with(scene.name));
+        assert!(line.ends_with(&scene.title()));
+        let output = ran(&["check", scene.name]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        assert!(out(&output).contains("unknowns"), "{}", out(&output));
+    }
+}
+
+#[test]
+fn check_lists_the_paths_that_set_takes() {
+    let output = ran(&["check", BEAM, "--paths", "--set", "friction.angle=20"]);
+    assert_eq!(code(&output), 0);
+    let listed = out(&output);
+    assert!(listed.contains("friction.angle\t20.0\t"), "{listed}");
+    for line in listed.lines() {
+        let mut fields = line.split('\t');
+        let (path, value) = (fields.next().unwrap(), fields.next().unwrap());
+        let same = format!("{path}={value}");
+        let output = ran(&["check", BEAM, "--set", &same]);
+        assert_eq!(code(&output), 0, "{same}: {}", err(&output));
+        if listed.lines().count() > 40 && path.starts_with("monitors") {
+            break; // Each is a process of its own; the rest are of a kind.
+        }
+    }
+}
+
+#[test]
+fn set_changes_the_scene() {
+    let load = |set: &str| {
+        let output = ran(&["run", ROUGH, "--csv", "-", "-q", "--set", set]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        out(&output)
+    };
+    assert_eq!(whole_rows(&load("history.increment=0.5")), 5);
+    assert_eq!(whole_rows(&load("history.path[1]=0.1")), 2);
+    assert_ne!(load("refine=2"), load("refine=1"));
+}
+
+#[test]
+fn files_are_overwritten_only_when_asked_and_that_is_known_before_the_solve() {
+    let directory = tempfile::tempdir().unwrap();
+    for option in ["--csv", "--trace", "--snapshot"] {
+        let file = directory.path().join("precious");
+        std::fs::write(&file, "precious").unwrap();
+        // This run would take minutes.
+        let mut arguments = vec!["run", ROUGH, option, "precious"];
+        arguments.extend(LONG);
+        let output = ran_in(directory.path(), &arguments);
+        assert_eq!(code(&output), 2, "{option}");
+        assert!(err(&output).contains("--force"), "{}", err(&output));
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "precious");
+        let output = ran_in(
+            directory.path(),
+            &["run", ROUGH, option, "precious", "--force"],
+        );
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        assert_ne!(std::fs::read_to_string(&file).unwrap(), "precious");
+        assert_eq!(
+            names(directory.path()),
+            ["precious"],
+            "nothing is left over"
+        );
+    }
+    let same = ran_in(
+        directory.path(),
+        &["run", ROUGH, "--csv", "new", "--trace", "new"],
+    );
+    assert_eq!(code(&same), 2);
+    assert_eq!(names(directory.path()), ["precious"]);
+}
+
+#[test]
+fn a_failing_run_leaves_whole_files() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = [
+        "run",
+        OSC,
+        "--csv",
+        "a.csv",
+        "--trace",
+        "a.trace",
+        "--snapshot",
+        "a.ron",
+        "--set",
+        "history.increment=0.02",
+    ];
+    let output = ran_in(directory.path(), &arguments);
+    assert_eq!(code(&output), 3);
+    assert_eq!(names(directory.path()), ["a.csv", "a.ron", "a.trace"]);
+    let read = |name: &str| std::fs::read_to_string(directory.path().join(name)).unwrap();
+    assert_eq!(whole_rows(&read("a.csv")), 2);
+    let trace = read("a.trace");
+    whole_rows(&trace);
+    assert!(
+        trace
+            .lines()
+            .last()
+            .unwrap()
+            .starts_with("3,1,1,2,beam.5,fixed,free,fixed-opens,")
+    );
+    let replayed = ran_in(directory.path(), &["replay", "a.ron"]);
+    assert_eq!(code(&replayed), 0, "{}", out(&replayed));
+}
+
+#[test]
+fn what_is_recorded_replays_and_what_differs_is_told() {
+    let directory = tempfile::tempdir().unwrap();
+    let ran = |arguments: &[&str]| ran_in(directory.path(), arguments);
+    for (at, file) in [("3", "a.ron"), ("3.1", "b.ron"), ("26.1.1", "c.ron")] {
+        let output = ran(&["record", BEAM, "--at", at, "-o", file]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        assert_eq!(out(&output), "");
+    }
+    let output = ran(&["replay", "a.ron", "b.ron", "c.ron"]);
+    assert_eq!(code(&output), 0, "{}{}", out(&output), err(&output));
+    assert_eq!(out(&output).lines().count(), 3);
+    assert!(out(&output).lines().all(|line| line.contains(": equal")));
+
+    assert_eq!(code(&ran(&["diff", "a.ron", "a.ron"])), 0);
+    let output = ran(&["diff", "a.ron", "c.ron"]);
+    assert_eq!(code(&output), 1);
+    for part in ["increment", "beam.5 next", "sliding-sticks", "beam.5 x"] {
+        assert!(out(&output).contains(part), "{part}: {}", out(&output));
+    }
+
+    // Another friction is another scene, and the recorded state is not the one that it leads to.
+    let text = std::fs::read_to_string(directory.path().join("c.ron")).unwrap();
+    let other = text.replace("angle: 30.0", "angle: 20.0");
+    assert_ne!(other, text);
+    std::fs::write(directory.path().join("other.ron"), other).unwrap();
+    let output = ran(&["replay", "a.ron", "other.ron"]);
+    assert_eq!(code(&output), 1, "{}", err(&output));
+    assert!(out(&output).contains("beam.5 f_t"), "{}", out(&output));
+    let output = ran(&["diff", "c.ron", "other.ron"]);
+    assert_eq!(code(&output), 1);
+    assert!(
+        out(&output).contains("scene friction.angle"),
+        "{}",
+        out(&output)
+    );
+
+    let unknown = text.replace("format: 1", "format: 7");
+    std::fs::write(directory.path().join("unknown.ron"), unknown).unwrap();
+    let output = ran(&["replay", "unknown.ron", "a.ron"]);
+    assert_eq!(code(&output), 2);
+    assert!(err(&output).contains("format 7"), "{}", err(&output));
+    assert!(out(&output).contains("a.ron: equal"), "the others are done");
+
+    let output = ran(&["record", BEAM, "--at", "3", "-o", "a.ron"]);
+    assert_eq!(code(&output), 2, "never overwritten unasked");
+}
+
+#[test]
+fn record_names_its_file_and_tells_a_place_that_is_not_reached() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = ran_in(directory.path(), &["record", OSC, "--at", "1.1.2"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let file = "osc-inclined-cantilever-1.1.2.ron";
+    assert_eq!(names(directory.path()), [file]);
+    let output = ran_in(directory.path(), &["record", OSC, "--at", "2"]);
+    assert_eq!(code(&output), 3);
+    assert!(
+        err(&output).contains("2 is not reached"),
+        "{}",
+        err(&output)
+    );
+    assert_eq!(names(directory.path()), [file]);
+    let output = ran(&["record", OSC, "--at", "1.1.1", "-o", "-"]);
+    assert!(out(&output).starts_with("(\n    format: 1,"));
+}
+
+#[test]
+fn a_reader_that_closes_the_pipe_is_no_panic() {
+    for mut arguments in [
+        vec!["run", ROUGH, "--csv", "-"],
+        vec!["run", ROUGH, "--trace", "-"],
+    ] {
+        arguments.extend(LONG);
+        let mut child = program(Path::new("."), &arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        assert!(lines.next().unwrap().unwrap().starts_with("increment,"));
+        drop(lines);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(code(&output), 130, "{}", err(&output));
+        assert!(!err(&output).contains("panicked"), "{}", err(&output));
+    }
+    for arguments in [&["check", BEAM, "--paths"][..], &["list"], &["--help"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = program(Path::new("."), arguments)
+            .stdout(writer)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+            .wait_with_output()
+            .unwrap();
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        assert_eq!(err(&output), "");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_while_recording_leaves_nothing_behind() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut arguments = vec!["record", ROUGH, "--at", "400000", "-o", "a.ron"];
+    arguments.extend(LONG);
+    let child = program(Path::new("."), &arguments)
+        .current_dir(directory.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The file that is to become a.ron shows that the program listens.
+    while names(directory.path()).is_empty() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    interrupted(child);
+    assert!(names(directory.path()).is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_run_with_130_and_whole_files() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut arguments = vec!["run", ROUGH, "--trace", "-", "--csv", "a.csv"];
+    arguments.extend(LONG);
+    let mut child = program(Path::new("."), &arguments)
+        .current_dir(directory.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut trace = BufReader::new(child.stdout.take().unwrap());
+    let mut text = String::new();
+    for _ in 0..200 {
+        trace.read_line(&mut text).unwrap();
+    }
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(killed.unwrap().success());
+    trace.read_to_string(&mut text).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(code(&output), 130, "{}", err(&output));
+    assert!(err(&output).contains("interrupted"), "{}", err(&output));
+    assert!(whole_rows(&text) >= 199);
+    assert_eq!(names(directory.path()), ["a.csv"]);
+    let csv = std::fs::read_to_string(directory.path().join("a.csv")).unwrap();
+    assert!(whole_rows(&csv) > 1);
+}

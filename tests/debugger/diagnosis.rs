@@ -1,0 +1,136 @@
+//! Scenes that are known to cycle are diagnosed as their notes say (`tests/references/`, and the comments of the scenes):
+//! period, members, consistent states, cause.
+
+use crate::common::{Run, force, go_on, run, scene};
+use stickslip::debug::diagnosis::{Cause, Diagnosis, words};
+use stickslip::debug::influence::influences;
+use stickslip::interface::problem::{InterfaceProblem, Trials};
+use stickslip::model::Mode;
+use stickslip::step::event::Failure;
+use stickslip::step::state::Status;
+
+fn failed(name: &str) -> (Run, InterfaceProblem, Diagnosis) {
+    let mut run = run(&scene(name, &[]));
+    assert!(
+        matches!(run.failure, Some((_, Failure::Cycle(_)))),
+        "{name}: {:?}",
+        run.failure
+    );
+    let problem = run.stepper.frozen().unwrap();
+    let diagnosis = Diagnosis::of(&problem).unwrap();
+    (run, problem, diagnosis)
+}
+
+fn answers(diagnosis: &Diagnosis) -> Vec<String> {
+    let census = diagnosis.census.as_ref().unwrap();
+    census.answers.iter().map(|a| a.answer.letters()).collect()
+}
+
+#[test]
+fn the_small_scenes_are_diagnosed_as_their_notes_say() {
+    let no_way = |nodes: &[usize]| Cause::NoWayToSliding(nodes.to_vec());
+    for (name, period, members, consistent, cause) in [
+        ("osc-inclined-cantilever", 2, 1, vec!["-"], no_way(&[0])),
+        ("osc-touch2", 2, 1, vec!["-"], no_way(&[0])),
+        ("osc-lag4", 4, 1, vec!["-"], Cause::Passed),
+        ("osc-zig3", 3, 1, vec!["+"], Cause::Passed),
+        ("osc-two3", 3, 2, vec!["++"], no_way(&[0])),
+        ("osc-two-many", 3, 2, vec!["XX"], Cause::Passed),
+        ("osc-three10", 10, 3, vec!["-FF"], Cause::Passed),
+        ("osc-coh-none", 2, 1, vec![], Cause::NoAnswer),
+        ("osc-drag65", 4, 1, vec!["-"], Cause::Passed),
+    ] {
+        let (run, problem, diagnosis) = failed(name);
+        assert_eq!(diagnosis.cycle.period, period, "{name}");
+        assert_eq!(diagnosis.cycle.members.len(), members, "{name}");
+        assert_eq!(answers(&diagnosis), consistent, "{name}");
+        assert_eq!(diagnosis.cause, cause, "{name}");
+        // The frozen problem's own minor iterations are those of the solver.
+        let Some((_, Failure::Cycle(cycle))) = &run.failure else {
+            unreachable!()
+        };
+        assert_eq!(cycle.period, period, "{name}");
+        let lines = words(run.stepper.model(), &problem, &diagnosis);
+        assert!(lines.len() >= 3 && lines[0].starts_with("why: "), "{name}");
+    }
+}
+
+#[test]
+fn assumptions_that_lead_to_one_state_are_ties_and_not_several_states() {
+    // The notes list XX and -X: F_t of the first node is at its limit to the last bit, and its slip is none.
+    let (_, _, diagnosis) = failed("osc-two-many");
+    let census = diagnosis.census.unwrap();
+    assert_eq!(census.answers[0].ties, ["-X"]);
+}
+
+#[test]
+fn the_two_nodes_with_several_periods_have_one_answer_that_gets_out() {
+    let (mut run, _, diagnosis) = failed("osc-two6");
+    assert_eq!(answers(&diagnosis), ["--"]);
+    for slave in 0..2 {
+        force(&mut run, slave, Mode::Sliding, false);
+    }
+    let run = go_on(run);
+    assert_eq!(run.stepper.state().status, Status::Finished);
+    let end = run.accepted.last().unwrap().monitors["u_x"];
+    assert!((end + 0.44859).abs() < 1e-5, "{end}");
+}
+
+#[test]
+fn a_core_is_no_larger_than_its_cycle_and_cycles_by_itself() {
+    for name in ["osc-two3", "osc-two6", "osc-three10"] {
+        let (_, _, diagnosis) = failed(name);
+        let core = diagnosis.core.unwrap();
+        assert!(core.places.len() <= diagnosis.cycle.members.len());
+        assert_eq!(core.problem.nodes.len(), core.places.len());
+        assert!(
+            stickslip::debug::core::cycle(&core.problem).is_some(),
+            "{name}"
+        );
+        for drop in 0..core.places.len() {
+            let fewer: Vec<usize> = (0..core.places.len()).filter(|&p| p != drop).collect();
+            let smaller = core.problem.reduced(&fewer).unwrap();
+            let still = stickslip::debug::core::cycle(&smaller);
+            assert!(fewer.is_empty() || still.is_none(), "{name} without {drop}");
+        }
+    }
+}
+
+#[test]
+fn influences_add_up_to_what_happened() {
+    for name in ["osc-two3", "osc-two6", "osc-three10", "osc-drag65"] {
+        let (_, problem, diagnosis) = failed(name);
+        let mut states = vec![problem.states()];
+        let mut trials = Trials::new(&problem).unwrap();
+        for _ in 0..diagnosis.cycle.period {
+            let mut next = states.last().unwrap().clone();
+            trials.minor(&mut next).unwrap();
+            states.push(next);
+        }
+        for pair in states.windows(2).take(diagnosis.cycle.period as usize - 1) {
+            let (old, new) = (
+                trials.given(&pair[0]).unwrap(),
+                trials.given(&pair[1]).unwrap(),
+            );
+            for target in 0..problem.nodes.len() {
+                let all = influences(&problem, &pair[0], &pair[1], &[target]).unwrap();
+                let all = &all[0];
+                let f_n: f64 = all.iter().map(|i| i.f_n).sum();
+                let gap: f64 = all.iter().map(|i| i.gap).sum();
+                let size = old[target].force[0].abs() + new[target].force[0].abs() + problem.force;
+                let happened = new[target].force[0] - old[target].force[0];
+                assert!(
+                    (f_n - happened).abs() < 1e-9 * size,
+                    "{name}: {f_n} {happened}"
+                );
+                let happened = old[target].motion[0] - new[target].motion[0];
+                let size =
+                    old[target].motion[0].abs() + new[target].motion[0].abs() + problem.length;
+                assert!(
+                    (gap - happened).abs() < 1e-9 * size,
+                    "{name}: {gap} {happened}"
+                );
+            }
+        }
+    }
+}

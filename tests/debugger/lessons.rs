@@ -1,0 +1,495 @@
+//! Lessons: the built-in ones can be played through, right answers are the solver's, nothing is seen before it is
+//! answered, and a lesson that is wrong is told where.
+
+use crate::common;
+use std::process::Command;
+use std::sync::Arc;
+use stickslip::debug::command::{self, Action, Context, Unit, Whose};
+use stickslip::debug::lesson::play::play;
+use stickslip::debug::lesson::tutor::{Kind, Paragraph};
+use stickslip::debug::lesson::{self, Guess, Lesson, Tutor};
+use stickslip::debug::session::Session;
+use stickslip::model::Mode;
+use stickslip::tui::Debugger;
+use stickslip::tui::theme::Theme;
+
+/// The debugger at the beginning of a built-in lesson.
+fn taught(name: &str) -> Debugger {
+    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
+    debugger.teach(Lesson::open(name).unwrap());
+    debugger
+}
+
+fn tutor(debugger: &Debugger) -> &Tutor {
+    debugger.app.lesson.as_ref().unwrap()
+}
+
+/// A lesson on the oscillating scene with one step, in the file's second line.
+fn lesson_of(step: &str) -> String {
+    format!("(title: \"T\", scene: Name(\"osc-inclined-cantilever\"), steps: [\n    {step},\n])")
+}
+
+/// What is wrong with a lesson, when it is read or else when it is played.
+fn fault(text: &str) -> String {
+    match Lesson::from_text("test.ron", text) {
+        Err(error) => error.to_string(),
+        Ok(lesson) => play(&Arc::new(lesson)).unwrap_err().to_string(),
+    }
+}
+
+#[test]
+fn every_built_in_lesson_plays_through() {
+    assert!(lesson::list().len() >= 6);
+    for builtin in lesson::list() {
+        let lesson = Lesson::open(builtin.name).unwrap_or_else(|e| panic!("{e}"));
+        assert!(!lesson.about.is_empty());
+        let answers = play(&Arc::new(lesson)).unwrap_or_else(|e| panic!("{e}"));
+        assert!(answers.len() >= 3, "{}: {answers:?}", builtin.name);
+    }
+}
+
+#[test]
+fn what_the_lessons_teach_is_what_the_solver_does() {
+    let answers = |name: &str| -> Vec<String> {
+        let lesson = Lesson::open(name).unwrap();
+        let answers = play(&Arc::new(lesson)).unwrap();
+        answers
+            .into_iter()
+            .map(|answered| answered.answer)
+            .collect()
+    };
+    assert_eq!(answers("modes"), ["free", "fixed", "sliding", "fixed"]);
+    // By hand: 0.04 − 0.3/3; 0.3 − 3·0.04; 0.2·(1 − 0.4); 0.18 tan 30°.
+    let by_hand = answers("3");
+    assert_eq!(by_hand[..4], ["−0.06", "fixed", "0.18", "0.12"]);
+    assert_eq!(by_hand[5..], ["0.1039", "sliding"]);
+    assert_eq!(answers("no-answer"), ["0", "free", "1"]);
+    assert_eq!(
+        answers("several-answers"),
+        ["free", "fixed", "3", "sliding", "1"]
+    );
+}
+
+#[test]
+fn right_answers_follow_the_scene_and_stand_in_no_file() {
+    let text = lesson::find("3-by-hand").unwrap().text;
+    let rough = text.replace("friction: (angle: 30.0)", "friction: (angle: 40.0)");
+    assert_ne!(text, rough);
+    let rule = |text: &str| {
+        let lesson = Lesson::from_text("test.ron", text).unwrap();
+        play(&Arc::new(lesson)).unwrap()[4].answer.clone()
+    };
+    assert!(rule(text).ends_with("|F_t| > |T_max|: sliding)"));
+    assert!(rule(&rough).ends_with("|F_t| < |T_max|: fixed)"));
+}
+
+#[test]
+fn a_wrong_answer_is_told_with_the_numbers_of_the_decision() {
+    let mut debugger = taught("4-oscillation");
+    debugger.type_keys("Space s");
+    assert_eq!(tutor(&debugger).question().unwrap().kind, Kind::Mode);
+    let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
+    debugger.type_keys("a s");
+    let hint = "No. Look at the row free of Table 2: g = −0.0065 < 0. On a rough floor only one mode follows when g < 0.";
+    assert_eq!(last(&debugger), Paragraph::Wrong(hint.into()));
+    debugger.type_keys("a f");
+    let told =
+        "No. It is fixed. g = −0.0065 < 0. Free → fixed: the node has gone into the surface.";
+    assert_eq!(last(&debugger), Paragraph::Wrong(told.into()));
+    assert_eq!(tutor(&debugger).score(), (0, 1));
+    debugger.type_keys("Space a f");
+    let Paragraph::Right(told) = last(&debugger) else {
+        panic!("free follows fixed")
+    };
+    assert!(
+        told.contains("F_n = −") && told.contains("the surface would have to pull"),
+        "{told}"
+    );
+    assert_eq!(tutor(&debugger).score(), (1, 2));
+}
+
+#[test]
+fn a_decision_that_is_asked_about_is_nowhere_on_the_screen() {
+    for (width, height) in [(80, 24), (120, 40), (200, 60)] {
+        let mut debugger = taught("4-oscillation");
+        debugger.type_keys("Space s");
+        let asked = debugger.text(width, height);
+        assert!(
+            asked.contains("free → ?") || asked.contains("f→?"),
+            "{asked}"
+        );
+        for telling in ["free > fixed", "◀", "Free → fixed", "margin", "f→x"] {
+            assert!(!asked.contains(telling), "{telling}:\n{asked}");
+        }
+        debugger.type_keys("a x");
+        let answered = debugger.text(width, height);
+        assert!(
+            answered.contains("free > fixed") && answered.contains("✓ Right: fixed"),
+            "{answered}"
+        );
+    }
+}
+
+#[test]
+fn a_lesson_waits_for_what_it_wants_and_lets_one_look_around() {
+    let mut debugger = taught("4-oscillation");
+    debugger.type_keys("s");
+    assert!(
+        debugger
+            .text(120, 40)
+            .contains("the lesson waits: Space goes on")
+    );
+    debugger.type_keys("Space c");
+    assert!(
+        debugger
+            .text(120, 40)
+            .contains("the lesson waits: press s (step)")
+    );
+    assert_eq!(debugger.session.as_ref().unwrap().frames().len(), 1);
+    debugger.type_keys("Space");
+    assert_eq!(tutor(&debugger).at(), 1);
+    debugger.type_keys("Tab z z + 0 t e e s");
+    assert_eq!(tutor(&debugger).at(), 2);
+    // A repeated motion is a motion, too.
+    debugger.type_keys("Enter");
+    assert_eq!(debugger.session.as_ref().unwrap().frames().len(), 2);
+}
+
+#[test]
+fn keys_and_typed_lines_are_the_same_to_a_lesson() {
+    for keys in ["m s", ": f o r c e Space s l i d Enter"] {
+        let mut debugger = taught("4-oscillation");
+        debugger.type_keys("Space s a x Space a f Space a 2 Space c a 1 Enter Space");
+        assert_eq!(tutor(&debugger).at(), 7);
+        debugger.type_keys(keys);
+        assert_eq!(tutor(&debugger).at(), 8, "{keys}");
+        debugger.type_keys("s a s Space c Space");
+        let end = debugger.text(120, 40);
+        assert!(end.contains("All 5 answers right at once."), "{end}");
+        // From here on nothing is forbidden.
+        debugger.type_keys("S S");
+        assert!(debugger.text(120, 40).contains("steps"));
+    }
+}
+
+#[test]
+fn lesson_screens() {
+    for (width, height) in [(80, 24), (120, 40), (200, 60)] {
+        let mut debugger = taught("2-table-2");
+        debugger.type_keys("Space e e f s");
+        insta::assert_snapshot!(
+            format!("lesson-asks-{width}x{height}"),
+            debugger.text(width, height)
+        );
+        debugger.type_keys("a 3");
+        insta::assert_snapshot!(
+            format!("lesson-tells-{width}x{height}"),
+            debugger.text(width, height)
+        );
+    }
+    let mut debugger = taught("2-table-2");
+    debugger.type_keys("Space e");
+    insta::assert_snapshot!("lesson-zoomed-80x24", debugger.text(80, 24));
+}
+
+#[test]
+fn any_size_shows_what_to_do() {
+    for (width, height) in [(40, 10), (60, 20), (80, 24), (100, 30), (130, 36)] {
+        let mut debugger = taught("3-by-hand");
+        debugger.type_keys("Space");
+        let screen = debugger.text(width, height);
+        assert!(screen.contains("▶ answer: a, then a number"), "{screen}");
+    }
+}
+
+#[test]
+fn no_line_of_a_lesson_is_cut_off_on_a_small_screen() {
+    for builtin in lesson::list() {
+        let lesson = Arc::new(Lesson::open(builtin.name).unwrap());
+        let mut debugger = taught(builtin.name);
+        // Wrong once, then right: the longest page that a step can have.
+        for _ in 0..200 {
+            let tutor = tutor(&debugger);
+            let Some(step) = lesson.steps.get(tutor.at()) else {
+                break;
+            };
+            let rows = stickslip::tui::lesson::rows(&debugger.app, 80);
+            assert!(
+                rows <= 15,
+                "{} step {}: {rows} rows",
+                builtin.name,
+                tutor.at() + 1
+            );
+            match (step, tutor.solution()) {
+                (
+                    lesson::Step::Press {
+                        action: Action::Session(command),
+                        ..
+                    },
+                    _,
+                ) => {
+                    let line = typed(command);
+                    debugger.type_keys(":");
+                    debugger.type_text(&line);
+                    debugger.type_keys("Enter");
+                }
+                (lesson::Step::Press { .. }, _) => debugger.type_keys("e"),
+                (lesson::Step::Ask(_), Some(word)) => {
+                    debugger.type_keys(":");
+                    debugger.type_text(&format!("answer {word}"));
+                    debugger.type_keys("Enter");
+                }
+                (lesson::Step::Predict { .. }, _) => break,
+                _ => debugger.type_keys("Space"),
+            }
+        }
+    }
+}
+
+/// A command as a person types it.
+fn typed(command: &command::Command) -> String {
+    use command::Command as C;
+    let unit = |unit: &Unit| match unit {
+        Unit::Minor => "step",
+        Unit::Major => "next",
+        Unit::Increment => "finish",
+        Unit::Run => "continue",
+    };
+    match command {
+        C::Forward {
+            unit: Unit::Run, ..
+        } => "continue".into(),
+        C::Back {
+            unit: Unit::Run, ..
+        } => "reverse-continue".into(),
+        C::Forward { unit: u, count } => format!("{} {count}", unit(u)),
+        C::Back { unit: u, count } => format!("reverse-{} {count}", unit(u)),
+        C::Force {
+            mode, hold: false, ..
+        } => match mode {
+            Mode::Free => "force free".into(),
+            Mode::Sliding => "force sliding".into(),
+            Mode::Fixed => "force fixed".into(),
+        },
+        C::Increment(size) => format!("increment {size}"),
+        C::Set { path, value } => format!("set {path} {value}"),
+        other => panic!("no lesson wants {other:?} yet"),
+    }
+}
+
+#[test]
+fn broken_lessons_are_told_with_their_place() {
+    let exact = fault(&lesson_of(r#"Press(text: "x", press: "jump")"#));
+    assert_eq!(
+        exact,
+        "test.ron:2:29: steps[0].press: no key, and no action is called 'jump'; ? lists them all"
+    );
+    for (step, message) in [
+        (r#"Press(text: "x", press: "3c")"#, "c takes no count"),
+        (
+            r#"Press(text: "x", press: "stpe")"#,
+            "did you mean \"step\"?",
+        ),
+        (
+            r#"Press(text: "x", press: "force tip s")"#,
+            "no node is called 'tip'",
+        ),
+        (
+            r#"Ask(text: "x", answer: Mode(node: "tip"))"#,
+            "steps[0].answer.node: no node is called 'tip'",
+        ),
+        (
+            r#"Ask(text: "x", answer: Rule(node: "beam.start"))"#,
+            "is not a slave node",
+        ),
+        (
+            r#"Text("{F_m beam.end}")"#,
+            "knows no \"F_m\"; did you mean \"F_n\"?",
+        ),
+        (r#"Text("{F_n}")"#, "F_n of which node?"),
+        (r#"Text("{load")"#, "not closed"),
+        (
+            r#"Ask(text: "x", answer: Number(of: "mode beam.end", tolerance: 0.1))"#,
+            "is no number",
+        ),
+        (
+            r#"Ask(text: "x", answer: Number(of: "load", tolerance: 2.0))"#,
+            "a tolerance is relative",
+        ),
+        (
+            r#"Ask(text: "x", answer: Choice([("a", Right)]))"#,
+            "2 to 9 choices",
+        ),
+        (
+            r#"Ask(text: "x", answr: Mode(node: "beam.end"))"#,
+            "\"answr\"",
+        ),
+        (r#"Tell("x")"#, "\"Tell\" is none of the choices"),
+        (r#"Predict(text: "x", right: 0)"#, "one right prediction"),
+        // These are only found when the lesson is played.
+        (
+            r#"Ask(text: "x", answer: Mode(node: "beam.end"))"#,
+            "nothing is solved yet",
+        ),
+        (r#"Press(text: "x", press: "S")"#, "this is the start"),
+        (
+            r#"Ask(text: "x", answer: Choice([("a", Right), ("b", Cycles)]))"#,
+            "more than one of the choices is true",
+        ),
+        (
+            r#"Ask(text: "x", answer: Choice([("a", Wrong), ("b", Accepted)]))"#,
+            "none of the choices is true",
+        ),
+    ] {
+        let told = fault(&lesson_of(step));
+        assert!(
+            told.starts_with("test.ron:2:") && told.contains(message),
+            "{step}\n{told}"
+        );
+        assert!(!told.contains('\n'), "{told}");
+    }
+}
+
+#[test]
+fn the_scene_of_a_lesson_is_checked_like_any_other() {
+    let steps = "steps: [Text(\"x\")]";
+    let told = fault(&format!("(title: \"T\",\n scene: Name(\"osc\"), {steps})"));
+    assert!(
+        told.starts_with("test.ron:2:9: scene: ") && told.contains("no built-in scene"),
+        "{told}"
+    );
+    let text = format!(
+        "(title: \"T\", scene: Name(\"osc-inclined-cantilever\"),\n set: [(\"friction.angle\", \"95\")], {steps})"
+    );
+    assert!(
+        fault(&text).starts_with("test.ron:2:8: set[0]: "),
+        "{}",
+        fault(&text)
+    );
+    let by_hand = lesson::find("3-by-hand").unwrap().text;
+    let broken = by_hand.replace(
+        "(nodes: [\"beam.end\"], on: [\"floor\"]",
+        "(nodes: [\"beam.end\"], on: [\"flor\"]",
+    );
+    let told = fault(&broken);
+    let line = 1 + by_hand
+        .lines()
+        .position(|line| line.contains("slaves:"))
+        .unwrap();
+    assert!(told.starts_with(&format!("test.ron:{line}:")), "{told}");
+    assert!(
+        told.contains("scene.slaves[0].on[0]") && told.contains("did you mean \"floor\"?"),
+        "{told}"
+    );
+    let broken = by_hand.replace("EI: 1.0", "EJ: 1.0");
+    let told = fault(&broken);
+    assert!(told.contains("\"EJ\""), "{told}");
+}
+
+#[test]
+fn in_free_mode_a_decision_hides_until_it_is_predicted() {
+    let scene = common::scene("osc-inclined-cantilever", &[]);
+    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), Some(Session::new(scene)));
+    debugger.type_keys("p s");
+    let hidden = debugger.text(120, 40);
+    assert!(
+        hidden.contains("free → ?") && !hidden.contains("free > fixed"),
+        "{hidden}"
+    );
+    debugger.type_keys("s");
+    let refused = debugger.text(120, 40);
+    assert!(
+        refused.contains("predict first") && refused.contains("minor 1 "),
+        "{refused}"
+    );
+    debugger.type_keys("a x");
+    let right = debugger.text(120, 40);
+    assert!(
+        right.contains("right: beam.5: Free → fixed") && right.contains("free > fixed"),
+        "{right}"
+    );
+    debugger.type_keys("s a x");
+    let wrong = debugger.text(120, 40);
+    assert!(
+        wrong.contains("no: beam.5: Fixed → free: the surface would have to pull."),
+        "{wrong}"
+    );
+    debugger.type_keys("p");
+    assert!(
+        debugger
+            .text(120, 40)
+            .contains("predicted: 1 right, 1 wrong")
+    );
+}
+
+#[test]
+fn every_changed_node_can_be_asked_for() {
+    let mut session = Session::new(common::two_blocks(1));
+    let mut guess = Guess::new(Whose::Changed, session.cursor());
+    let step = command::parse("step", &Context::default()).unwrap();
+    guess
+        .permits(&step, session.cursor(), session.frame())
+        .unwrap();
+    let Action::Session(command) = step.clone() else {
+        panic!("step moves the session")
+    };
+    session.submit(command).unwrap();
+    session.wait();
+    let (cursor, frame) = (session.cursor(), session.frame().clone());
+    let nodes = &frame.event.as_ref().unwrap().nodes;
+    let changed: Vec<usize> = (0..nodes.len())
+        .filter(|s| nodes[*s].decision.changes())
+        .collect();
+    assert!(changed.len() > 2, "{changed:?}");
+    for (count, &slave) in changed.iter().enumerate() {
+        assert!(guess.hides(cursor, &frame, slave));
+        assert!(guess.permits(&step, cursor, &frame).is_err());
+        let (right, told) = guess
+            .predict(session.model(), cursor, &frame, slave, "x")
+            .unwrap();
+        assert_eq!(right, nodes[slave].decision.next == Mode::Fixed);
+        assert_eq!(
+            told.contains("Other nodes change too"),
+            count + 1 < changed.len()
+        );
+        assert!(!guess.hides(cursor, &frame, slave));
+    }
+    assert!(!guess.is_open(cursor, &frame));
+    assert_eq!((guess.right + guess.wrong) as usize, changed.len());
+}
+
+#[test]
+fn the_command_line_lists_and_checks_lessons() {
+    let run = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_stickslip"))
+            .args(arguments)
+            .output()
+            .unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (
+            output.status.code(),
+            text(&output.stdout),
+            text(&output.stderr),
+        )
+    };
+    let (code, out, _) = run(&["lesson"]);
+    assert_eq!((code, out.lines().count()), (Some(0), lesson::list().len()));
+    let (code, out, _) = run(&["lesson", "--check", "by-hand"]);
+    assert!(
+        code == Some(0) && out.contains("3-by-hand: sound; 13 steps, 7 questions"),
+        "{out}"
+    );
+    let (code, _, err) = run(&["lesson", "4"]);
+    assert!(code == Some(2) && err.contains("needs a terminal"), "{err}");
+    let (code, _, err) = run(&["lesson", "4-osilation"]);
+    assert!(
+        code == Some(2) && err.contains("no built-in lesson"),
+        "{err}"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wrong.ron");
+    std::fs::write(&file, lesson_of(r#"Press(text: "x", press: "jump")"#)).unwrap();
+    let (code, out, err) = run(&["lesson", "--check", file.to_str().unwrap()]);
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    assert!(err.contains("wrong.ron:2:29: steps[0].press"), "{err}");
+}

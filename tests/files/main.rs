@@ -1,0 +1,29 @@
+//! Files and names that come from outside, and what the program and its README are made of.
+
+#[path = "../common/program.rs"]
+mod program;
+
+// Shared: scenes as text.
+mod scenes;
+// Built-in scenes are sound, found, and numbered as the solver wants.
+mod built_in;
+// Nodes lie where they should and have the names that the format promises.
+mod meshes;
+// Loads, supports, regions, monitors and settings mean what they say.
+mod meaning;
+// Each fault has one message with its place.
+mod faults;
+// Whatever is in a file, there is an answer and no panic.
+mod damage;
+// Shared: the program run with a deadline.
+mod hostile;
+// Orders to the terminal are shown and never obeyed.
+mod orders;
+// What is no file, too large, too deep or does not fit is refused in one line.
+mod refusals;
+// What is written is whole, or not there at all.
+mod writing;
+// The program may be passed on with all that it is made of.
+mod licences;
+// The README shows what the program shows.
+mod readme;

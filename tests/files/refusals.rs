@@ -1,0 +1,368 @@
+//! What is no file, too large, too deep, too long or does not fit is refused at once, in one line that one can read.
+
+#![cfg(unix)]
+
+use crate::hostile::{
+    CHART, CONTACTS, CYCLES, LESSON, READERS, REFERENCE, STUDY, pipe, put, reader, refusal, run,
+    scene,
+};
+use crate::program::{code, err, well};
+use std::fs;
+use std::os::unix::fs::symlink;
+use stickslip::debug::journal::Journal;
+use stickslip::debug::session::Session;
+use stickslip::scene::Scene;
+
+#[test]
+fn what_is_no_file_is_refused_at_once_by_every_command() {
+    let directory = tempfile::tempdir().unwrap();
+    pipe(&directory, "pipe");
+    fs::create_dir(directory.path().join("folder")).unwrap();
+    symlink("pipe", directory.path().join("link")).unwrap();
+    for (file, kind) in [
+        ("pipe", "it is a pipe"),
+        ("link", "it is a pipe"),
+        ("folder", "it is a directory"),
+        ("/dev/zero", "it is a device"),
+    ] {
+        for line in READERS {
+            let told = refusal(&directory, &reader(line, file));
+            assert!(told.contains(file) && told.contains(kind), "{line}: {told}");
+        }
+    }
+    for line in [
+        "run osc-two6 --csv FILE",
+        "run osc-two6 --trace FILE",
+        "run osc-two6 --snapshot FILE",
+        "record osc-two6 --at 1.1.1 -o FILE",
+        "core osc-two6 -o FILE",
+        "study osc-two6 --svg FILE",
+        "map osc-two6 --png FILE",
+        "map --random 1 --write 0 -o FILE",
+    ] {
+        let told = refusal(&directory, &reader(line, "pipe"));
+        assert!(told.contains("nobody reads"), "{line}: {told}");
+        let forced = [&reader(line, "folder")[..], &["--force"]].concat();
+        let told = refusal(&directory, &forced);
+        assert!(told.contains("it is a directory"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn a_file_that_is_larger_than_any_sound_one_is_refused_and_not_read() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("huge");
+    // It takes no room on the disk.
+    fs::File::create(&path).unwrap().set_len(3 << 40).unwrap();
+    for line in READERS {
+        let told = refusal(&directory, &reader(line, "huge"));
+        assert!(told.contains("MiB"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn brackets_that_are_nested_too_deep_are_refused_at_once_with_their_place() {
+    let directory = tempfile::tempdir().unwrap();
+    for (text, column) in [
+        (format!("(title{}", "Scene((".repeat(20_000)), 230),
+        ("(".repeat(100_000), 65),
+        ("[".repeat(1 << 20), 65),
+        (format!("(scene: {}", "Some(".repeat(100_000)), 0),
+        (format!("Contacts({}", "(".repeat(100_000)), 73),
+    ] {
+        put(&directory, "deep.ron", &text);
+        for line in [
+            "check FILE",
+            "study FILE",
+            "lesson --check FILE",
+            "replay FILE",
+        ] {
+            let told = refusal(&directory, &reader(line, "deep.ron"));
+            let place = format!("deep.ron:1:{column}: brackets are nested far too deep");
+            assert!(column == 0 || told.starts_with(&place), "{line}: {told}");
+            assert!(told.contains("nested far too deep"), "{line}: {told}");
+        }
+    }
+    put(&directory, "deep", &format!("{}\n", "(".repeat(100_000)));
+    for line in ["story FILE", "resume --check FILE", "chart --from FILE"] {
+        let told = refusal(&directory, &reader(line, "deep"));
+        assert!(told.contains("deep:1:"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn results_that_do_not_fit_their_problem_are_refused_with_their_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let map = ["map", "--random", "4", "--jobs", "1", "--resume", "log"];
+    well(&run(&directory, &map));
+    let whole = fs::read_to_string(directory.path().join("log")).unwrap();
+    let changed = |line: usize, change: &dyn Fn(&str) -> String| {
+        let lines = whole.lines().enumerate();
+        let lines = lines.map(|(k, old)| {
+            if k + 1 == line {
+                change(old)
+            } else {
+                old.to_owned()
+            }
+        });
+        put(
+            &directory,
+            "log",
+            &(lines.collect::<Vec<_>>().join("\n") + "\n"),
+        );
+        refusal(&directory, &map)
+    };
+    let trials = |line: &str| line.find("trials:[").unwrap() + "trials:[".len();
+    let none = changed(3, &|line| format!("{}])", &line[..trials(line)]));
+    assert!(
+        none.starts_with("log:3:1: ") && none.contains("of 0 trials"),
+        "{none}"
+    );
+    let one = changed(4, &|line| {
+        line[..=line.find("),(").unwrap()].to_owned() + "])"
+    });
+    assert!(
+        one.starts_with("log:4:1: ") && one.contains("of 1 trials"),
+        "{one}"
+    );
+    let wrong = changed(2, &|line| {
+        line.replacen("Right", "Rihgt", 1)
+            .replacen("Wrong", "Wrogn", 1)
+    });
+    assert!(
+        wrong.starts_with("log:2:") && !wrong.starts_with("log:2:1:"),
+        "{wrong}"
+    );
+    assert!(changed(5, &|line| line.replace('\t', " ")).starts_with("log:5:1: "));
+    assert!(changed(1, &|_| "stickslip 0.0.0 results, another".into()).starts_with("log:1:1: "));
+    let long = changed(2, &|line| line.replace("stiffness", &"x".repeat(2 << 20)));
+    assert!(long.starts_with("log:2:1: "), "{long}");
+    // As it was, and with an editor's mark, it is taken up.
+    put(&directory, "log", &format!("\u{feff}{whole}"));
+    well(&run(&directory, &map));
+    assert_eq!(
+        fs::read_to_string(directory.path().join("log")).unwrap(),
+        format!("\u{feff}{whole}")
+    );
+}
+
+#[test]
+fn a_table_of_a_chart_is_refused_where_its_names_are_too_long_and_drawn_within_bounds() {
+    let directory = tempfile::tempdir().unwrap();
+    let head = "scene,series,run,status,error,seconds\n";
+    let wide = "T".repeat(100_000);
+    for (k, column) in [(0, 1), (1, 3), (2, 5), (3, 7)] {
+        let mut row = ["s", "t", "r", "whole", "1", "1"];
+        row[k] = &wide;
+        put(&directory, "a.csv", &format!("{head}{}\n", row.join(",")));
+        let told = refusal(&directory, &["chart", "--from", "a.csv", "--png", "a.png"]);
+        assert!(told.starts_with(&format!("a.csv:2:{column}: ")), "{told}");
+        assert!(told.contains("100000 characters"), "{told}");
+    }
+    let name = "W".repeat(200);
+    put(
+        &directory,
+        "a.csv",
+        &format!("# {wide}\n{head}{name},{name},{name},{name},1e-300,1e300\n"),
+    );
+    well(&run(
+        &directory,
+        &["chart", "--from", "a.csv", "--svg", "a.svg", "--csv", "-"],
+    ));
+    let text = fs::read_to_string(directory.path().join("a.svg")).unwrap();
+    assert!(text.len() < 200_000 && text.contains('…'));
+    let many: String = (0..200)
+        .map(|k| format!("scene{k},a,b,whole,1,1\n"))
+        .collect();
+    put(&directory, "b.csv", &format!("{head}{many}"));
+    let told = run(
+        &directory,
+        &["chart", "--from", "b.csv", "--png", "b.png", "--quiet"],
+    );
+    assert_eq!(code(&told), 2);
+    assert!(err(&told).contains("million at most"), "{}", err(&told));
+    let runs: String = (0..20_001)
+        .map(|k| format!("s,a,{k},whole,1,1\n"))
+        .collect();
+    put(&directory, "c.csv", &format!("{head}{runs}"));
+    let told = refusal(&directory, &["chart", "--from", "c.csv"]);
+    assert!(told.starts_with("c.csv:20002:1: "), "{told}");
+}
+
+#[test]
+fn what_is_wrong_with_an_interface_problem_is_said_with_its_place() {
+    let directory = tempfile::tempdir().unwrap();
+    let place = |from: &str, to: &str| {
+        assert!(CONTACTS.contains(from), "{from}");
+        put(&directory, "c.ron", &CONTACTS.replacen(from, to, 1));
+        refusal(&directory, &["check", "c.ron"])
+    };
+    for (from, to, at) in [
+        ("id: \"a\"", "id: \"a b\"", "4:14: contacts[0].id: "),
+        ("id: \"b\"", "id: \"a\"", "5:14: contacts[1].id: "),
+        ("gap: 0.5", "gap: 1e30", "4:24: contacts[0].gap"),
+        (
+            "angle: 9.0",
+            "angle: 95",
+            "5:37: contacts[1].friction.angle: ",
+        ),
+        ("(0.0, 1.0)", "(0.0, 1e300)", "5:49: contacts[1].load: "),
+        (
+            "[0.0, 3.0, 0.0, 0.0]",
+            "[0.0, 3.0, 0.0]",
+            "9:9: matrix[1]: ",
+        ),
+        ("        [0.0, 0.0, 0.0, 1.0],\n", "", "7:13: matrix: "),
+        (
+            "[0.0, 0.0, 2.0, 0.0]",
+            "[0.0, 0.0, 2.0, inf]",
+            "10:25: matrix[2][3]: ",
+        ),
+        (
+            "[0.0, 0.0, 2.0, 0.0]",
+            "[0.0, 0.0, x, 0.0]",
+            "10:20: matrix[2][2]",
+        ),
+        (
+            "increment: 0.5",
+            "increment: -1",
+            "13:40: history.increment: ",
+        ),
+        ("title: \"t\"", "title: \"\"", "2:12: title: "),
+    ] {
+        let told = place(from, to);
+        assert!(told.starts_with(&format!("c.ron:{at}")), "{to}: {told}");
+    }
+    put(&directory, "c.ron", CONTACTS);
+    well(&run(&directory, &["check", "c.ron"]));
+    let told = refusal(
+        &directory,
+        &["check", "c.ron", "--set", "history.increment=0"],
+    );
+    assert!(told.contains("--set history.increment=0"), "{told}");
+}
+
+#[test]
+fn an_editor_s_mark_at_the_beginning_is_no_fault_of_any_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let marked = |name: &str, text: &str| put(&directory, name, &format!("\u{feff}{text}"));
+    marked("scene.ron", &scene(CYCLES));
+    marked("contacts.ron", CONTACTS);
+    marked("study.ron", &STUDY.replace("ORDERS", ""));
+    marked("lesson.ron", &LESSON.replace("ORDERS", ""));
+    marked("chart.csv", &CHART.replace("ORDERS", ""));
+    marked(
+        "plain.csv",
+        CHART.replace("ORDERS", "").split_once('\n').unwrap().1,
+    );
+    marked("reference.csv", REFERENCE.split_once('\n').unwrap().1);
+    marked("siconos.dat", "2\n1\n0\n2\n2\n2 2\n1 0 0 1\n-1 0.5\n0.3\n");
+    well(&run(
+        &directory,
+        &["record", CYCLES, "--at", "1.1.1", "-o", "snapshot.ron"],
+    ));
+    let snapshot = fs::read_to_string(directory.path().join("snapshot.ron")).unwrap();
+    marked("snapshot.ron", &snapshot);
+    let path = directory.path().join("journal");
+    let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
+    session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
+    drop(session);
+    marked("journal", &fs::read_to_string(&path).unwrap());
+    for line in [
+        "check scene.ron",
+        "check contacts.ron",
+        "check siconos.dat",
+        "study study.ron",
+        "lesson --check lesson.ron",
+        "chart --from chart.csv",
+        "chart --from plain.csv",
+        "chart osc-two6 --over settings.strategy=ladder,lemke --repeats 1 --reference reference.csv",
+        "replay snapshot.ron",
+        "story journal",
+        "resume --check journal",
+    ] {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let output = run(&directory, &arguments);
+        assert_eq!(code(&output), 0, "{line}: {}", err(&output));
+    }
+}
+
+#[test]
+fn a_message_repeats_only_the_beginning_of_what_is_long() {
+    let directory = tempfile::tempdir().unwrap();
+    let long = "x".repeat(50_000);
+    let scene = scene(CYCLES);
+    let cases = [
+        ("check", scene.replacen("title:", &format!("{long}:"), 1)),
+        ("check", scene.replacen("Node(", &format!("{long}("), 1)),
+        ("check", scene.replacen("\"a\"", &format!("\"{long}\""), 1)),
+        (
+            "check",
+            scene.replacen("title:", &format!("{long}: 1, title:"), 1),
+        ),
+        (
+            "check",
+            scene.replacen("title:", &format!("title: {long}, title:"), 1),
+        ),
+        ("check", format!("2\n{long}\n")),
+        ("check", format!("({long}")),
+        ("check", long.clone()),
+        ("check", CONTACTS.replace("id:", &format!("{long}:"))),
+        ("study", STUDY.replace("title", &long)),
+        ("study", STUDY.replace("osc-two6", &long)),
+        ("study", STUDY.replace("history.increment", &long)),
+        ("study", STUDY.replace("0.5", &format!("\"{long}\""))),
+        ("lesson", LESSON.replace("steps", &long)),
+        ("lesson", LESSON.replace("osc-two6", &long)),
+        (
+            "lesson",
+            LESSON.replace("press: \"s\"", &format!("press: \"{long}\"")),
+        ),
+        (
+            "lesson",
+            LESSON.replace("node: \"a\"", &format!("node: \"{long}\"")),
+        ),
+        ("replay", format!("(format: 1, {long}: 2)")),
+        ("story", format!("(format:1,{long}:2)\n")),
+        ("story", format!("{long}\n")),
+        ("chart", format!("{long},b\n1,2\n")),
+        (
+            "chart",
+            format!("scene,series,run,status,error,seconds\na,b,c,whole,{long},1\n"),
+        ),
+        ("reference", format!("{long},b\n1,2\n")),
+        ("reference", format!("load,{long}\n1,{long}\n")),
+        ("map", format!("{long}\n")),
+    ];
+    for (k, (command, text)) in cases.iter().enumerate() {
+        put(&directory, "file", text);
+        let arguments: &[&str] = match *command {
+            "lesson" => &["lesson", "--check", "file"],
+            "chart" => &["chart", "--from", "file"],
+            "reference" => &["chart", CYCLES, "--reference", "file"],
+            "map" => &["map", CYCLES, "--resume", "file"],
+            command => &[command, "file"],
+        };
+        let told = refusal(&directory, arguments);
+        assert!(
+            told.starts_with("file") || told.contains("--set") || told.starts_with('x'),
+            "{k}: {told}"
+        );
+    }
+    for arguments in [
+        &["run", CYCLES, "--set", &format!("{long}=1")][..],
+        &["run", CYCLES, "--set", &format!("refine={long}")],
+        &["run", CYCLES, "--set", &format!("settings.strategy={long}")],
+        &["chart", CYCLES, "--over", &format!("refine={long}")],
+        &["map", CYCLES, "--strategies", &long],
+    ] {
+        let output = run(&directory, arguments);
+        assert_eq!(code(&output), 2);
+        assert!(
+            err(&output).len() < 3000,
+            "{}: {}",
+            arguments[0],
+            err(&output).len()
+        );
+    }
+}

@@ -1,0 +1,193 @@
+//! Every accepted increment of what the program ships obeys every law, and `stickslip audit` says so.
+
+use crate::common::scene;
+use crate::program::{code, err, out, program};
+use std::path::Path;
+use std::sync::Arc;
+use stickslip::contact::judge::Law;
+use stickslip::debug::audit::Audit;
+use stickslip::debug::remedies::{self, End};
+use stickslip::model::{AtLimit, SlipCount, Sticking, Ties};
+use stickslip::scene::{Scene, builtin};
+use stickslip::step::event::Outcome;
+use stickslip::step::stepper::Stepper;
+use stickslip::study::plan::Plan;
+use stickslip::study::read::Study;
+
+/// A scene to its end or first failure.
+fn audit(scene: Scene) -> Audit {
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut audit = Audit::default();
+    while let Some(event) = stepper.step() {
+        if matches!(event.outcome, Outcome::Failed(_)) {
+            break;
+        }
+        audit.take(&stepper);
+    }
+    audit
+}
+
+/// Whether a scene asks for what leaves Coulomb's law: readings of the paper, and limits that are to be accepted.
+fn leaves_the_law(scene: &Scene) -> bool {
+    let s = &scene.model.settings;
+    s.slip == SlipCount::Major
+        || s.sticking == Sticking::Increments
+        || s.ties == Ties::Printed
+        || s.at_minor_limit == AtLimit::Accept
+        || s.at_major_limit == AtLimit::Accept
+}
+
+/// Nothing is broken; and what is marked is so since the scene asks for it, or is a touch that no place of touching explains
+/// and that could not be cut.
+fn assert_clean(name: &str, audit: &Audit, may_be_marked: bool) {
+    let broken: Vec<_> = audit.broken().collect();
+    assert!(broken.is_empty(), "{name}: {broken:?}");
+    let marked = audit
+        .worst_marked
+        .iter()
+        .flatten()
+        .map(|found| found.finding);
+    let mut beyond = marked.filter(|finding| finding.is_broken() && finding.law != Law::Touch);
+    assert!(
+        may_be_marked || beyond.next().is_none(),
+        "{name}: {beyond:?}"
+    );
+}
+
+#[test]
+fn every_accepted_increment_of_every_built_in_scene_obeys_every_law() {
+    let mut judged = 0;
+    for builtin in builtin::list() {
+        let scene = scene(builtin.name, &[]);
+        let may_be_marked = leaves_the_law(&scene);
+        let audit = audit(scene);
+        assert_clean(builtin.name, &audit, may_be_marked);
+        judged += u32::from(audit.of(Law::Slip).is_some());
+    }
+    assert!(judged > 10, "nodes are pressed in most scenes: {judged}");
+}
+
+#[test]
+fn the_studies_of_stuck_and_sliding_nodes_obey_every_law_where_they_ask_for_it() {
+    for name in ["geometry-02", "t-max-friction"] {
+        let plan = Plan::new(Study::open(name).unwrap()).unwrap();
+        for case in &plan.cases {
+            let scene = case.open().unwrap();
+            let may_be_marked = leaves_the_law(&scene);
+            assert_clean(name, &audit(scene), may_be_marked);
+        }
+    }
+}
+
+fn findings(file: &str) -> String {
+    format!("{}/tests/findings/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_command_prints_the_worst_of_every_law_and_ends_with_0_where_all_hold() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = findings("2-stuck-after-retouch.ron");
+    let snapshot = "snapshots/02-rough-at-the-end.ron";
+    let output = program(here, &["audit", &file, snapshot]).output().unwrap();
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let text = out(&output);
+    for law in Law::ALL {
+        let rows = text.matches(&format!("\n  {} ", law.name())).count();
+        assert_eq!(rows, 2, "{text}");
+    }
+    assert!(text.contains("10 increments accepted"), "{text}");
+    assert!(!text.contains("BROKEN"), "{text}");
+}
+
+#[test]
+fn what_was_accepted_against_a_law_since_the_user_wanted_so_is_listed_apart() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = findings("2-stuck-after-retouch.ron");
+    let set = ["--set", "settings.sticking=increments"];
+    let output = program(here, &["audit", &file, set[0], set[1]])
+        .output()
+        .unwrap();
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let text = out(&output);
+    assert!(
+        text.contains("of them marked") && text.contains("marked, not counted"),
+        "{text}"
+    );
+    // And a run warns of it, with law, node and amount.
+    let output = program(here, &["run", &file, set[0], set[1]])
+        .output()
+        .unwrap();
+    assert!(err(&output).contains("although s."), "{}", err(&output));
+}
+
+#[test]
+fn bad_input_to_an_audit_is_told_and_ends_with_2() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let snapshot = "snapshots/02-rough-at-the-end.ron";
+    for arguments in [
+        vec!["audit"],
+        vec!["audit", "no-such-scene"],
+        vec!["audit", snapshot, "--set", "refine=2"],
+    ] {
+        let output = program(here, &arguments).output().unwrap();
+        assert_eq!(
+            (code(&output), out(&output)),
+            (2, String::new()),
+            "{arguments:?}"
+        );
+        assert!(!err(&output).is_empty());
+    }
+}
+
+#[test]
+fn a_node_in_a_rough_valley_ends_at_the_bottom_with_the_force_of_both_sides() {
+    let scene = Scene::open(&findings("valley-friction.ron"), &[]).unwrap();
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    while let Some(event) = stepper.step() {
+        assert!(!matches!(event.outcome, Outcome::Failed(_)));
+    }
+    // The bottom is at the origin; the springs and the load give the force.
+    let state = stepper.state();
+    let (at, force) = ([-0.05, 0.028868], state.nodes[0].force());
+    for k in 0..2 {
+        let (stiffness, load) = ([3.0, 4.0][k], [0.8, -3.0][k]);
+        assert!((state.u[k] + at[k]).abs() < 1e-11, "{:?}", state.u);
+        assert!(
+            (force[k] - (stiffness * -at[k] - load)).abs() < 1e-9,
+            "{force:?}"
+        );
+    }
+}
+
+#[test]
+fn no_remedy_that_ends_against_a_law_is_called_converged() {
+    let valley = findings("valley-friction.ron");
+    let mut judged = 0;
+    for (name, strategy) in [
+        (valley.as_str(), "table2"),
+        (valley.as_str(), "newton"),
+        ("osc-inclined-cantilever", "table2"),
+        ("osc-drag65", "table2"),
+        ("osc-two6", "sliding"),
+    ] {
+        let mut stepper = Stepper::new(Arc::new(
+            scene(name, &[("settings.strategy", strategy)]).model,
+        ));
+        let failed = loop {
+            match stepper.step().map(|event| event.outcome.clone()) {
+                None => break None,
+                Some(Outcome::Failed(_)) => break Some(stepper.state().clone()),
+                Some(_) => {}
+            }
+        };
+        let Some(failed) = failed else { continue };
+        for remedy in remedies::all(&mut stepper, &failed) {
+            let trial = remedies::attempt(&mut stepper, &failed, &remedy, &|| false).unwrap();
+            let verdict = stepper.state().start.verdict;
+            let broken = verdict.is_some_and(|verdict| verdict.broken().next().is_some());
+            assert!(trial.end != End::Converged || !broken, "{name}: {trial:?}");
+            judged += u32::from(verdict.is_some());
+        }
+    }
+    assert!(judged > 0, "some remedies end in a state");
+}

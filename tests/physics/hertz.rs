@@ -1,0 +1,52 @@
+//! A rigid cylinder on a block, against Hertz.
+
+use crate::blocks::{finished, last};
+use crate::common::scene;
+
+/// Half width and peak pressure of the contact of `hertz-cylinder-on-block`, and the force on the whole cylinder.
+///
+/// The middle node of a side carries two thirds of what presses on it. Half an ellipse of pressure is a line in p²
+/// over x²; that of least squares gives both numbers without asking which node is the last that touches.
+fn line_contact(refine: &str) -> (f64, f64, f64) {
+    let run = finished(&scene("hertz-cylinder-on-block", &[("refine", refine)]));
+    let (state, model) = (run.stepper.state(), run.stepper.model());
+    let at = |s: usize| model.nodes[model.contacts[s].node].at[0];
+    let spacing = (at(1) - at(0)).abs();
+    let points: Vec<(f64, f64)> = (0..model.contacts.len())
+        .filter(|&s| state.nodes[s].f_n > 0.0)
+        .filter(|&s| (at(s) / spacing).round() as usize % 2 == 1)
+        .map(|s| (s, state.nodes[s].f_n / (4.0 / 3.0 * spacing)))
+        .map(|(s, pressure)| (at(s).powi(2), pressure.powi(2)))
+        .collect();
+    let count = points.len() as f64;
+    let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / count;
+    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let slope = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2));
+    let top = y - slope * x;
+    let force = -2.0 * last(&run, "contact_y");
+    println!("refine {refine}: {count} middles touch");
+    ((-top / slope).sqrt(), top.sqrt(), force)
+}
+
+#[test]
+fn a_rigid_cylinder_presses_a_block_as_hertz_says_and_better_on_finer_meshes() {
+    use crate::common::{number, table};
+    let rows = table("07-hertz.csv");
+    let row = rows.iter().rev().find(|r| r["R"] == "8").unwrap();
+    // Half width goes with the root of the force, and so does pressure.
+    let hertz = |force: f64| {
+        let root = (force / number(row, "F")).sqrt();
+        (number(row, "a") * root, number(row, "p0") * root)
+    };
+    let errors = ["1", "2", "4"].map(|refine| {
+        let (width, peak, force) = line_contact(refine);
+        let (a, p0) = hertz(force);
+        println!("force {force} width {width} {a} peak {peak} {p0}");
+        [(width / a - 1.0).abs(), (peak / p0 - 1.0).abs()]
+    });
+    println!("{errors:?}");
+    let limits = [[0.02, 0.0025], [0.006, 0.002], [0.002, 0.001]];
+    for (error, limit) in errors.iter().zip(limits) {
+        assert!(error[0] < limit[0] && error[1] < limit[1], "{errors:?}");
+    }
+}

@@ -1,0 +1,34 @@
+//! Whether the answers are right: against closed forms, exact solutions, other codes, the laws of contact, and a judge from
+//! outside.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../outside/mod.rs"]
+mod outside;
+#[path = "../common/program.rs"]
+mod program;
+
+// Beams alone meet closed forms, at their elements' order; Newton converges quadratically.
+mod beams;
+// Shared: a block alone.
+mod blocks;
+// Solids alone meet closed forms and beam theory; a distorted patch is exact.
+mod solids;
+// The paper's problems meet solutions found without any contact algorithm, at the rate that they claim.
+mod references;
+// A cantilever beside an elastic block: its end, its work, its mesh, the paper's figures.
+mod problem_05;
+// A rigid cylinder presses a block as Hertz says.
+mod hertz;
+// Any node on any chain, over borders and corners, from one body to the next.
+mod pairing;
+// Stuck nodes stay where they stuck; without an anchor they drift in third order.
+mod drift;
+// Equilibrium, contact and friction hold in every accepted increment; turned scenes give turned results.
+mod invariants;
+// The judge refuses states made wrong, one law at a time, and what was once accepted wrongly.
+mod judge;
+// What is shipped obeys every law, and `stickslip audit` says so.
+mod audit;
+// No accepted increment of a random scene is wrong to a judge that shares no code with the program.
+mod random_scenes;

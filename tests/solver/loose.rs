@@ -1,0 +1,146 @@
+//! Where increments end: bodies that come loose, the least increment, and advice that holds.
+
+use crate::common::{Run, run, scene};
+use crate::program::{code, err, program};
+use stickslip::debug::report::advice;
+use stickslip::debug::smaller::{Smaller, smaller};
+use stickslip::linear::singular::Singular;
+use stickslip::scene::Scene;
+use stickslip::step::event::Failure;
+use stickslip::step::intervene::Intervention;
+use stickslip::step::major_history::MajorCycle;
+use stickslip::step::stepper::Stepper;
+
+const PUSHED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scales/pushed-block.ron");
+
+fn rigid(run: &Run) -> bool {
+    let failed = run.failure.as_ref().map(|(_, failure)| failure);
+    matches!(failed, Some(Failure::Singular(Singular::Rigid { .. })))
+}
+
+fn last(run: &Run) -> f64 {
+    run.accepted.last().expect("an increment").load
+}
+
+#[test]
+fn the_load_at_which_a_body_comes_loose_is_found_to_the_least_increment() {
+    for (increment, least) in [
+        ("0.2", None),
+        ("1", None),
+        ("0.5", Some("0.001")),
+        ("0.07", None),
+    ] {
+        for angle in [10.0_f64, 16.69924423399362, 30.0] {
+            let text = angle.to_string();
+            let mut set = vec![("history.increment", increment), ("friction.angle", &text)];
+            set.extend(least.map(|least| ("history.least", least)));
+            let run = run(&scene(PUSHED, &set));
+            assert!(rigid(&run), "{set:?}: {:?}", run.failure);
+            let size: f64 = increment.parse().unwrap();
+            let least = least.map_or(size / 64.0, |least| least.parse().unwrap());
+            // Halves of the increment are as small as they get above the least one.
+            let (exact, found) = (angle.to_radians().tan(), last(&run));
+            assert!(
+                found <= exact * (1.0 + 1e-6) && exact < found + 2.0 * least,
+                "{set:?}: {found} {exact}"
+            );
+        }
+    }
+}
+
+const LOOSE: &str = r#"(title: "t", nodes: [Line(id: "b", from: (0, 1), to: (1, 1), elements: 1, per_element: 3)],
+    materials: [Section(id: "m", EA: 100, EI: 1)], bodies: [Beam(id: "b", along: "b", material: "m")],
+    supports: [(node: "b.start", fix: [x, y])],
+    loads: [Force(node: "b.end", y: 1)], history: (path: [0, 1], increment: 0.5))"#;
+
+#[test]
+fn a_body_that_is_loose_from_the_start_is_told_at_once() {
+    let run = run(&Scene::from_text("loose.ron", LOOSE, &[]).unwrap());
+    let (event, _) = run.failure.as_ref().expect("it must fail");
+    assert!(rigid(&run), "{:?}", run.failure);
+    assert_eq!((event.position.increment, event.position.attempt), (1, 1));
+}
+
+#[test]
+fn a_least_increment_that_is_not_given_is_a_64th_of_the_increment_in_force() {
+    let change = |set: &[(&str, &str)], increment: f64| {
+        let scene = scene("02-two-cantilevers-rough", set);
+        let mut stepper = Stepper::new(std::sync::Arc::new(scene.model));
+        stepper
+            .intervene(&Intervention::Increment(increment))
+            .unwrap();
+        stepper.state().controls.least
+    };
+    assert_eq!(change(&[], 0.4), 0.4 / 64.0);
+    assert_eq!(change(&[], 0.0001), 0.0001 / 64.0);
+    let given = [("history.least", "0.01")];
+    assert_eq!(change(&given, 0.4), 0.01);
+    assert_eq!(change(&given, 0.001), 0.001);
+    let set = scene("02-two-cantilevers-rough", &[("history.increment", "0.4")]);
+    assert_eq!(
+        Stepper::new(std::sync::Arc::new(set.model))
+            .state()
+            .controls
+            .least,
+        0.4 / 64.0
+    );
+}
+
+/// A node that has no consistent state as soon as it touches; while it is still above the floor it has one.
+#[test]
+fn a_smaller_increment_is_advised_only_where_one_has_a_consistent_state() {
+    for (above, found) in [("0", false), ("0.5", true), ("1.2", false)] {
+        let set = [("nodes.a.at.y", above), ("settings.strategy", "census")];
+        let run = run(&scene("osc-coh-none", &set));
+        if above == "1.2" {
+            // It does not come down so far.
+            assert!(run.failure.is_none());
+            continue;
+        }
+        assert!(
+            matches!(run.failure, Some((_, Failure::NoAnswer { .. }))),
+            "{:?}",
+            run.failure
+        );
+        let mut scratch = Stepper::new(run.stepper.model().clone());
+        match smaller(&mut scratch, run.stepper.state()) {
+            Some(Smaller::Found(size)) => assert!(found && size == 0.25, "{above}: {size}"),
+            Some(Smaller::None(size)) => assert!(!found && size == 1.0 / 64.0, "{above}: {size}"),
+            None => panic!("{above}: it can be told"),
+        }
+    }
+}
+
+#[test]
+fn the_program_gives_no_advice_that_does_not_help() {
+    let here = std::env::current_dir().unwrap();
+    let ran = |set: &[&str]| {
+        let mut arguments = vec!["run", "osc-coh-none"];
+        arguments.extend(set.iter().flat_map(|set| ["--set", set]));
+        let output = program(&here, &arguments).output().unwrap();
+        assert_eq!(code(&output), 3);
+        err(&output)
+    };
+    let none = "nor has a smaller increment a consistent state";
+    for strategy in ["table2", "ladder", "census"] {
+        let told = ran(&[&format!("settings.strategy={strategy}")]);
+        assert!(told.contains(none), "{strategy}: {told}");
+        assert!(
+            !told.contains("ends before") && !told.contains("smaller history"),
+            "{strategy}: {told}"
+        );
+    }
+    let told = ran(&["nodes.a.at.y=0.5", "settings.strategy=table2"]);
+    assert!(
+        told.contains("a smaller increment has a consistent state: one of 0.25 has"),
+        "{told}"
+    );
+    assert!(!told.contains(none), "{told}");
+    let round = MajorCycle {
+        start: 2,
+        period: 2,
+        members: vec![],
+    };
+    let advice = advice(&Failure::MajorCycle(round));
+    assert!(!advice.contains("a slave of each"), "{advice}");
+}

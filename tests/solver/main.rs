@@ -1,0 +1,30 @@
+//! How the stepper gets to an answer, or says why there is none: minor iterations, strategies, cycles, singular systems,
+//! jumps, sizes, and the same bits whatever the threads.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/program.rs"]
+mod program;
+
+// At the edges: singular systems, limits, held modes, new increments, settings.
+mod stepper;
+// The condensed interface takes the steps of the whole system, whatever the bodies.
+mod condensation;
+// Bodies given by a matrix, endless floors, and what slave nodes bring along.
+mod linear;
+// Friction problems of Siconos are read, solved, written, and refused with a line where broken.
+mod siconos;
+// Planted cycles are found where they start and as long as they are, and diagnosed.
+mod cycles;
+// The census finds every consistent state of a frozen problem.
+mod census;
+// The small scenes that fail do what their heads say.
+mod oscillators;
+// No strategy accepts what is no Coulomb state; the ladder finds an answer wherever there is one.
+mod strategies;
+// Bodies that come loose are told at the load at which they do; advice holds.
+mod loose;
+// Jumps to another branch are found, said and decided on; other sudden motions are none.
+mod jumps;
+// Answers of zero, other units, stiffnesses that round-off spoils, scenes near the limits of memory.
+mod scales;

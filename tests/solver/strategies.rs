@@ -1,0 +1,351 @@
+//! Strategies of the minor iterations: none accepts what is no Coulomb state, the ladder finds an answer wherever there
+//! is one, says so where there is none, and cuts the increment.
+
+use crate::common::{run, scene};
+use std::sync::Arc;
+use stickslip::contact::table2::Rule;
+use stickslip::interface::census::{Census, census};
+use stickslip::interface::problem::Trials;
+use stickslip::linear::singular::Singular;
+use stickslip::model::{Friction, Mode, Model, Settings};
+use stickslip::model::{InitialState, Jumps, Strategy};
+use stickslip::scene::Scene;
+use stickslip::scene::condensed::{Contact, Matrix, Problem};
+use stickslip::scene::spec::History;
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::intervene::Intervention;
+use stickslip::step::stepper::Stepper;
+use stickslip::strategy::NotFound;
+
+/// Numbers from 0 to 1, the same every time (Knuth's MMIX generator).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+/// A random interface problem with a positive definite stiffness; some have cohesion, and perhaps no answer.
+fn problem(seed: u64) -> Problem {
+    let mut numbers = Numbers(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66);
+    for _ in 0..4 {
+        numbers.next();
+    }
+    let count = 1 + (numbers.next() * 4.0) as usize;
+    let size = 2 * count;
+    let root: Vec<Vec<f64>> = (0..size)
+        .map(|_| (0..size).map(|_| numbers.between(-1.0, 1.0)).collect())
+        .collect();
+    let entry = |i: usize, j: usize| {
+        let product: f64 = (0..size).map(|k| root[k][i] * root[k][j]).sum();
+        product + if i == j { 0.1 } else { 0.0 }
+    };
+    let rows = (0..size)
+        .map(|i| (0..size).map(|j| entry(i, j)).collect())
+        .collect();
+    let contacts = (0..count)
+        .map(|k| Contact {
+            id: format!("n{k}"),
+            gap: if numbers.next() < 0.4 {
+                0.0
+            } else {
+                numbers.between(-0.1, 0.3)
+            },
+            friction: Friction {
+                angle: numbers.between(0.2, 1.2_f64).atan().to_degrees(),
+                cohesion: if numbers.next() < 0.3 {
+                    numbers.between(0.1, 1.0)
+                } else {
+                    0.0
+                },
+            },
+            load: [numbers.between(-1.0, 1.0), numbers.between(-1.0, 1.0)],
+            start: Mode::Free,
+            state: InitialState::default(),
+        })
+        .collect();
+    Problem {
+        title: format!("problem {seed}"),
+        about: String::new(),
+        contacts,
+        matrix: Matrix::Stiffness(rows),
+        free: Vec::new(),
+        spacing: None,
+        history: History {
+            path: vec![0.0, 1.0],
+            increment: 1.0,
+            least: Some(1.0),
+            jumps: Jumps::default(),
+        },
+        settings: Settings::default(),
+    }
+}
+
+fn model(problem: &Problem, strategy: &str) -> Arc<Model> {
+    let scene = Scene::from_spec("random", problem.spec()).unwrap_or_else(|e| panic!("{e}"));
+    let scene = scene.with("settings.strategy", strategy).unwrap();
+    Arc::new(scene.model)
+}
+
+fn truth(problem: &Problem) -> Census {
+    let mut stepper = Stepper::new(model(problem, "table2"));
+    census(&stepper.frozen().unwrap()).unwrap()
+}
+
+/// Steps to the first accepted increment or the failure.
+fn end(stepper: &mut Stepper) -> Result<(), Failure> {
+    loop {
+        match stepper.step().map(|event| event.outcome.clone()) {
+            Some(Outcome::Failed(failure)) => return Err(failure),
+            Some(Outcome::Increment { .. }) => return Ok(()),
+            Some(_) => {}
+            None => panic!("the history ended without an increment"),
+        }
+    }
+}
+
+/// Whether the accepted forces and gaps are those of one of the answers.
+fn is_answer(stepper: &Stepper, truth: &Census) -> bool {
+    let nodes = &stepper.event().nodes;
+    truth.answers.iter().any(|found| {
+        let mut pairs = nodes.iter().zip(&found.answer.nodes);
+        pairs.all(|(record, node)| {
+            (record.f_n - node.f_n).abs() < 1e-7
+                && (record.f_t - node.f_t).abs() < 1e-7
+                && (record.gap - node.gap).abs() < 1e-7
+        })
+    })
+}
+
+#[test]
+fn no_strategy_accepts_what_is_no_coulomb_state_and_the_ladder_solves_all_that_have_one() {
+    let mut solved = [0; Strategy::ALL.len()];
+    let (mut with_answer, mut without) = (0, 0);
+    for seed in 0..250 {
+        let problem = problem(seed);
+        let truth = truth(&problem);
+        match truth.answers.len() {
+            0 => without += 1,
+            _ => with_answer += 1,
+        }
+        for (k, strategy) in Strategy::NAMES.into_iter().enumerate() {
+            let mut stepper = Stepper::new(model(&problem, strategy));
+            match end(&mut stepper) {
+                Ok(()) => {
+                    assert!(is_answer(&stepper, &truth), "{strategy}, problem {seed}");
+                    solved[k] += 1;
+                }
+                Err(failure) if strategy == "ladder" => {
+                    assert!(truth.answers.is_empty(), "problem {seed}: {failure:?}");
+                    let Failure::NoAnswer { tried, .. } = failure else {
+                        panic!("problem {seed}: {failure:?}");
+                    };
+                    assert_eq!(tried, truth.tried);
+                }
+                Err(_) => {}
+            }
+        }
+    }
+    assert!(with_answer > 200 && without > 5, "{with_answer} {without}");
+    let of = |name: &str| solved[Strategy::NAMES.iter().position(|s| *s == name).unwrap()];
+    println!("{:?} {solved:?} of {with_answer}", Strategy::NAMES);
+    assert_eq!(of("ladder"), with_answer);
+    assert_eq!(of("census"), with_answer);
+    assert!(of("table2") < of("sliding") && of("sliding") <= of("lemke"));
+}
+
+#[test]
+fn pivoting_goes_on_with_the_same_bits_after_a_restore_at_any_pivot() {
+    let mut problems = (17..).map(problem);
+    let problem = problems.find(|p| p.contacts.len() == 4).unwrap();
+    let model = model(&problem, "lemke");
+    let mut stepper = Stepper::new(model.clone());
+    let (mut states, mut events) = (vec![stepper.state().clone()], Vec::new());
+    loop {
+        let event = stepper.step().unwrap().clone();
+        let ends = matches!(
+            event.outcome,
+            Outcome::Increment { .. } | Outcome::Failed(_)
+        );
+        events.push(event);
+        if ends {
+            break;
+        }
+        states.push(stepper.state().clone());
+    }
+    let pivots = events.iter().flat_map(|e| &e.nodes);
+    assert!(pivots.filter(|n| n.decision.rule == Rule::Pivots).count() > 4);
+    for (state, event) in states.iter().zip(&events) {
+        let mut other = Stepper::new(model.clone());
+        other.restore(state);
+        assert_eq!(other.step().unwrap(), event);
+    }
+}
+
+#[test]
+fn newtons_verdicts_on_the_frozen_problem_are_the_steppers_where_the_bodies_are_all_solids() {
+    let set = [
+        ("settings.strategy", "newton"),
+        ("settings.solver", "condensed"),
+    ];
+    let blocks = include_str!("../benches/two-blocks-pressed-sheared.ron");
+    let blocks = Scene::from_text("blocks", blocks, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let blocks = set.iter().fold(blocks, |scene, (path, value)| {
+        scene.with(path, value).unwrap()
+    });
+    let mut stepper = Stepper::new(Arc::new(blocks.model));
+    for _ in 0..6 {
+        let problem = stepper.frozen().unwrap();
+        assert!(problem.relation.stiffness.is_infinite());
+        let mut trials = Trials::new(&problem).unwrap();
+        let (records, _) = trials.minor(&mut problem.states()).unwrap();
+        let event = stepper.step().unwrap();
+        for (own, other) in records.iter().zip(&event.nodes) {
+            assert_eq!(own.decision.next, other.decision.next);
+            let [a, b] = [own, other].map(|r| r.decision.tests[0].map_or(0.0, |t| t.value));
+            assert!((a - b).abs() <= 1e-9 * problem.force, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn the_ladder_gets_out_of_the_oscillators_that_have_an_answer() {
+    for name in [
+        "osc-block-free",
+        "osc-drag65",
+        "osc-inclined-cantilever",
+        "osc-lag4",
+        "osc-slowlag",
+        "osc-snap",
+        "osc-three10",
+        "osc-touch2",
+        "osc-two3",
+        "osc-two6",
+        "osc-zig3",
+    ] {
+        let run = run(&scene(name, &[("settings.strategy", "ladder")]));
+        assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+    }
+}
+
+#[test]
+fn the_ladder_goes_on_with_friction_where_table_2_cycles() {
+    for (name, angle, increment) in [
+        ("02-two-cantilevers-rough", "10", "0.05"),
+        ("04-cantilever-rigid-circle", "10", "0.02"),
+        ("04-cantilever-rigid-circle", "30", "0.02"),
+    ] {
+        let with = |strategy| {
+            let set = [
+                ("friction.angle", angle),
+                ("history.increment", increment),
+                ("settings.strategy", strategy),
+            ];
+            run(&scene(name, &set)).failure
+        };
+        assert!(with("table2").is_some(), "{name} at {angle} degrees");
+        assert_eq!(with("ladder"), None, "{name} at {angle} degrees");
+    }
+}
+
+/// The way up ends at a limit point of P = 1.8367 on this mesh; beyond, nothing is near.
+#[test]
+fn at_a_limit_point_the_ladder_ends_at_the_same_load_with_any_increment() {
+    for increment in ["0.1", "0.05", "0.01"] {
+        let set = [("friction.angle", "20"), ("history.increment", increment)];
+        let run = run(&scene("02-two-cantilevers-rough", &set));
+        let last = run.stepper.state().start.load_factor;
+        assert!(
+            run.failure.is_some() && (last - 1.837).abs() < 2e-3,
+            "{increment}: {last}"
+        );
+    }
+}
+
+#[test]
+fn where_there_is_no_answer_the_ladder_says_so_and_cuts_the_increment_down_to_the_least() {
+    let set = [("settings.strategy", "ladder"), ("history.least", "0.2")];
+    let mut stepper = Stepper::new(Arc::new(scene("osc-coh-none", &set).model));
+    let mut sizes = Vec::new();
+    let failure = loop {
+        match &stepper.step().unwrap().outcome {
+            Outcome::Cut { why, size } => {
+                assert!(matches!(why, Failure::NoAnswer { tried: 4, .. }), "{why:?}");
+                sizes.push(*size);
+            }
+            Outcome::Failed(failure) => break failure.clone(),
+            _ => {}
+        }
+    };
+    assert_eq!(sizes, [0.5, 0.25]);
+    assert!(matches!(failure, Failure::NoAnswer { .. }));
+    assert_eq!(stepper.state().next.attempt, 3);
+}
+
+#[test]
+fn a_census_over_too_many_nodes_says_that_and_not_that_there_is_no_answer() {
+    let set = [("settings.strategy", "census"), ("friction.angle", "30")];
+    let run = run(&scene("hertz-cylinder-on-block", &set));
+    let (_, failure) = run.failure.unwrap();
+    assert!(
+        matches!(failure, Failure::NotFound(NotFound::TooMany { nodes }) if nodes > 8),
+        "{failure:?}"
+    );
+}
+
+#[test]
+fn a_cut_increment_grows_again_and_ends_where_the_whole_one_would_have() {
+    let run = run(&scene("osc-snap", &[("settings.strategy", "ladder")]));
+    assert!(run.failure.is_none());
+    let loads: Vec<f64> = run.accepted.iter().map(|a| a.load).collect();
+    let sizes: Vec<f64> = loads.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let smallest = sizes.iter().fold(f64::INFINITY, |m, s| m.min(*s));
+    assert!(smallest < 0.3 && *sizes.last().unwrap() > 0.45, "{loads:?}");
+    for k in 1..=12 {
+        let whole = 0.5 * f64::from(k);
+        assert!(loads.contains(&whole), "{whole} of {loads:?}");
+    }
+}
+
+#[test]
+fn a_loose_body_is_still_told_and_no_contact_without_force_holds_it() {
+    let text = "(title: \"loose\", nodes: [Line(id: \"beam\", from: (0, 0), to: (1, 0), elements: 1, per_element: 2), \
+        Line(id: \"floor\", from: (3, 0), to: (-3, 0), elements: 1, per_element: 2)], \
+        materials: [Section(id: \"rod\", EA: 1, EI: 1)], bodies: [Beam(id: \"beam\", along: \"beam\", material: \"rod\")], \
+        surfaces: [(id: \"floor\", along: \"floor\")], slaves: [(nodes: [\"beam.start\", \"beam.end\"], on: [\"floor\"], start: free)], \
+        friction: (angle: 30), supports: [], loads: [Force(node: \"beam.end\", x: 1, y: 1)], \
+        history: (path: [0, 1], increment: 1))";
+    let scene = Scene::from_text("loose", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let run = run(&scene);
+    let (_, failure) = run.failure.unwrap();
+    assert!(
+        matches!(failure, Failure::Singular(Singular::Rigid { .. })),
+        "{failure:?}"
+    );
+}
+
+#[test]
+fn a_mode_that_the_user_holds_is_left_to_the_user() {
+    let set = [("settings.strategy", "ladder")];
+    let mut stepper = Stepper::new(Arc::new(scene("osc-touch2", &set).model));
+    stepper
+        .intervene(&Intervention::Force {
+            slave: 0,
+            mode: Mode::Fixed,
+            hold: true,
+        })
+        .unwrap();
+    while let Some(event) = stepper.step() {
+        assert!(!matches!(event.outcome, Outcome::Climbed { .. }));
+        assert_eq!(event.nodes[0].decision.before, Mode::Fixed);
+    }
+}

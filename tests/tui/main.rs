@@ -1,0 +1,24 @@
+//! What the terminal shows and what keys do: screens by hand, screens of real scenes, and whole sessions of the built
+//! program in a pseudo-terminal.
+//!
+//! Tests that need a process of their own (a panic, a terminal that is gone) start this program once more with a part to play.
+
+#[path = "../common/terminal.rs"]
+mod terminal;
+
+// Shared: frames made by hand.
+mod by_hand;
+// Whole screens at every size; what does not fit says so.
+mod screens;
+// The table of slave nodes: marks with and without colour, ties, order, words.
+mod nodes;
+// Keys and typed lines become commands; help lists them all.
+mod keyboard;
+// What is done in real scenes is seen.
+mod real_scenes;
+// Diagnosis, timeline, branches, remedies and charts, on scenes that do not converge.
+mod panes;
+// The real program: keys in, screens out, the terminal as it was after whatever ends it.
+mod sessions;
+// Journals that cannot be written, what is no file, what would harm the terminal.
+mod session_files;
