@@ -1,6 +1,7 @@
 //! What to solve: the scene file and the checked model made of it.
 //!
 //! - [`spec`]: the file as its author writes it; [`read`]: from text to that, [`locate`]: from that back to a line.
+//! - [`described`]: the types of the file, described once for [`paths`] and for the manual.
 //! - [`paths`]: every scalar of a scene by its path, to list and to set.
 //! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
 //! - [`cost`]: what a scene costs, and what it does without; [`effort`]: its time and memory, estimated; [`memory`]: what
@@ -11,6 +12,7 @@
 pub mod builtin;
 pub mod condensed;
 pub mod cost;
+pub mod described;
 pub mod error;
 pub mod limits;
 pub mod locate;

@@ -4,6 +4,7 @@
 //! [`Model`](crate::model::Model), and refuses what makes no sense. Every field is either required or has the
 //! default that its comment names.
 
+use super::described::described;
 use crate::model::{
     Axis, Component, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update, least,
 };
@@ -12,133 +13,137 @@ use serde::{Deserialize, Serialize};
 /// A point or a vector in the plane, `(x, y)`, in the scene's unit of length.
 pub type Point = (f64, f64);
 
-/// A whole scene file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Spec {
-    /// One line that says what the scene is.
-    pub title: String,
-    /// A few sentences for the reader: source, units, what to look for. Default: empty.
-    #[serde(default)]
-    pub about: String,
-    /// Divides every generated element into this many. Default: 1.
-    #[serde(default = "one")]
-    pub refine: usize,
-    /// Nodes, one by one or generated along curves.
-    pub nodes: Vec<Nodes>,
-    /// Materials and sections by name.
-    pub materials: Vec<Material>,
-    /// What deforms.
-    pub bodies: Vec<BodySpec>,
-    /// Master surfaces. Default: none.
-    #[serde(default)]
-    pub surfaces: Vec<SurfaceSpec>,
-    /// Slave nodes. Default: none.
-    #[serde(default)]
-    pub slaves: Vec<SlaveSpec>,
-    /// Coulomb friction of every slave node that names none of its own. Default: smooth.
-    #[serde(default)]
-    pub friction: Friction,
-    /// Restrained degrees of freedom. Default: none.
-    #[serde(default)]
-    pub supports: Vec<SupportSpec>,
-    /// Reference loads, multiplied by the load factor. Default: none.
-    #[serde(default)]
-    pub loads: Vec<LoadSpec>,
-    /// The path of the load factor and its increments.
-    pub history: History,
-    /// Choices of the method and its limits. Default: those of [`Settings`].
-    #[serde(default)]
-    pub settings: Settings,
-    /// What `--csv` and the load-displacement view report. Default: none.
-    #[serde(default)]
-    pub monitors: Vec<MonitorSpec>,
+described! {
+    /// A whole scene file.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Spec {
+        /// One line that says what the scene is.
+        pub title: String,
+        /// A few sentences for the reader: source, units, what to look for. Default: empty.
+        #[serde(default)]
+        pub about: String => skip,
+        /// Divides every generated element into this many. Default: 1.
+        #[serde(default = "one")]
+        pub refine: usize,
+        /// Nodes, one by one or generated along curves.
+        pub nodes: Vec<Nodes>,
+        /// Materials and sections by name.
+        pub materials: Vec<Material>,
+        /// What deforms.
+        pub bodies: Vec<BodySpec>,
+        /// Master surfaces. Default: none.
+        #[serde(default)]
+        pub surfaces: Vec<SurfaceSpec>,
+        /// Slave nodes. Default: none.
+        #[serde(default)]
+        pub slaves: Vec<SlaveSpec>,
+        /// Coulomb friction of every slave node that names none of its own. Default: smooth.
+        #[serde(default)]
+        pub friction: Friction,
+        /// Restrained degrees of freedom. Default: none.
+        #[serde(default)]
+        pub supports: Vec<SupportSpec>,
+        /// Reference loads, multiplied by the load factor. Default: none.
+        #[serde(default)]
+        pub loads: Vec<LoadSpec>,
+        /// The path of the load factor and its increments.
+        pub history: History,
+        /// Choices of the method and its limits. Default: those of [`Settings`].
+        #[serde(default)]
+        pub settings: Settings,
+        /// What `--csv` and the load-displacement view report. Default: none.
+        #[serde(default)]
+        pub monitors: Vec<MonitorSpec>,
+    }
 }
 
 fn one() -> usize {
     1
 }
 
-/// Nodes, one by one or in chains of m-node elements.
-///
-/// A chain's nodes are called `ID.1`, `ID.2`, … in order; `ID.start`, `ID.end`, `ID@0.5` (at that fraction of the
-/// chain's parameter) and `ID.all` name them whatever the refinement. So do they for each edge of a block.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Nodes {
-    /// One node, called `id`.
-    Node { id: String, at: Point },
-    /// A straight chain.
-    Line {
-        id: String,
-        from: Point,
-        to: Point,
-        /// Number of elements, before refinement.
-        elements: usize,
-        /// Nodes per element, 2 to 9.
-        per_element: usize,
-    },
-    /// A circular arc; angles in degrees, anticlockwise from +x, `from` may exceed `to`.
-    Arc {
-        id: String,
-        center: Point,
-        radius: f64,
-        from: f64,
-        to: f64,
-        elements: usize,
-        per_element: usize,
-    },
-    /// A chain through given points; elements are the Lagrange curves through them.
-    Through {
-        id: String,
-        points: Vec<Point>,
-        per_element: usize,
-    },
-    /// A mesh of 8-node quadrilaterals on a block with four sides.
+described! {
+    /// Nodes, one by one or in chains of m-node elements.
     ///
-    /// Its edges are chains of 3-node elements, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
-    /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
-    /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
-    Block {
-        id: String,
-        /// Two opposite corners of an upright rectangle, lower left and upper right; or all four of a
-        /// quadrilateral, anticlockwise, the bottom edge first.
-        corners: Vec<Point>,
-        /// Number of elements along the bottom and along the left edge, before refinement.
-        elements: (usize, usize),
-        /// Length of the last element over that of the first along bottom and top (left to right), and along left and
-        /// right (upwards); lengths between grow by a constant factor. Refinement divides each element evenly.
-        /// Default: (1, 1).
-        #[serde(default = "even")]
-        grading: (f64, f64),
-        /// Sides that are not straight; what lies between is blended from all four. Default: none.
-        #[serde(default)]
-        sides: Sides,
-        /// Turns and shifts the block, curved sides and all, once it is made. Default: as it lies.
-        #[serde(default)]
-        place: Place,
-    },
-    /// One mesh of several blocks, joined along sides. Blocks lie apart, however close, where no joint names them.
-    Mesh {
-        id: String,
-        /// The blocks. Their edges keep their names; their common nodes have one name for each.
-        of: Vec<String>,
-        /// Pairs of edges that become one, as `("a.right", "b.left")`: their nodes must coincide one by one.
-        joints: Vec<(String, String)>,
-        /// How far two nodes that become one may be apart, in lengths of the edge; the first edge's stays.
-        /// Default: 1e-6.
-        #[serde(default = "joint_tolerance")]
-        tolerance: f64,
-    },
-    /// A chain over nodes that exist already, which it shares: a rigid joint between beams, or a line along several
-    /// edges of blocks, around a corner too. Refined as far as its parts are.
-    Chain {
-        id: String,
-        /// Names of single nodes, of whole chains (`ID.all`) and of edges of blocks. A chain or edge goes on from the
-        /// node at which the one before it ends.
-        of: Vec<String>,
-        per_element: usize,
-    },
+    /// A chain's nodes are called `ID.1`, `ID.2`, … in order; `ID.start`, `ID.end`, `ID@0.5` (at that fraction of the
+    /// chain's parameter) and `ID.all` name them whatever the refinement. So do they for each edge of a block.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub enum Nodes {
+        /// One node, called `id`.
+        Node { id: String => name, at: Point },
+        /// A straight chain.
+        Line {
+            id: String => name,
+            from: Point,
+            to: Point,
+            /// Number of elements, before refinement.
+            elements: usize,
+            /// Nodes per element, 2 to 9.
+            per_element: usize,
+        },
+        /// A circular arc; angles in degrees, anticlockwise from +x, `from` may exceed `to`.
+        Arc {
+            id: String => name,
+            center: Point,
+            radius: f64,
+            from: f64,
+            to: f64,
+            elements: usize,
+            per_element: usize,
+        },
+        /// A chain through given points; elements are the Lagrange curves through them.
+        Through {
+            id: String => name,
+            points: Vec<Point>,
+            per_element: usize,
+        },
+        /// A mesh of 8-node quadrilaterals on a block with four sides.
+        ///
+        /// Its edges are chains of 3-node elements, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
+        /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
+        /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
+        Block {
+            id: String => name,
+            /// Two opposite corners of an upright rectangle, lower left and upper right; or all four of a
+            /// quadrilateral, anticlockwise, the bottom edge first.
+            corners: Vec<Point>,
+            /// Number of elements along the bottom and along the left edge, before refinement.
+            elements: (usize, usize),
+            /// Length of the last element over that of the first along bottom and top (left to right), and along left and
+            /// right (upwards); lengths between grow by a constant factor. Refinement divides each element evenly.
+            /// Default: (1, 1).
+            #[serde(default = "even")]
+            grading: (f64, f64),
+            /// Sides that are not straight; what lies between is blended from all four. Default: none.
+            #[serde(default)]
+            sides: Sides,
+            /// Turns and shifts the block, curved sides and all, once it is made. Default: as it lies.
+            #[serde(default)]
+            place: Place,
+        },
+        /// One mesh of several blocks, joined along sides. Blocks lie apart, however close, where no joint names them.
+        Mesh {
+            id: String => name,
+            /// The blocks. Their edges keep their names; their common nodes have one name for each.
+            of: Vec<String>,
+            /// Pairs of edges that become one, as `("a.right", "b.left")`: their nodes must coincide one by one.
+            joints: Vec<(String, String)>,
+            /// How far two nodes that become one may be apart, in lengths of the edge; the first edge's stays.
+            /// Default: 1e-6.
+            #[serde(default = "joint_tolerance")]
+            tolerance: f64,
+        },
+        /// A chain over nodes that exist already, which it shares: a rigid joint between beams, or a line along several
+        /// edges of blocks, around a corner too. Refined as far as its parts are.
+        Chain {
+            id: String => name,
+            /// Names of single nodes, of whole chains (`ID.all`) and of edges of blocks. A chain or edge goes on from the
+            /// node at which the one before it ends.
+            of: Vec<String>,
+            per_element: usize,
+        },
+    }
 }
 
 impl Nodes {
@@ -164,14 +169,16 @@ fn joint_tolerance() -> f64 {
     1e-6
 }
 
-/// The curved sides of a block. Default of each: straight.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Sides {
-    pub bottom: Option<Side>,
-    pub right: Option<Side>,
-    pub top: Option<Side>,
-    pub left: Option<Side>,
+described! {
+    /// The curved sides of a block. Default of each: straight.
+    #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct Sides {
+        pub bottom: Option<Side>,
+        pub right: Option<Side>,
+        pub top: Option<Side>,
+        pub left: Option<Side>,
+    }
 }
 
 impl Sides {
@@ -186,66 +193,72 @@ impl Sides {
     }
 }
 
-/// A curved side of a block, from corner to corner.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Side {
-    /// The circular arc about a center that is equally far from both corners, the shorter way round.
-    Arc { center: Point },
-    /// The curve of a chain that stands above the block in the scene, or of an earlier block's edge, walked either
-    /// way; its ends are the two corners. Only the curve is taken, with the chain's own spacing (a graded edge is
-    /// graded already); no nodes are shared.
-    Along { chain: String },
+described! {
+    /// A curved side of a block, from corner to corner.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub enum Side {
+        /// The circular arc about a center that is equally far from both corners, the shorter way round.
+        Arc { center: Point },
+        /// The curve of a chain that stands above the block in the scene, or of an earlier block's edge, walked either
+        /// way; its ends are the two corners. Only the curve is taken, with the chain's own spacing (a graded edge is
+        /// graded already); no nodes are shared.
+        Along { chain: String },
+    }
 }
 
-/// Where a block is put: first turned, then shifted.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Place {
-    /// Degrees, anticlockwise. Default: 0.
-    pub turn: f64,
-    /// The point about which it turns. Default: (0, 0).
-    pub about: Point,
-    /// Default: (0, 0).
-    pub shift: Point,
+described! {
+    /// Where a block is put: first turned, then shifted.
+    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct Place {
+        /// Degrees, anticlockwise. Default: 0.
+        pub turn: f64,
+        /// The point about which it turns. Default: (0, 0).
+        pub about: Point,
+        /// Default: (0, 0).
+        pub shift: Point,
+    }
 }
 
-/// A material or section.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[allow(non_snake_case)]
-pub enum Material {
-    /// A beam's section stiffnesses.
-    Section {
-        id: String,
-        /// Axial stiffness, force.
-        EA: f64,
-        /// Bending stiffness, force times length squared.
-        EI: f64,
-        /// Shear stiffness, force. Default: none, that is shear-rigid.
-        #[serde(default)]
-        GA: Option<f64>,
-    },
-    /// An elastic continuum in the plane.
-    Elastic {
-        id: String,
-        /// Young's modulus, force by area.
-        E: f64,
-        /// Poisson's ratio, 0 <= nu < 0.5.
-        nu: f64,
-        /// Default: svk.
-        #[serde(default)]
-        law: Law,
-        /// Default: strain.
-        #[serde(default)]
-        plane: Plane,
-        /// Thickness across the plane, of the undeformed body. Default: 1.
-        #[serde(default = "unit")]
-        thickness: f64,
-        /// Default: total.
-        #[serde(default)]
-        update: Update,
-    },
+described! {
+    /// A material or section.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    #[allow(non_snake_case)]
+    pub enum Material {
+        /// A beam's section stiffnesses.
+        Section {
+            id: String => name,
+            /// Axial stiffness, force.
+            EA: f64,
+            /// Bending stiffness, force times length squared.
+            EI: f64,
+            /// Shear stiffness, force. Default: none, that is shear-rigid.
+            #[serde(default)]
+            GA: Option<f64>,
+        },
+        /// An elastic continuum in the plane.
+        Elastic {
+            id: String => name,
+            /// Young's modulus, force by area.
+            E: f64,
+            /// Poisson's ratio, 0 <= nu < 0.5.
+            nu: f64,
+            /// Default: svk.
+            #[serde(default)]
+            law: Law,
+            /// Default: strain.
+            #[serde(default)]
+            plane: Plane,
+            /// Thickness across the plane, of the undeformed body. Default: 1.
+            #[serde(default = "unit")]
+            thickness: f64,
+            /// Default: total.
+            #[serde(default)]
+            update: Update,
+        },
+    }
 }
 
 fn unit() -> f64 {
@@ -261,69 +274,75 @@ impl Material {
     }
 }
 
-/// A deformable body.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum BodySpec {
-    /// A geometrically exact planar beam along a chain of nodes.
-    Beam {
-        id: String,
-        along: String,
-        material: String,
-    },
-    /// A continuum on a block, or on a mesh of several.
-    Solid {
-        id: String,
-        /// Id of the block or mesh.
-        mesh: String,
-        material: String,
-        /// Parts of another material; where they overlap, the last one holds. Default: none.
-        #[serde(default)]
-        regions: Vec<Region>,
-    },
-    /// A linear body, given by its matrix about the undeformed state: two degrees of freedom a node, x and y, in the order
-    /// of `nodes`. Either `stiffness` (f = K u) or `compliance` (u = W f, W may be singular) is named, row by row;
-    /// neither need be symmetric.
-    Matrix {
-        id: String,
-        /// Names of nodes, each once.
-        nodes: Vec<String>,
-        /// K, force by length. Default: none.
-        #[serde(default)]
-        stiffness: Vec<Vec<f64>>,
-        /// W, length by force. Default: none.
-        #[serde(default)]
-        compliance: Vec<Vec<f64>>,
-        /// Displacement of the body under no force at load factor 1, times the load factor: u = free λ + W f. Default: zero.
-        #[serde(default)]
-        free: Vec<f64>,
-    },
-    /// Linear bars, their directions fixed: small displacements.
-    Springs { id: String, bars: Vec<Bar> },
+described! {
+    /// A deformable body.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub enum BodySpec {
+        /// A geometrically exact planar beam along a chain of nodes.
+        Beam {
+            id: String => name,
+            along: String,
+            material: String,
+        },
+        /// A continuum on a block, or on a mesh of several.
+        Solid {
+            id: String => name,
+            /// Id of the block or mesh.
+            mesh: String,
+            material: String,
+            /// Parts of another material; where they overlap, the last one holds. Default: none.
+            #[serde(default)]
+            regions: Vec<Region>,
+        },
+        /// A linear body, given by its matrix about the undeformed state: two degrees of freedom a node, x and y, in the order
+        /// of `nodes`. Either `stiffness` (f = K u) or `compliance` (u = W f, W may be singular) is named, row by row;
+        /// neither need be symmetric.
+        Matrix {
+            id: String => name,
+            /// Names of nodes, each once.
+            nodes: Vec<String>,
+            /// K, force by length. Default: none.
+            #[serde(default)]
+            stiffness: Vec<Vec<f64>>,
+            /// W, length by force. Default: none.
+            #[serde(default)]
+            compliance: Vec<Vec<f64>>,
+            /// Displacement of the body under no force at load factor 1, times the load factor: u = free λ + W f. Default: zero.
+            #[serde(default)]
+            free: Vec<f64>,
+        },
+        /// Linear bars, their directions fixed: small displacements.
+        Springs { id: String => name, bars: Vec<Bar> },
+    }
 }
 
-/// A linear bar between two nodes, or from one node to the ground. It resists motion (of one node against the other)
-/// along its angle alone.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Bar {
-    /// One node or two.
-    pub nodes: Vec<String>,
-    /// Degrees from +x, anticlockwise.
-    pub angle: f64,
-    /// Force by length.
-    pub stiffness: f64,
+described! {
+    /// A linear bar between two nodes, or from one node to the ground. It resists motion (of one node against the other)
+    /// along its angle alone.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Bar {
+        /// One node or two.
+        pub nodes: Vec<String>,
+        /// Degrees from +x, anticlockwise.
+        pub angle: f64,
+        /// Force by length.
+        pub stiffness: f64,
+    }
 }
 
-/// A part of a solid with a material of its own: the elements whose middle lies in an upright rectangle.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Region {
-    /// Lower left corner.
-    pub from: Point,
-    /// Upper right corner.
-    pub to: Point,
-    pub material: String,
+described! {
+    /// A part of a solid with a material of its own: the elements whose middle lies in an upright rectangle.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Region {
+        /// Lower left corner.
+        pub from: Point,
+        /// Upper right corner.
+        pub to: Point,
+        pub material: String,
+    }
 }
 
 impl BodySpec {
@@ -338,115 +357,125 @@ impl BodySpec {
     }
 }
 
-/// A master surface: the interface elements along a chain of nodes.
-///
-/// Whoever walks along the chain has the outward side on the right (the body on the left, as along the boundary of
-/// a body whose nodes run anticlockwise). Nodes that belong to no body are restrained: the surface is rigid and
-/// adds no unknowns.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceSpec {
-    pub id: String,
-    pub along: String,
-    /// Walk the chain the other way, so that the outward side changes. Default: false.
-    #[serde(default)]
-    pub reverse: bool,
-    /// Goes on straight past both ends, for ever. For a straight, rigid surface. Default: false.
-    #[serde(default)]
-    pub endless: bool,
+described! {
+    /// A master surface: the interface elements along a chain of nodes.
+    ///
+    /// Whoever walks along the chain has the outward side on the right (the body on the left, as along the boundary of
+    /// a body whose nodes run anticlockwise). Nodes that belong to no body are restrained: the surface is rigid and
+    /// adds no unknowns.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct SurfaceSpec {
+        pub id: String => name,
+        pub along: String,
+        /// Walk the chain the other way, so that the outward side changes. Default: false.
+        #[serde(default)]
+        pub reverse: bool,
+        /// Goes on straight past both ends, for ever. For a straight, rigid surface. Default: false.
+        #[serde(default)]
+        pub endless: bool,
+    }
 }
 
-/// Slave nodes and the surfaces that they may touch.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SlaveSpec {
-    /// Names of nodes; `ID.all` stands for every node of a chain, and a block's `ID.left` for those of its edge, less
-    /// those that cannot move over surfaces that cannot move either. The corner of two edges counts once.
-    pub nodes: Vec<String>,
-    /// Surfaces among which each node finds its own element.
-    pub on: Vec<String>,
-    /// The mode of the first minor iteration. Default: free.
-    #[serde(default)]
-    pub start: Mode,
-    /// Friction of these nodes. Default: the scene's.
-    #[serde(default)]
-    pub friction: Option<Friction>,
-    /// What these nodes bring from iterations before the scene's first. Default: nothing.
-    #[serde(default)]
-    pub state: InitialState,
+described! {
+    /// Slave nodes and the surfaces that they may touch.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct SlaveSpec {
+        /// Names of nodes; `ID.all` stands for every node of a chain, and a block's `ID.left` for those of its edge, less
+        /// those that cannot move over surfaces that cannot move either. The corner of two edges counts once.
+        pub nodes: Vec<String>,
+        /// Surfaces among which each node finds its own element.
+        pub on: Vec<String>,
+        /// The mode of the first minor iteration. Default: free.
+        #[serde(default)]
+        pub start: Mode,
+        /// Friction of these nodes. Default: the scene's.
+        #[serde(default)]
+        pub friction: Option<Friction>,
+        /// What these nodes bring from iterations before the scene's first. Default: nothing.
+        #[serde(default)]
+        pub state: InitialState,
+    }
 }
 
-/// Restrained degrees of freedom of nodes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SupportSpec {
-    pub node: String,
-    pub fix: Vec<Component>,
+described! {
+    /// Restrained degrees of freedom of nodes.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct SupportSpec {
+        pub node: String,
+        pub fix: Vec<Component>,
+    }
 }
 
-/// A reference load; what acts is its value times the load factor (or times `scale` of it).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum LoadSpec {
-    /// A dead point load.
-    Force {
-        node: String,
-        #[serde(default)]
-        x: f64,
-        #[serde(default)]
-        y: f64,
-        #[serde(default)]
-        scale: Scale,
-    },
-    /// A moment on a beam node, anticlockwise positive.
-    Moment {
-        node: String,
-        value: f64,
-        #[serde(default)]
-        scale: Scale,
-    },
-    /// A uniform dead load along a chain: on each unit of its undeformed length.
-    Traction {
-        along: String,
-        /// Along the outward normal of the undeformed chain, to the right of its walk. Default: 0.
-        #[serde(default)]
-        normal: f64,
-        #[serde(default)]
-        x: f64,
-        #[serde(default)]
-        y: f64,
-        #[serde(default)]
-        scale: Scale,
-    },
-    /// A prescribed displacement (or rotation) of a node; `ID.all` moves a whole chain.
-    Displacement {
-        node: String,
-        component: Component,
-        value: f64,
-        #[serde(default)]
-        scale: Scale,
-    },
+described! {
+    /// A reference load; what acts is its value times the load factor (or times `scale` of it).
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub enum LoadSpec {
+        /// A dead point load.
+        Force {
+            node: String,
+            #[serde(default)]
+            x: f64,
+            #[serde(default)]
+            y: f64,
+            #[serde(default)]
+            scale: Scale,
+        },
+        /// A moment on a beam node, anticlockwise positive.
+        Moment {
+            node: String,
+            value: f64,
+            #[serde(default)]
+            scale: Scale,
+        },
+        /// A uniform dead load along a chain: on each unit of its undeformed length.
+        Traction {
+            along: String,
+            /// Along the outward normal of the undeformed chain, to the right of its walk. Default: 0.
+            #[serde(default)]
+            normal: f64,
+            #[serde(default)]
+            x: f64,
+            #[serde(default)]
+            y: f64,
+            #[serde(default)]
+            scale: Scale,
+        },
+        /// A prescribed displacement (or rotation) of a node; `ID.all` moves a whole chain.
+        Displacement {
+            node: String,
+            component: Component,
+            value: f64,
+            #[serde(default)]
+            scale: Scale,
+        },
+    }
 }
 
 /// Piecewise-linear map from the scene's load factor to a load's own, as points `(load factor, own factor)` with
 /// rising load factors; constant beyond its ends. Default (no points): the load factor itself.
 pub type Scale = Vec<Point>;
 
-/// The path of the load factor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct History {
-    /// Corners of the path, the first of which is where the scene starts unloaded, usually 0.
-    pub path: Vec<f64>,
-    /// Size of an increment of the load factor; the last one of each leg is shorter where it must be.
-    pub increment: f64,
-    /// Size below which an increment that fails is not cut any more (`strategy: ladder` halves it). Default: a 64th of
-    /// `increment`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub least: Option<f64>,
-    /// What an increment does that jumps to another branch of equilibrium (`strategy: ladder`). Default: cut.
-    #[serde(default, skip_serializing_if = "Jumps::is_default")]
-    pub jumps: Jumps,
+described! {
+    /// The path of the load factor.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct History {
+        /// Corners of the path, the first of which is where the scene starts unloaded, usually 0.
+        pub path: Vec<f64>,
+        /// Size of an increment of the load factor; the last one of each leg is shorter where it must be.
+        pub increment: f64,
+        /// Size below which an increment that fails is not cut any more (`strategy: ladder` halves it). Default: a 64th of
+        /// `increment`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub least: Option<f64> => given,
+        /// What an increment does that jumps to another branch of equilibrium (`strategy: ladder`). Default: cut.
+        #[serde(default, skip_serializing_if = "Jumps::is_default")]
+        pub jumps: Jumps,
+    }
 }
 
 impl History {
@@ -456,33 +485,37 @@ impl History {
     }
 }
 
-/// A number to report after every converged increment.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MonitorSpec {
-    /// Column name in `--csv`.
-    pub name: String,
-    pub of: Quantity,
+described! {
+    /// A number to report after every converged increment.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct MonitorSpec {
+        /// Column name in `--csv`.
+        pub name: String => name,
+        pub of: Quantity,
+    }
 }
 
-/// What a monitor reports.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Quantity {
-    /// A displacement (or rotation) of a node.
-    Displacement { node: String, component: Component },
-    /// The interaction force on one slave node, or on all of them together.
-    Contact {
-        #[serde(default)]
-        node: Option<String>,
-        component: Axis,
-    },
-    /// The force of the support at a restrained degree of freedom.
-    Reaction { node: String, component: Component },
-    /// How far one slave node that sticks has gone along its surface from the point where it stuck (length, with the
-    /// sign of slip; 0 where it slides or is free), or that of all which has gone furthest.
-    Drift {
-        #[serde(default)]
-        node: Option<String>,
-    },
+described! {
+    /// What a monitor reports.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub enum Quantity {
+        /// A displacement (or rotation) of a node.
+        Displacement { node: String, component: Component },
+        /// The interaction force on one slave node, or on all of them together.
+        Contact {
+            #[serde(default)]
+            node: Option<String>,
+            component: Axis,
+        },
+        /// The force of the support at a restrained degree of freedom.
+        Reaction { node: String, component: Component },
+        /// How far one slave node that sticks has gone along its surface from the point where it stuck (length, with the
+        /// sign of slip; 0 where it slides or is free), or that of all which has gone furthest.
+        Drift {
+            #[serde(default)]
+            node: Option<String>,
+        },
+    }
 }

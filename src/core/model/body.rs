@@ -1,5 +1,6 @@
 //! What deforms: beams, continua of elements, and bodies that are given by a matrix.
 
+use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
 /// A deformable body.
@@ -73,38 +74,44 @@ pub struct Elastic {
     pub update: Update,
 }
 
-/// How stress follows from strain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Law {
-    /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens and fails under large compression.
-    #[default]
-    Svk,
-    /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too.
-    NeoHookean,
+documented! {
+    /// How stress follows from strain.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Law {
+        /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens and fails under large compression.
+        #[default]
+        Svk,
+        /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too.
+        NeoHookean,
+    }
 }
 
-/// What happens across the plane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Plane {
-    /// No strain: a long body.
-    #[default]
-    Strain,
-    /// No stress: a thin sheet.
-    Stress,
+documented! {
+    /// What happens across the plane.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Plane {
+        /// No strain: a long body.
+        #[default]
+        Strain,
+        /// No stress: a thin sheet.
+        Stress,
+    }
 }
 
-/// What strains and stresses are referred to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Update {
-    /// The undeformed shape: the answer does not depend on the increments.
-    #[default]
-    Total,
-    /// The shape at the last accepted increment, as in the paper: stress grows by the small-strain moduli times each
-    /// increment's strain, and the answer depends on the size of the increments (its Fig. 8). Law svk only.
-    Updated,
+documented! {
+    /// What strains and stresses are referred to.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Update {
+        /// The undeformed shape: the answer does not depend on the increments.
+        #[default]
+        Total,
+        /// The shape at the last accepted increment, as in the paper: stress grows by the small-strain moduli times each
+        /// increment's strain, and the answer depends on the size of the increments (its Fig. 8). Law svk only.
+        Updated,
+    }
 }
 
 /// A body that is given by a matrix over the x and y of its nodes, in their order.

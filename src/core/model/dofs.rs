@@ -1,5 +1,6 @@
 //! Numbering of the degrees of freedom and of the unknowns among them.
 
+use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
 /// Numbering of the degrees of freedom and of the unknowns among them.
@@ -35,13 +36,15 @@ impl Dofs {
     }
 }
 
-/// A degree of freedom of a node. Prints as the scene file has it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Component {
-    X,
-    Y,
-    Rotation,
+documented! {
+    /// A degree of freedom of a node. Prints as the scene file has it.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Component {
+        X,
+        Y,
+        Rotation,
+    }
 }
 
 impl std::fmt::Display for Component {
@@ -54,10 +57,12 @@ impl std::fmt::Display for Component {
     }
 }
 
-/// A Cartesian axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Axis {
-    X,
-    Y,
+documented! {
+    /// A Cartesian axis.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Axis {
+        X,
+        Y,
+    }
 }

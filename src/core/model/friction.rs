@@ -1,30 +1,35 @@
 //! Modes of interaction (Table 1) and Coulomb friction (eqn 20).
 
+use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
-/// Mode of interaction of a slave node with its master element (Table 1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Mode {
-    /// Apart: no interaction force.
-    #[default]
-    Free,
-    /// Touching; the tangential force is T_max.
-    Sliding,
-    /// Touching and stuck.
-    Fixed,
+documented! {
+    /// Mode of interaction of a slave node with its master element (Table 1).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Mode {
+        /// Apart: no interaction force.
+        #[default]
+        Free,
+        /// Touching; the tangential force is T_max.
+        Sliding,
+        /// Touching and stuck.
+        Fixed,
+    }
 }
 
-/// Coulomb friction, eqn (20).
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Friction {
-    /// Friction angle φ in degrees, 0 <= φ < 90. Default: 0.
-    #[serde(default)]
-    pub angle: f64,
-    /// Cohesion, a force per slave node. Default: 0.
-    #[serde(default)]
-    pub cohesion: f64,
+documented! {
+    /// Coulomb friction, eqn (20).
+    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Friction {
+        /// Friction angle φ in degrees, 0 <= φ < 90. Default: 0.
+        #[serde(default)]
+        pub angle: f64,
+        /// Cohesion, a force per slave node. Default: 0.
+        #[serde(default)]
+        pub cohesion: f64,
+    }
 }
 
 impl Friction {
@@ -39,19 +44,21 @@ impl Friction {
     }
 }
 
-/// What a slave node brings into the first minor iteration, as of a step taken over from elsewhere. A node that starts
-/// free brings no forces. Forces that the bodies do not answer yet are out of balance, as after a major iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct InitialState {
-    /// Normal force on the slave node, along the master's outward normal n: compression positive.
-    pub f_n: f64,
-    /// Tangential force along t, which is n turned 90 degrees anticlockwise.
-    pub f_t: f64,
-    /// T_max of the first minor iteration, with its sign.
-    pub t_max: f64,
-    /// Slip u_tS* − u_tS counted so far in the increment (length).
-    pub slip: f64,
-    /// Ratio of tangential to normal travel of a node that has just touched.
-    pub ratio: f64,
+documented! {
+    /// What a slave node brings into the first minor iteration, as of a step taken over from elsewhere. A node that starts
+    /// free brings no forces. Forces that the bodies do not answer yet are out of balance, as after a major iteration.
+    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct InitialState {
+        /// Normal force on the slave node, along the master's outward normal n: compression positive.
+        pub f_n: f64,
+        /// Tangential force along t, which is n turned 90 degrees anticlockwise.
+        pub f_t: f64,
+        /// T_max of the first minor iteration, with its sign.
+        pub t_max: f64,
+        /// Slip u_tS* − u_tS counted so far in the increment (length).
+        pub slip: f64,
+        /// Ratio of tangential to normal travel of a node that has just touched.
+        pub ratio: f64,
+    }
 }

@@ -1,5 +1,6 @@
 //! What drives a scene: loads, prescribed motions, and the path of the load factor.
 
+use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
 /// A dead load on one degree of freedom (a force, or a moment).
@@ -43,17 +44,19 @@ impl Factor {
     }
 }
 
-/// What an increment does that jumps to another branch of equilibrium.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Jumps {
-    /// It is accepted whole, marked where it moved beyond what its tangent and the increments before it predict.
-    Accept,
-    /// It is cut; where the least increment still jumps, that is accepted, marked.
-    #[default]
-    Cut,
-    /// It is cut; where the least increment still jumps, the history fails.
-    Stop,
+documented! {
+    /// What an increment does that jumps to another branch of equilibrium.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Jumps {
+        /// It is accepted whole, marked where it moved beyond what its tangent and the increments before it predict.
+        Accept,
+        /// It is cut; where the least increment still jumps, that is accepted, marked.
+        #[default]
+        Cut,
+        /// It is cut; where the least increment still jumps, the history fails.
+        Stop,
+    }
 }
 
 impl Jumps {

@@ -8,6 +8,8 @@
 //! whose equations are lengths, all of them. `equation[d]` is the number of the unknown of degree of freedom d, or
 //! none where it is restrained or prescribed.
 
+pub mod documented;
+
 mod body;
 mod contact;
 mod dofs;

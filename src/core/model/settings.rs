@@ -1,44 +1,47 @@
 //! Choices of the method and its limits: which of the paper's variants is used where it leaves a choice.
 
+use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
-/// Choices of the method, and its limits.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Settings {
-    /// How the next modes are chosen. Default: ladder.
-    pub strategy: Strategy,
-    /// How the total force of a slave node is found after a major iteration. Default: stress.
-    pub residual: ResidualMethod,
-    /// What the minor iterations solve. Default: auto.
-    pub solver: Solver,
-    /// Whether the tangent knows that the contact geometry changes. Default: consistent.
-    pub geometry: Geometry,
-    /// How the sliding node's T_max enters the equations. Default: lagged.
-    pub t_max: BoundUpdate,
-    /// Over what the slip of Table 2's sliding row is counted. Default: increment.
-    pub slip: SlipCount,
-    /// What a fixed node holds on to. Default: anchored.
-    pub sticking: Sticking,
-    /// Where a node is held that touches within an increment. Default: auto.
-    pub touch: Touch,
-    /// What a tie in Table 2 does. Default: keep.
-    pub ties: Ties,
-    /// Most minor iterations in a major one. Default: 100.
-    pub minors: u32,
-    /// Most major iterations in an increment. Default: 60.
-    pub majors: u32,
-    /// What happens when `minors` are used up. Default: stop.
-    pub at_minor_limit: AtLimit,
-    /// What happens when the minor iterations cycle. Default: stop.
-    pub at_cycle: AtCycle,
-    /// What happens when `majors` are used up. Default: stop.
-    pub at_major_limit: AtLimit,
-    /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
-    pub tolerance: f64,
-    /// Memory that the scene may take, in GB. Default: what is free.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub memory: Option<f64>,
+documented! {
+    /// Choices of the method, and its limits.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct Settings {
+        /// How the next modes are chosen. Default: ladder.
+        pub strategy: Strategy,
+        /// How the total force of a slave node is found after a major iteration. Default: stress.
+        pub residual: ResidualMethod,
+        /// What the minor iterations solve. Default: auto.
+        pub solver: Solver,
+        /// Whether the tangent knows that the contact geometry changes. Default: consistent.
+        pub geometry: Geometry,
+        /// How the sliding node's T_max enters the equations. Default: lagged.
+        pub t_max: BoundUpdate,
+        /// Over what the slip of Table 2's sliding row is counted. Default: increment.
+        pub slip: SlipCount,
+        /// What a fixed node holds on to. Default: anchored.
+        pub sticking: Sticking,
+        /// Where a node is held that touches within an increment. Default: auto.
+        pub touch: Touch,
+        /// What a tie in Table 2 does. Default: keep.
+        pub ties: Ties,
+        /// Most minor iterations in a major one. Default: 100.
+        pub minors: u32,
+        /// Most major iterations in an increment. Default: 60.
+        pub majors: u32,
+        /// What happens when `minors` are used up. Default: stop.
+        pub at_minor_limit: AtLimit,
+        /// What happens when the minor iterations cycle. Default: stop.
+        pub at_cycle: AtCycle,
+        /// What happens when `majors` are used up. Default: stop.
+        pub at_major_limit: AtLimit,
+        /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
+        pub tolerance: f64,
+        /// Memory that the scene may take, in GB. Default: what is free.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub memory: Option<f64>,
+    }
 }
 
 impl Default for Settings {
@@ -64,31 +67,33 @@ impl Default for Settings {
     }
 }
 
-/// How the modes of the next minor iteration are chosen, as README's list of strategies says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Strategy {
-    /// Table 2 first; where it cycles or cannot go on, what gets out at the least cost: `sliding`, `sliding_least`, `lemke`,
-    /// `census`, with T_max in the matrix. Where none finds a consistent state, the increment is halved, down to
-    /// `history.least`, and grows again afterwards.
-    #[default]
-    Ladder,
-    /// Table 2 as printed.
-    Table2,
-    /// Table 2, but a rough node that touches enters sliding, against its travel.
-    Sliding,
-    /// Table 2, one change at a time: of all nodes that would change, only the first does.
-    Least,
-    /// `sliding`, one change at a time.
-    SlidingLeast,
-    /// `sliding`, all changes at once; one at a time while their number does not fall.
-    Block,
-    /// Semismooth Newton on the projections of the forces; T_max stands in the matrix.
-    Newton,
-    /// Lemke's pivoting on the linear complementarity problem of Coulomb's law in the plane.
-    Lemke,
-    /// All assumptions of what the nodes do, tried; for few nodes.
-    Census,
+documented! {
+    /// How the modes of the next minor iteration are chosen, as README's list of strategies says.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Strategy {
+        /// Table 2 first; where it cycles or cannot go on, what gets out at the least cost: `sliding`, `sliding_least`, `lemke`,
+        /// `census`, with T_max in the matrix. Where none finds a consistent state, the increment is halved, down to
+        /// `history.least`, and grows again afterwards.
+        #[default]
+        Ladder,
+        /// Table 2 as printed.
+        Table2,
+        /// Table 2, but a rough node that touches enters sliding, against its travel.
+        Sliding,
+        /// Table 2, one change at a time: of all nodes that would change, only the first does.
+        Least,
+        /// `sliding`, one change at a time.
+        SlidingLeast,
+        /// `sliding`, all changes at once; one at a time while their number does not fall.
+        Block,
+        /// Semismooth Newton on the projections of the forces; T_max stands in the matrix.
+        Newton,
+        /// Lemke's pivoting on the linear complementarity problem of Coulomb's law in the plane.
+        Lemke,
+        /// All assumptions of what the nodes do, tried; for few nodes.
+        Census,
+    }
 }
 
 impl Strategy {
@@ -131,120 +136,140 @@ impl Strategy {
     }
 }
 
-/// Where a node is held that touches within an increment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Touch {
-    /// `ratio` where a body is a mesh; `start` where all are given by numbers, as interface problems are posed.
-    #[default]
-    Auto,
-    /// Where its straight way meets the surface (ρ, eqn 14), as in the paper.
-    Ratio,
-    /// At the foot of where it was when the major iteration started: one step of Coulomb's law.
-    Start,
+documented! {
+    /// Where a node is held that touches within an increment.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Touch {
+        /// `ratio` where a body is a mesh; `start` where all are given by numbers, as interface problems are posed.
+        #[default]
+        Auto,
+        /// Where its straight way meets the surface (ρ, eqn 14), as in the paper.
+        Ratio,
+        /// At the foot of where it was when the major iteration started: one step of Coulomb's law.
+        Start,
+    }
 }
 
-/// The paper's two residual methods ("Formulation of the residual force vector").
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ResidualMethod {
-    /// Method 1: interaction forces at the slave nodes are accumulated over the major iterations.
-    Accumulate,
-    /// Method 2: the interaction force at a slave node is the nodal force of the current stresses less the load.
-    #[default]
-    Stress,
+documented! {
+    /// The paper's two residual methods ("Formulation of the residual force vector").
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum ResidualMethod {
+        /// Method 1: interaction forces at the slave nodes are accumulated over the major iterations.
+        Accumulate,
+        /// Method 2: the interaction force at a slave node is the nodal force of the current stresses less the load.
+        #[default]
+        Stress,
+    }
 }
 
-/// What the minor iterations solve; all give the same to round-off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Solver {
-    /// Condensed where the bodies have many times more unknowns than the interface and their displacements there are few
-    /// enough for it to be cheaper, else augmented; the other one where only that fits the memory.
-    #[default]
-    Auto,
-    /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
-    Augmented,
-    /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
-    /// costs a dense solve of the size of the interface.
-    Condensed,
+documented! {
+    /// What the minor iterations solve; all give the same to round-off.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Solver {
+        /// Condensed where the bodies have many times more unknowns than the interface and their displacements there are few
+        /// enough for it to be cheaper, else augmented; the other one where only that fits the memory.
+        #[default]
+        Auto,
+        /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
+        Augmented,
+        /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
+        /// costs a dense solve of the size of the interface.
+        Condensed,
+    }
 }
 
-/// Whether the change of normal, projection and gap stands in the tangent of a major iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Geometry {
-    /// It does: major iterations converge quadratically at the end.
-    #[default]
-    Consistent,
-    /// It does not, as in the paper: they converge linearly where nodes slide.
-    Frozen,
+documented! {
+    /// Whether the change of normal, projection and gap stands in the tangent of a major iteration.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Geometry {
+        /// It does: major iterations converge quadratically at the end.
+        #[default]
+        Consistent,
+        /// It does not, as in the paper: they converge linearly where nodes slide.
+        Frozen,
+    }
 }
 
-/// How T_max enters the equations of a sliding node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum BoundUpdate {
-    /// From the previous minor iteration, as in the paper.
-    #[default]
-    Lagged,
-    /// tan φ ΔF_n stands in the matrix (unsymmetric); no lag.
-    Consistent,
+documented! {
+    /// How T_max enters the equations of a sliding node.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum BoundUpdate {
+        /// From the previous minor iteration, as in the paper.
+        #[default]
+        Lagged,
+        /// tan φ ΔF_n stands in the matrix (unsymmetric); no lag.
+        Consistent,
+    }
 }
 
-/// Over what the slip of a sliding node is counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SlipCount {
-    /// Since the last converged increment, or since touch.
-    #[default]
-    Increment,
-    /// Over the present major iteration only: the literal reading of Table 2.
-    Major,
+documented! {
+    /// Over what the slip of a sliding node is counted.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum SlipCount {
+        /// Since the last converged increment, or since touch.
+        #[default]
+        Increment,
+        /// Over the present major iteration only: the literal reading of Table 2.
+        Major,
+    }
 }
 
-/// What a fixed node holds on to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Sticking {
-    /// To the point of the surface where it stuck, which it remembers: what it has gone from there, it takes back.
-    #[default]
-    Anchored,
-    /// To nothing, as in the paper: no tangential motion in a major iteration, but that the slip counted is taken back.
-    Increments,
+documented! {
+    /// What a fixed node holds on to.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Sticking {
+        /// To the point of the surface where it stuck, which it remembers: what it has gone from there, it takes back.
+        #[default]
+        Anchored,
+        /// To nothing, as in the paper: no tangential motion in a major iteration, but that the slip counted is taken back.
+        Increments,
+    }
 }
 
-/// What a tie in Table 2 does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Ties {
-    /// A tie, within the tolerance, keeps the mode that the node has.
-    #[default]
-    Keep,
-    /// The inequalities as printed, without a tolerance: F_n <= 0 opens.
-    Printed,
+documented! {
+    /// What a tie in Table 2 does.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Ties {
+        /// A tie, within the tolerance, keeps the mode that the node has.
+        #[default]
+        Keep,
+        /// The inequalities as printed, without a tolerance: F_n <= 0 opens.
+        Printed,
+    }
 }
 
-/// What happens when a limit of iterations is reached.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AtLimit {
-    /// The increment fails.
-    #[default]
-    Stop,
-    /// Go on with what there is, as the paper's studies do; the increment is marked.
-    Accept,
+documented! {
+    /// What happens when a limit of iterations is reached.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum AtLimit {
+        /// The increment fails.
+        #[default]
+        Stop,
+        /// Go on with what there is, as the paper's studies do; the increment is marked.
+        Accept,
+    }
 }
 
-/// What happens when the minor iterations return to where they had been.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AtCycle {
-    /// The increment fails.
-    #[default]
-    Stop,
-    /// Aim the present major iteration at half the load that is left of the increment, and at half of that again,
-    /// until its minor iterations settle; the next major iteration aims at the whole again. For cycles that the
-    /// error of the linearisation makes, as where a force goes to zero. Fails where no part can be taken.
-    Damp,
+documented! {
+    /// What happens when the minor iterations return to where they had been.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum AtCycle {
+        /// The increment fails.
+        #[default]
+        Stop,
+        /// Aim the present major iteration at half the load that is left of the increment, and at half of that again,
+        /// until its minor iterations settle; the next major iteration aims at the whole again. For cycles that the
+        /// error of the linearisation makes, as where a force goes to zero. Fails where no part can be taken.
+        Damp,
+    }
 }

@@ -1,0 +1,75 @@
+//! Types whose doc comments the program can show: a comment is written once, for rustdoc and for the manual.
+
+/// What the source says of a type and of its parts (fields or variants, in the order of the source).
+#[derive(Debug, Clone, Copy)]
+pub struct Docs {
+    /// Name of the type.
+    pub name: &'static str,
+    /// Its doc comment.
+    pub lines: Lines,
+    /// Name and doc comment of each part.
+    pub parts: &'static [(&'static str, Lines)],
+}
+
+/// The attributes of an item: a line of its doc comment each, `None` for any other attribute.
+pub type Lines = &'static [Option<&'static str>];
+
+/// A doc comment as one text: lines are joined, empty lines part paragraphs.
+pub fn text(lines: Lines) -> String {
+    let mut text = String::new();
+    for line in lines.iter().flatten().map(|line| line.trim()) {
+        let gap = match (text.is_empty() || text.ends_with('\n'), line.is_empty()) {
+            (_, true) => "\n\n",
+            (true, false) => "",
+            (false, false) => " ",
+        };
+        text += gap;
+        text += line;
+    }
+    text.trim().to_owned()
+}
+
+/// The text of an attribute that is a line of a doc comment.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! doc_line {
+    (doc = $text:expr) => {
+        Some($text)
+    };
+    ($($other:tt)*) => {
+        None
+    };
+}
+
+/// Defines a struct of plain fields, or an enum of plain words, and gives it `DOCS`.
+macro_rules! documented {
+    ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
+        $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty),* $(,)?
+    }) => {
+        $(#[$($meta)*])*
+        $vis struct $name {
+            $($(#[$($part_meta)*])* $part_vis $part: $type),*
+        }
+        $crate::model::documented::documented!(@docs $name [$([$($meta)*])*] $($part [$([$($part_meta)*])*])*);
+    };
+    ($(#[$($meta:tt)*])* $vis:vis enum $name:ident {
+        $($(#[$($part_meta:tt)*])* $part:ident),* $(,)?
+    }) => {
+        $(#[$($meta)*])*
+        $vis enum $name {
+            $($(#[$($part_meta)*])* $part),*
+        }
+        $crate::model::documented::documented!(@docs $name [$([$($meta)*])*] $($part [$([$($part_meta)*])*])*);
+    };
+    (@docs $name:ident [$([$($meta:tt)*])*] $($part:ident [$([$($part_meta:tt)*])*])*) => {
+        impl $name {
+            /// What the source says of it and of its parts.
+            pub const DOCS: $crate::model::documented::Docs = $crate::model::documented::Docs {
+                name: stringify!($name),
+                lines: &[$($crate::doc_line!($($meta)*)),*],
+                parts: &[$((stringify!($part), &[$($crate::doc_line!($($part_meta)*)),*])),*],
+            };
+        }
+    };
+}
+pub(crate) use documented;

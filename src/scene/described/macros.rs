@@ -1,0 +1,192 @@
+//! [`described!`]: a type of the scene file, its walk and its part of the reference, from one definition.
+
+/// Whether an attribute says that a field, or every field, may be left out.
+macro_rules! has_default {
+    (serde($($inside:tt)*)) => { $crate::scene::described::has_default!(@in $($inside)*) };
+    (@in default $($rest:tt)*) => { true };
+    (@in $other:tt $($rest:tt)*) => { $crate::scene::described::has_default!(@in $($rest)*) };
+    (@in) => { false };
+    ($($other:tt)*) => { false };
+}
+
+/// Visits a field, as its mark asks.
+macro_rules! walk_field {
+    ($field:ident, $place:ident, $visit:ident) => {
+        $crate::scene::described::Described::walk($field, &$place.field(stringify!($field)), $visit)
+    };
+    ($field:ident, $place:ident, $visit:ident, given) => {
+        if let Some(given) = $field {
+            $crate::scene::described::Described::walk(
+                given,
+                &$place.field(stringify!($field)),
+                $visit,
+            )
+        }
+    };
+    ($field:ident, $place:ident, $visit:ident, name) => {
+        let _ = $field;
+    };
+    ($field:ident, $place:ident, $visit:ident, skip) => {
+        let _ = $field;
+    };
+}
+
+/// The field's text, where its mark says that it is the name.
+macro_rules! name_field {
+    ($field:ident, name) => {
+        Some($field.as_str())
+    };
+    ($field:ident $(, $other:ident)?) => {{
+        let _ = $field;
+        None
+    }};
+}
+
+macro_rules! described {
+    ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
+        $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
+    }) => {
+        $(#[$($meta)*])*
+        $vis struct $name {
+            $($(#[$($part_meta)*])* $part_vis $part: $type),*
+        }
+
+        #[allow(non_snake_case)]
+        impl $crate::scene::described::Described for $name {
+            fn walk(
+                &mut self,
+                place: &$crate::scene::described::Place,
+                visit: &mut $crate::scene::described::Visit<'_>,
+            ) {
+                let $name { $($part),* } = self;
+                $($crate::scene::described::walk_field!($part, place, visit $(, $mark)?);)*
+            }
+            fn called(&self) -> Option<&str> {
+                let $name { $($part),* } = self;
+                [$($crate::scene::described::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
+            }
+            fn kind() -> String {
+                $crate::scene::described::link(stringify!($name))
+            }
+            fn blank() -> String {
+                let every = false $(|| $crate::scene::described::has_default!($($meta)*))*;
+                $crate::scene::described::blank_form("", &[$((
+                    stringify!($part),
+                    every $(|| $crate::scene::described::has_default!($($part_meta)*))*,
+                    <$type as $crate::scene::described::Described>::blank(),
+                )),*])
+            }
+            fn shown(&self) -> String {
+                $crate::scene::described::OWN_DEFAULTS.to_owned()
+            }
+            fn types(into: &mut Vec<$crate::scene::described::Type>) -> Result<(), String> {
+                if $crate::scene::described::known(into, stringify!($name)) {
+                    return Ok(());
+                }
+                let every = false $(|| $crate::scene::described::has_default!($($meta)*))*;
+                let $name { $($part),* } = &$crate::scene::described::read_blank(&Self::blank())?;
+                into.push($crate::scene::described::Type {
+                    name: stringify!($name),
+                    docs: $crate::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
+                    forms: vec![$crate::scene::described::Form {
+                        name: None,
+                        docs: String::new(),
+                        fields: vec![$($crate::scene::described::Field::of(
+                            stringify!($part),
+                            &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                            $part,
+                            every $(|| $crate::scene::described::has_default!($($part_meta)*))*,
+                        )),*],
+                    }],
+                });
+                $(<$type as $crate::scene::described::Described>::types(into)?;)*
+                Ok(())
+            }
+        }
+    };
+    ($(#[$($meta:tt)*])* $vis:vis enum $name:ident {
+        $($(#[$($form_meta:tt)*])* $form:ident {
+            $($(#[$($part_meta:tt)*])* $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
+        }),* $(,)?
+    }) => {
+        $(#[$($meta)*])*
+        $vis enum $name {
+            $($(#[$($form_meta)*])* $form {
+                $($(#[$($part_meta)*])* $part: $type),*
+            }),*
+        }
+
+        #[allow(non_snake_case)]
+        impl $crate::scene::described::Described for $name {
+            fn walk(
+                &mut self,
+                place: &$crate::scene::described::Place,
+                visit: &mut $crate::scene::described::Visit<'_>,
+            ) {
+                match self {
+                    $($name::$form { $($part),* } => {
+                        $($crate::scene::described::walk_field!($part, place, visit $(, $mark)?);)*
+                    })*
+                }
+            }
+            fn called(&self) -> Option<&str> {
+                match self {
+                    $($name::$form { $($part),* } => {
+                        [$($crate::scene::described::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
+                    })*
+                }
+            }
+            fn kind() -> String {
+                $crate::scene::described::link(stringify!($name))
+            }
+            fn blank() -> String {
+                let all = [$($crate::scene::described::blank_form(stringify!($form), &[$((
+                    stringify!($part),
+                    false $(|| $crate::scene::described::has_default!($($part_meta)*))*,
+                    <$type as $crate::scene::described::Described>::blank(),
+                )),*])),*];
+                all[0].clone()
+            }
+            fn shown(&self) -> String {
+                $crate::scene::described::OWN_DEFAULTS.to_owned()
+            }
+            fn types(into: &mut Vec<$crate::scene::described::Type>) -> Result<(), String> {
+                if $crate::scene::described::known(into, stringify!($name)) {
+                    return Ok(());
+                }
+                let mut forms = Vec::new();
+                $(
+                    let blank = $crate::scene::described::blank_form(stringify!($form), &[$((
+                        stringify!($part),
+                        false $(|| $crate::scene::described::has_default!($($part_meta)*))*,
+                        <$type as $crate::scene::described::Described>::blank(),
+                    )),*]);
+                    let $name::$form { $($part),* } = &$crate::scene::described::read_blank(&blank)? else {
+                        return Err(format!("{blank}: read as another form"));
+                    };
+                    forms.push($crate::scene::described::Form {
+                        name: Some(stringify!($form)),
+                        docs: $crate::model::documented::text(
+                            &[$(stickslip_core::doc_line!($($form_meta)*)),*],
+                        ),
+                        fields: vec![$($crate::scene::described::Field::of(
+                            stringify!($part),
+                            &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                            $part,
+                            false $(|| $crate::scene::described::has_default!($($part_meta)*))*,
+                        )),*],
+                    });
+                )*
+                into.push($crate::scene::described::Type {
+                    name: stringify!($name),
+                    docs: $crate::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
+                    forms,
+                });
+                $($(<$type as $crate::scene::described::Described>::types(into)?;)*)*
+                Ok(())
+            }
+        }
+    };
+}
+
+pub(crate) use {described, has_default, name_field, walk_field};

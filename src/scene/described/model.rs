@@ -1,0 +1,131 @@
+//! What the scene file shares with the solver: types that are defined with
+//! [`documented!`](crate::model::documented) and listed here.
+
+use super::reference::{
+    Field, Form, OWN_DEFAULTS, Type, known, lines_of, link, of_words, read_blank, types_of,
+};
+use super::words::{of_word, word, words};
+use super::{Choice, Described, Place, Scalar, Visit, one_of};
+use crate::model::documented::text;
+use crate::model::{
+    AtCycle, AtLimit, Axis, BoundUpdate, Component, Friction, Geometry, InitialState, Jumps, Law,
+    Mode, Plane, ResidualMethod, Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch,
+    Update,
+};
+
+macro_rules! fields {
+    ($name:ident { $($part:ident),* $(,)? }) => {
+        impl Described for $name {
+            fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+                let $name { $($part),* } = self;
+                $($part.walk(&place.field(stringify!($part)), visit);)*
+            }
+            fn kind() -> String {
+                link($name::DOCS.name)
+            }
+            fn blank() -> String {
+                "()".to_owned()
+            }
+            fn shown(&self) -> String {
+                OWN_DEFAULTS.to_owned()
+            }
+            fn types(into: &mut Vec<Type>) -> Result<(), String> {
+                if known(into, $name::DOCS.name) {
+                    return Ok(());
+                }
+                let $name { $($part),* } = &read_blank(&Self::blank())?;
+                let fields = vec![$(Field::of(stringify!($part), lines_of(&$name::DOCS, stringify!($part)), $part, true)),*];
+                let form = Form { name: None, docs: String::new(), fields };
+                into.push(Type { name: $name::DOCS.name, docs: text($name::DOCS.lines), forms: vec![form] });
+                $(types_of($part, into)?;)*
+                Ok(())
+            }
+        }
+    };
+}
+
+macro_rules! words {
+    ($($type:ident),* $(,)?) => {
+        $(
+            impl Choice for $type {
+                fn names(&self) -> &'static [&'static str] {
+                    words::<$type>()
+                }
+                fn name(&self) -> &'static str {
+                    word(self)
+                }
+                fn choose(&mut self, name: &str) -> bool {
+                    of_word(name).map(|value| *self = value).is_some()
+                }
+            }
+
+            impl Described for $type {
+                fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+                    visit(place, Scalar::Choice(self));
+                }
+                fn kind() -> String {
+                    one_of(words::<$type>())
+                }
+                fn blank() -> String {
+                    words::<$type>().first().copied().unwrap_or_default().to_owned()
+                }
+                fn shown(&self) -> String {
+                    word(self).to_owned()
+                }
+                fn types(into: &mut Vec<Type>) -> Result<(), String> {
+                    if !known(into, $type::DOCS.name) {
+                        into.push(of_words(&$type::DOCS, words::<$type>()));
+                    }
+                    Ok(())
+                }
+            }
+        )*
+    };
+}
+
+fields!(Friction { angle, cohesion });
+fields!(InitialState {
+    f_n,
+    f_t,
+    t_max,
+    slip,
+    ratio
+});
+fields!(Settings {
+    strategy,
+    residual,
+    solver,
+    geometry,
+    t_max,
+    slip,
+    sticking,
+    touch,
+    ties,
+    minors,
+    majors,
+    at_minor_limit,
+    at_cycle,
+    at_major_limit,
+    tolerance,
+    memory,
+});
+words!(
+    AtCycle,
+    AtLimit,
+    Axis,
+    Component,
+    BoundUpdate,
+    Geometry,
+    Jumps,
+    Law,
+    Mode,
+    Plane,
+    ResidualMethod,
+    SlipCount,
+    Solver,
+    Sticking,
+    Strategy,
+    Ties,
+    Touch,
+    Update,
+);
