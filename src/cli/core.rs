@@ -88,7 +88,7 @@ fn text(scene: &Scene) -> Result<String, String> {
     }
     let (at, load) = (stepper.event().position, stepper.state().target);
     let problem = stepper
-        .frozen()
+        .interface_problem()
         .and_then(|problem| cycling(problem, &cycle))
         .ok_or("the bodies cannot be condensed to the interface there, so there is no small problem to write")?;
     let core = core(&problem).ok_or(

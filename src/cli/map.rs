@@ -7,7 +7,7 @@ use super::{Error, Exit, SetArgs, say, tell};
 use crate::debug::files;
 use crate::model::{BoundUpdate, Strategy};
 use crate::scene::builtin;
-use crate::strategy::limit;
+use crate::strategy::method;
 use crate::study::map::{self, Cell, Map};
 use crate::study::plan::product;
 use crate::study::random::{self, NODES, Population};
@@ -312,7 +312,8 @@ fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
 
 /// Whether T_max may lag or stand in the matrix: other strategies need it there, or choose.
 fn lags(strategy: Strategy) -> bool {
-    strategy != Strategy::Ladder && limit(strategy, BoundUpdate::Lagged) == BoundUpdate::Lagged
+    strategy != Strategy::Ladder
+        && method(strategy).bound(BoundUpdate::Lagged) == BoundUpdate::Lagged
 }
 
 fn tell_survey(survey: &Survey) {

@@ -8,11 +8,11 @@ use crate::debug::files::Output;
 use crate::debug::report;
 use crate::debug::smaller::smaller;
 use crate::debug::snapshot::Snapshot;
+use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::step::event::{Event, Failure, Outcome};
-use crate::step::minor_history::Cycle;
 use crate::step::stepper::Stepper;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -325,7 +325,7 @@ impl<'a> Run<'a> {
 
     /// Tells why the minor iterations cycle, and what gets out; returns whether nothing can.
     fn diagnose(&mut self, cycle: &Cycle) -> bool {
-        let Some(problem) = self.stepper.frozen() else {
+        let Some(problem) = self.stepper.interface_problem() else {
             return false;
         };
         let Some(problem) = diagnosis::cycling(problem, cycle) else {

@@ -4,10 +4,10 @@ use crate::debug::compare::{self, Sameness};
 use crate::debug::report;
 use crate::debug::strip::{Kind, Strip};
 use crate::debug::tree::Tree;
+use crate::interface::minor_history::Cycle;
 use crate::model::Model;
 use crate::step::event::{Failure, Outcome, Position};
 use crate::step::intervene::Intervention;
-use crate::step::minor_history::Cycle;
 
 /// What a stretch of the history cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -4,10 +4,11 @@
 //! brings ([`InterfaceProblem::reduced`]) and running Table 2 over what is left.
 
 use crate::contact::state::ContactState;
+use crate::interface::minor_history::Cycle;
+use crate::interface::minor_history::MinorHistory;
 use crate::interface::problem::{InterfaceProblem, Trials};
 use crate::model::Mode;
-use crate::step::minor_history::Cycle;
-use crate::step::minor_history::MinorHistory;
+use crate::strategy::method;
 
 /// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
 const EXHAUSTIVE: usize = 10;
@@ -39,7 +40,10 @@ impl Core {
         if let Some(mut trials) = Trials::new(&self.problem) {
             for _ in 0..ROUNDS {
                 for _ in 0..self.cycle.period {
-                    if trials.minor(&mut nodes).is_some() {
+                    if trials
+                        .minor(&mut nodes, method(self.problem.settings.strategy))
+                        .is_some()
+                    {
                         around.push(nodes.clone());
                     }
                 }
@@ -128,7 +132,7 @@ pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
     let mut trail = MinorHistory::default();
     for minor in 1..=problem.settings.minors {
         trail.push(&nodes);
-        let (_, settled) = trials.minor(&mut nodes)?;
+        let (_, settled) = trials.minor(&mut nodes, method(problem.settings.strategy))?;
         if settled {
             return None;
         }

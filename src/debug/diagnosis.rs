@@ -8,10 +8,11 @@ use crate::debug::core::{Core, core, cycle};
 use crate::debug::influence::{Influence, influences};
 use crate::debug::report;
 use crate::interface::census::{Census, MOST, census};
+use crate::interface::minor_history::Cycle;
 use crate::interface::problem::{Assumed, Condition, InterfaceProblem, Trials};
 use crate::model::{BoundUpdate, SlipCount};
 use crate::model::{Mode, Model};
-use crate::step::minor_history::Cycle;
+use crate::strategy::method;
 
 /// Most nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size. Of a scene
 /// with more, those that take part in the cycle are looked at ([`cycling`]).
@@ -170,7 +171,7 @@ fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
     let mut states = vec![nodes.clone()];
     let mut all = Vec::new();
     for _ in 0..period {
-        let (records, _) = trials.minor(&mut nodes)?;
+        let (records, _) = trials.minor(&mut nodes, method(problem.settings.strategy))?;
         states.push(nodes.clone());
         all.push(records);
     }
@@ -316,7 +317,7 @@ fn runs(problem: &InterfaceProblem) -> bool {
         return false;
     };
     (0..problem.settings.minors)
-        .map_while(|_| trials.minor(&mut nodes))
+        .map_while(|_| trials.minor(&mut nodes, method(problem.settings.strategy)))
         .any(|(_, settled)| settled)
 }
 

@@ -16,6 +16,7 @@
 use crate::contact::record::{ContactRecord, Forced};
 use crate::debug::core::Core;
 use crate::debug::report;
+use crate::interface::minor_history::Cycle;
 use crate::interface::problem::{InterfaceProblem, ProblemNode, Trials};
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
@@ -25,8 +26,8 @@ use crate::scene::condensed::{Contact, Matrix, Problem, at_once};
 use crate::scene::{Scene, limits};
 use crate::step::event::Outcome;
 use crate::step::event::{Failure, Position};
-use crate::step::minor_history::Cycle;
 use crate::step::stepper::Stepper;
+use crate::strategy::method;
 use std::sync::Arc;
 
 /// From this size on of the inverse (relative to the springs) that makes one of the two matrices, too many digits are
@@ -120,10 +121,7 @@ pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Resul
 
 /// The nodes of a problem that a file can have: those over a surface, and with something that moves.
 pub fn writable(problem: &InterfaceProblem) -> Vec<usize> {
-    let can = |place: &usize| {
-        let site = &problem.nodes[*place].site;
-        site.gap.is_finite() && site.moves != [false; 2]
-    };
+    let can = |place: &usize| problem.nodes[*place].moves() != [false; 2];
     (0..problem.nodes.len()).filter(can).collect()
 }
 
@@ -172,7 +170,7 @@ fn text(
     let carried: Vec<&str> = problem
         .nodes
         .iter()
-        .filter(|node| node.site.moves != [true; 2])
+        .filter(|node| node.moves() != [true; 2])
         .map(|node| report::slave(model, node.slave))
         .collect();
     if !carried.is_empty() {
@@ -248,7 +246,7 @@ fn text(
 /// A contact as it stands.
 fn contact(problem: &InterfaceProblem, place: usize, id: &str, load: [f64; 2]) -> Contact {
     let ProblemNode {
-        site,
+        kinematics,
         friction,
         state,
         ..
@@ -262,7 +260,7 @@ fn contact(problem: &InterfaceProblem, place: usize, id: &str, load: [f64; 2]) -
     };
     Contact {
         id: id.to_owned(),
-        gap: site.gap,
+        gap: kinematics.map_or(f64::INFINITY, |k| k.gap),
         friction,
         load,
         start: state.mode,
@@ -457,7 +455,7 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, String> {
     let mut nodes = problem.states();
     let mut worst = 0.0_f64;
     for minor in 1..=COMPARED {
-        let wanted = trials.minor(&mut nodes);
+        let wanted = trials.minor(&mut nodes, method(problem.settings.strategy));
         let Some(event) = stepper.step() else {
             return Err(format!("it is done before minor iteration {minor}"));
         };

@@ -35,7 +35,12 @@ pub fn influences(
     trials.given(after)?;
     let mut found = vec![Vec::new(); targets.len()];
     for (from, node) in problem.nodes.iter().enumerate() {
-        let rows = minor::rows(&after[from], &node.site, &node.friction, &problem.settings);
+        let rows = minor::rows(
+            &after[from],
+            node.kinematics.as_ref(),
+            &node.friction,
+            &problem.settings,
+        );
         let none = Influence {
             from,
             ..Influence::default()

@@ -20,11 +20,11 @@ use crate::debug::remedies::{self, Trial};
 use crate::debug::report;
 use crate::debug::smaller::smaller;
 use crate::interface::census::{Census, MOST, census};
+use crate::interface::minor_history::Cycle;
 use crate::interface::problem::InterfaceProblem;
 use crate::model::{Mode, Model};
 use crate::step::event::{Failure, Outcome};
 use crate::step::intervene::{Intervention, Start};
-use crate::step::minor_history::Cycle;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::collections::HashMap;
@@ -385,7 +385,7 @@ fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
             }
         }
     }
-    let problem = stepper.frozen()?;
+    let problem = stepper.interface_problem()?;
     let after = problem.states();
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
     let of = |node: usize| problem.nodes[node].slave;
@@ -418,11 +418,11 @@ pub fn finding(stepper: &mut Stepper, state: &State) -> Finding {
         return nothing("The history is done; nothing is solved next from here.");
     }
     stepper.restore(state);
-    let Some(problem) = stepper.frozen() else {
+    let Some(problem) = stepper.interface_problem() else {
         return nothing(NOT_CONDENSED);
     };
     let round = match going_round(stepper, state, &problem) {
-        Err(why) => return nothing(&why),
+        Err(why) => return nothing(&why.to_string()),
         Ok(round) => round,
     };
     let model = stepper.model();
@@ -463,7 +463,7 @@ fn census_of(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> Finding 
         return nothing("The history is done; nothing is solved next from here.");
     }
     stepper.restore(state);
-    let Some(problem) = stepper.frozen() else {
+    let Some(problem) = stepper.interface_problem() else {
         return nothing(NOT_CONDENSED);
     };
     let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
@@ -481,7 +481,7 @@ fn census_of(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> Finding 
 /// What a census finds.
 fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Finding {
     let census = match census(studied) {
-        Err(why) => return nothing(&why),
+        Err(why) => return nothing(&why.to_string()),
         Ok(census) => census,
     };
     let name = |place: usize| report::slave(model, studied.nodes[place].slave);
@@ -524,7 +524,7 @@ fn going_round(
     let Some(cycle) = known else {
         return Ok(None);
     };
-    let problem = stepper.frozen().ok_or(NOT_CONDENSED)?;
+    let problem = stepper.interface_problem().ok_or(NOT_CONDENSED)?;
     match cycling(problem, &cycle) {
         Some(problem) => Ok(Some((problem, cycle))),
         None => Err(too_many(&cycle)),
@@ -548,7 +548,7 @@ fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), String> {
         return Err("the history is done; nothing is solved next from here".into());
     }
     stepper.restore(&ask.state);
-    let problem = stepper.frozen().ok_or(NOT_CONDENSED)?;
+    let problem = stepper.interface_problem().ok_or(NOT_CONDENSED)?;
     let text = match ask.what {
         Exported::Whole => export::whole(stepper.model(), &ask.origin, &problem)?,
         Exported::Core => {

@@ -10,6 +10,7 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::debug::looks;
 use crate::debug::report;
 use crate::debug::strip::Kind;
+use crate::interface::method::NotFound;
 use crate::linear::norms::Norms;
 use crate::model::Settings;
 use crate::model::{AtCycle, BoundUpdate, ResidualMethod, Sticking, Strategy};
@@ -17,7 +18,6 @@ use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::Intervention;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
-use crate::strategy::NotFound;
 use std::cmp::Ordering;
 use std::time::Instant;
 

@@ -3,14 +3,14 @@
 use crate::contact::table2::{Decision, Rule, Tested};
 use crate::debug::judged;
 use crate::interface::census;
+use crate::interface::method::NotFound;
+use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{Motion, RigidMotion, Singular};
 use crate::model::{Mode, Model};
 use crate::step::event::{Event, Failure, Outcome, Position};
 use crate::step::intervene::Intervention;
 use crate::step::major_history::{MajorCycle, Stop};
-use crate::step::minor_history::Cycle;
-use crate::strategy::NotFound;
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -188,7 +188,10 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "" => format!("{at}: modes settled, T_max still moves"),
             changes => format!("{at}: {changes}"),
         },
-        Outcome::Damped { cycle: c, aim } => format!(
+        Outcome::Damped {
+            cycle: c,
+            target: aim,
+        } => format!(
             "{at}: {}; damped: aims at load {aim} first",
             cycle(model, c)
         ),

@@ -689,7 +689,9 @@ impl Session {
         setting: Option<(&str, &str)>,
     ) -> Result<Reply, String> {
         let mut state = self.frame().state.clone();
-        state.intervene(self.model(), &intervention)?;
+        state
+            .intervene(self.model(), &intervention)
+            .map_err(|why| why.to_string())?;
         let mut told = report::intervention(self.model(), &intervention);
         let label = branches::label(self.model(), &intervention, setting);
         let before = self.strips()[self.cursor].kind;

@@ -44,7 +44,7 @@ pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<Smaller> {
         smallest = size / 2f64.powi(halvings);
         stepper.restore(state);
         stepper.intervene(&Intervention::Increment(smallest)).ok()?;
-        let problem = stepper.frozen()?;
+        let problem = stepper.interface_problem()?;
         let problem = problem.reduced(&undecided(&problem))?;
         if !census(&problem).ok()?.answers.is_empty() {
             return Some(Smaller::Found(smallest));

@@ -108,7 +108,7 @@ pub fn judge(
 /// Number of answers by census; 0 where the problem cannot be condensed.
 fn answers(scene: &Scene) -> usize {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
-    let frozen = stepper.frozen();
+    let frozen = stepper.interface_problem();
     let found = frozen.and_then(|frozen| census(&frozen).ok());
     found.map_or(0, |census| census.answers.len())
 }

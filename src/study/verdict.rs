@@ -1,8 +1,8 @@
 //! What a run is worth: the words that stability maps sort runs by.
 
 use super::result::Reason;
+use crate::interface::method::NotFound;
 use crate::step::event::Failure;
-use crate::strategy::NotFound;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

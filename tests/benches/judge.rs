@@ -55,7 +55,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
         let nothing = vec![0.0; forces.len()];
         let seen = Seen {
             surfaces: &model.surfaces,
-            slaves: &model.contacts,
+            contacts: &model.contacts,
             friction: &state.controls.friction,
             before: &before,
             now: &now,

@@ -9,11 +9,11 @@ use stickslip::debug::command::{Command, Exported, Unit};
 use stickslip::debug::core::{Core, core};
 use stickslip::debug::export::{self, Origin, compared};
 use stickslip::debug::session::Session;
+use stickslip::interface::minor_history::Cycle;
 use stickslip::interface::problem::{InterfaceProblem, Trials};
 use stickslip::model::Mode;
 use stickslip::scene::{Scene, builtin};
 use stickslip::step::event::{Failure, Outcome};
-use stickslip::step::minor_history::Cycle;
 use stickslip::step::stepper::Stepper;
 
 /// A run that ended in a cycle of minors: its stepper there, the cycle, and where.
@@ -41,7 +41,7 @@ fn stuck(scene: Scene) -> Option<Stuck> {
 
 impl Stuck {
     fn core(&mut self) -> (InterfaceProblem, Core, String) {
-        let problem = self.stepper.frozen().unwrap();
+        let problem = self.stepper.interface_problem().unwrap();
         let core = core(&problem).unwrap();
         let model = &self.scene.model;
         let text = export::core(model, &self.origin, &self.cycle, &core)
@@ -138,7 +138,12 @@ fn every_oscillator_has_a_core_whose_file_cycles_as_it_does() {
             let frozen = core.on_cycle();
             let (mut trials, mut nodes) = (Trials::new(&frozen).unwrap(), frozen.states());
             let mut minor = || {
-                let (records, _) = trials.minor(&mut nodes).unwrap();
+                let (records, _) = trials
+                    .minor(
+                        &mut nodes,
+                        stickslip::strategy::method(problem.settings.strategy),
+                    )
+                    .unwrap();
                 let one = |r: &stickslip::contact::record::ContactRecord| {
                     (r.decision.before, r.f_n, r.f_t)
                 };
@@ -183,7 +188,7 @@ fn whole_frozen_problems_step_alone_as_in_their_scenes() {
         let (mut seen, mut worst) = (0, 0.0_f64);
         for step in 0..60 {
             if step % 6 == 1 {
-                let problem = stepper.frozen().unwrap();
+                let problem = stepper.interface_problem().unwrap();
                 let origin = Origin::of(&scene, stepper.state().next, stepper.state().target);
                 let text = export::whole(&scene.model, &origin, &problem)
                     .unwrap_or_else(|why| panic!("{name}, step {step}: {why}"));
@@ -246,7 +251,7 @@ fn contacts(matrix: &str) -> Scene {
 
 fn exported(scene: &Scene) -> Result<String, String> {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
-    let problem = stepper.frozen().unwrap();
+    let problem = stepper.interface_problem().unwrap();
     let origin = Origin::of(scene, stepper.state().next, 1.0);
     export::whole(&scene.model, &origin, &problem)
 }

@@ -16,7 +16,7 @@ fn failed(name: &str) -> (Run, InterfaceProblem, Diagnosis) {
         "{name}: {:?}",
         run.failure
     );
-    let problem = run.stepper.frozen().unwrap();
+    let problem = run.stepper.interface_problem().unwrap();
     let diagnosis = Diagnosis::of(&problem).unwrap();
     (run, problem, diagnosis)
 }
@@ -104,7 +104,12 @@ fn influences_add_up_to_what_happened() {
         let mut trials = Trials::new(&problem).unwrap();
         for _ in 0..diagnosis.cycle.period {
             let mut next = states.last().unwrap().clone();
-            trials.minor(&mut next).unwrap();
+            trials
+                .minor(
+                    &mut next,
+                    stickslip::strategy::method(problem.settings.strategy),
+                )
+                .unwrap();
             states.push(next);
         }
         for pair in states.windows(2).take(diagnosis.cycle.period as usize - 1) {

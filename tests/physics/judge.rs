@@ -58,7 +58,7 @@ impl Stage {
         let (before, now) = (with(from), with(to));
         let seen = Seen {
             surfaces: &surfaces,
-            slaves: &slaves,
+            contacts: &slaves,
             friction: &[self.friction],
             before: &before,
             now: &now,

@@ -9,6 +9,7 @@ use stickslip::debug::command::Command;
 use stickslip::debug::diagnosis::{Cause, Diagnosis, cycling, words};
 use stickslip::debug::session::Session;
 use stickslip::interface::census::census;
+use stickslip::interface::minor_history::Cycle;
 use stickslip::interface::problem::{Answer, Assumed, InterfaceProblem, Trials};
 use stickslip::model::Mode;
 use stickslip::model::{Friction, InitialState, Settings, Strategy, Touch};
@@ -16,7 +17,6 @@ use stickslip::scene::Scene;
 use stickslip::scene::condensed::{Contact, Matrix, Problem};
 use stickslip::scene::spec::History;
 use stickslip::step::event::{Failure, Outcome};
-use stickslip::step::minor_history::Cycle;
 use stickslip::step::stepper::Stepper;
 
 /// Smooth contacts with u_n = M f_n, u_t = f_t, and these gaps; those of `touching` start in touch.
@@ -241,7 +241,7 @@ fn several_consistent_states_are_listed_with_how_they_differ() {
         panic!("{:?}", stuck.failure)
     };
     assert_eq!((cycle.period, cycle.members.len()), (2, 2));
-    let problem = stuck.stepper.frozen().unwrap();
+    let problem = stuck.stepper.interface_problem().unwrap();
     let diagnosis = Diagnosis::of(&problem).unwrap();
     // With the first one in touch, as it stays in the cycle, nothing is consistent.
     assert_eq!(diagnosis.cause, Cause::Several);
@@ -340,7 +340,9 @@ fn random(n: usize, random: &mut Random) -> InterfaceProblem {
         settings: by_table_2(),
     };
     let scene = Scene::from_spec("random", problem.spec()).unwrap();
-    Stepper::new(Arc::new(scene.model)).frozen().unwrap()
+    Stepper::new(Arc::new(scene.model))
+        .interface_problem()
+        .unwrap()
 }
 
 /// The consistent assumptions one by one, each solved by itself.
@@ -432,7 +434,7 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     };
     assert_eq!((cycle.period, cycle.members.len()), (5, 5));
     let begin = Instant::now();
-    let problem = cycling(stuck.stepper.frozen().unwrap(), cycle).unwrap();
+    let problem = cycling(stuck.stepper.interface_problem().unwrap(), cycle).unwrap();
     assert_eq!(problem.nodes.len(), 5);
     let diagnosis = Diagnosis::of(&problem).unwrap();
     println!("diagnosed in {:?}", begin.elapsed());

@@ -5,10 +5,10 @@
 
 use crate::common::{Run, force, go_on, run, scene};
 use std::sync::Arc;
+use stickslip::interface::minor_history::Cycle;
 use stickslip::linear::singular::Singular;
 use stickslip::model::Mode;
 use stickslip::step::event::{Failure, Outcome, Position};
-use stickslip::step::minor_history::Cycle;
 use stickslip::step::stepper::Stepper;
 
 /// Modes by letter: F free, S sliding, X fixed.

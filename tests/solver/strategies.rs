@@ -5,6 +5,7 @@ use crate::common::{run, scene};
 use std::sync::Arc;
 use stickslip::contact::table2::Rule;
 use stickslip::interface::census::{Census, census};
+use stickslip::interface::method::NotFound;
 use stickslip::interface::problem::Trials;
 use stickslip::linear::singular::Singular;
 use stickslip::model::{Friction, Mode, Model, Settings};
@@ -15,7 +16,6 @@ use stickslip::scene::spec::History;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::intervene::Intervention;
 use stickslip::step::stepper::Stepper;
-use stickslip::strategy::NotFound;
 
 /// Numbers from 0 to 1, the same every time (Knuth's MMIX generator).
 struct Numbers(u64);
@@ -98,7 +98,7 @@ fn model(problem: &Problem, strategy: &str) -> Arc<Model> {
 
 fn truth(problem: &Problem) -> Census {
     let mut stepper = Stepper::new(model(problem, "table2"));
-    census(&stepper.frozen().unwrap()).unwrap()
+    census(&stepper.interface_problem().unwrap()).unwrap()
 }
 
 /// Steps to the first accepted increment or the failure.
@@ -204,10 +204,15 @@ fn newtons_verdicts_on_the_frozen_problem_are_the_steppers_where_the_bodies_are_
     });
     let mut stepper = Stepper::new(Arc::new(blocks.model));
     for _ in 0..6 {
-        let problem = stepper.frozen().unwrap();
+        let problem = stepper.interface_problem().unwrap();
         assert!(problem.relation.stiffness.is_infinite());
         let mut trials = Trials::new(&problem).unwrap();
-        let (records, _) = trials.minor(&mut problem.states()).unwrap();
+        let (records, _) = trials
+            .minor(
+                &mut problem.states(),
+                stickslip::strategy::method(problem.settings.strategy),
+            )
+            .unwrap();
         let event = stepper.step().unwrap();
         for (own, other) in records.iter().zip(&event.nodes) {
             assert_eq!(own.decision.next, other.decision.next);

@@ -6,10 +6,10 @@ use crate::by_hand::{
 use ratatui::style::{Color, Modifier};
 use stickslip::contact::record::{ContactRecord, Forced};
 use stickslip::contact::table2::{Decision, Rule};
+use stickslip::interface::minor_history::Cycle;
 use stickslip::linear::norms::Norms;
 use stickslip::model::Mode;
 use stickslip::step::event::{Failure, Outcome};
-use stickslip::step::minor_history::Cycle;
 use stickslip::tui::app::App;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{View, draw};

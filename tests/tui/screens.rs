@@ -4,10 +4,10 @@
 
 use crate::by_hand::{app, event, frames, minor, model, press, records, render, view};
 use std::sync::Arc;
+use stickslip::interface::minor_history::Cycle;
 use stickslip::model::Mode;
 use stickslip::model::{Monitor, Watched};
 use stickslip::step::event::{Failure, Outcome};
-use stickslip::step::minor_history::Cycle;
 use stickslip::tui::app::{App, Effect, Offer};
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{draw, keys};

@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
     pub surfaces: &'a [Surface],
-    pub slaves: &'a [Contact],
+    pub contacts: &'a [Contact],
     /// Friction in force, by slave.
     pub friction: &'a [Friction],
     /// Positions of all nodes in the last accepted state.
@@ -325,11 +325,11 @@ impl Judge {
         let mut verdict = Verdict::new();
         contact.fill([0.0; 2]);
         let near = seen.scales.near();
-        if !self.last.is(seen.before, near, seen.slaves.len()) {
+        if !self.last.is(seen.before, near, seen.contacts.len()) {
             self.last.clear();
         }
         self.next.clear();
-        for slave in 0..seen.slaves.len() {
+        for slave in 0..seen.contacts.len() {
             self.node(seen, slave, contact, &mut verdict);
         }
         self.next.near = near;
@@ -354,7 +354,7 @@ impl Judge {
     }
 
     fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
-        let Contact { node, surfaces, .. } = &seen.slaves[slave];
+        let Contact { node, surfaces, .. } = &seen.contacts[slave];
         let (point, force) = (seen.now[*node], seen.forces[slave]);
         let Scales { length, forces, .. } = seen.scales;
         let near = seen.scales.near();
@@ -424,7 +424,7 @@ impl Judge {
 
     /// The sides on which a node stands: those of its feet, and where it stands on a border of elements, both.
     fn find_sides(&mut self, seen: &Seen, slave: usize, near: f64) {
-        let Contact { node, surfaces, .. } = &seen.slaves[slave];
+        let Contact { node, surfaces, .. } = &seen.contacts[slave];
         let (point, was) = (seen.now[*node], seen.before[*node]);
         // What was found of that state when it was judged itself holds still.
         match self.last.ends.is_empty() {
@@ -502,7 +502,7 @@ fn touching(
     let surface = &seen.surfaces[spot.surface];
     let way = |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave];
     let here = earlier.iter().find(|f| f.spot.surface == spot.surface);
-    let was = seen.before[seen.slaves[slave].node];
+    let was = seen.before[seen.contacts[slave].node];
     let past = match here {
         Some(foot) if is_past_end_at(foot, was, seen.surfaces, seen.before, near) => {
             Past::Elsewhere

@@ -35,16 +35,24 @@ pub struct Consistent {
     pub ties: Vec<String>,
 }
 
+/// More nodes than a census can be held over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "a census is held over at most {MOST} nodes, and these are {nodes}; find the core of the cycle first"
+)]
+pub struct TooMany {
+    /// How many there are.
+    pub nodes: usize,
+}
+
 /// Tries every assumption of a problem of at most [`MOST`] nodes.
 ///
 /// # Errors
-/// A message where it has more.
-pub fn census(problem: &InterfaceProblem) -> Result<Census, String> {
+/// [`TooMany`] where it has more.
+pub fn census(problem: &InterfaceProblem) -> Result<Census, TooMany> {
     let count = problem.nodes.len();
     if count > MOST {
-        return Err(format!(
-            "a census is held over at most {MOST} nodes, and these are {count}; find the core of the cycle first"
-        ));
+        return Err(TooMany { nodes: count });
     }
     let mut walk = Walk::new(problem);
     walk.down(0);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A slave node's surroundings, frozen during a major iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NodeKinematics {
-    /// Gap; infinite past the ends of all surfaces.
+    /// Gap (length); negative: penetration.
     pub gap: f64,
     /// Outward normal at S*.
     pub normal: [f64; 2],

@@ -104,9 +104,7 @@ impl Lemke {
             .nodes
             .iter()
             .map(|node| {
-                let rough = node.site.gap.is_finite()
-                    && node.site.moves == [true; 2]
-                    && !node.friction.is_smooth();
+                let rough = node.moves() == [true; 2] && !node.friction.is_smooth();
                 rough.then(|| (node.friction.coefficient(), node.friction.cohesion))
             })
             .collect();
@@ -148,9 +146,8 @@ impl Lemke {
             let (n, t) = (2 * place, 2 * place + 1);
             of_force(n, node.state.f_n, &mut rhs);
             of_force(t, node.state.f_t, &mut rhs);
-            let touches = node.site.gap.is_finite() && node.site.moves[0];
-            if touches {
-                of_motion(n, -(node.site.gap - node.prescribed[0]), &mut rhs);
+            if let Some(over) = node.kinematics.filter(|k| k.moves[0]) {
+                of_motion(n, -(over.gap - node.prescribed[0]), &mut rhs);
                 lemke.add(place, Kind::Force, |column| of_force(n, force, column));
                 lemke.add(place, Kind::Gap, |column| of_motion(n, -length, column));
             } else {

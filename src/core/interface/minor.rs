@@ -6,17 +6,18 @@
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, Known, Limit, direction, equations, gone, t_max};
-use crate::contact::table2::{Entry, Numbers, Rule, Ties, decide};
+use crate::contact::table2::{Entry, Numbers, Rule, Ties};
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::model::{BoundUpdate, SlipCount, Strategy, Touch};
-use crate::model::{Friction, Mode, Settings};
-use crate::strategy;
+use crate::interface::method::{self, Method};
+use crate::model::{BoundUpdate, Friction, Mode, Settings, SlipCount, Touch};
 
 /// What the modes are checked by.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct Check {
-    /// Those in force: the strategy is never the ladder itself ([`crate::step::state::State::settings`]).
+    /// Those in force: the strategy is never the ladder itself ([`crate::strategy::in_force`]).
     pub settings: Settings,
+    /// What that strategy does.
+    pub method: &'static dyn Method,
     pub ties: Ties,
     /// Stiffness of the springs that compare lengths with forces.
     pub stiffness: f64,
@@ -25,7 +26,7 @@ pub struct Check {
 /// Table 1's rows of a node; a row in which nothing can move is given to the support ([`carried`]).
 pub fn rows(
     node: &ContactState,
-    site: &NodeKinematics,
+    kinematics: Option<&NodeKinematics>,
     friction: &Friction,
     settings: &Settings,
 ) -> [Equation; 2] {
@@ -38,14 +39,14 @@ pub fn rows(
         },
     };
     let known = Known {
-        gap: if site.gap.is_finite() { site.gap } else { 0.0 },
+        gap: kinematics.map_or(0.0, |k| k.gap),
         ratio: node.ratio,
         slip: node.slipped(settings),
         f_n: node.f_n,
         f_t: node.f_t,
         limit,
     };
-    supported(node.mode, &known, site.moves)
+    supported(node.mode, &known, moves(kinematics))
 }
 
 /// Table 1's equations, those in which nothing can move given to the support.
@@ -61,6 +62,11 @@ pub(super) fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equatio
     [normal, tangential]
 }
 
+/// Whether any unknown takes part in the normal and in the tangential motion; in neither where there is no surface.
+pub(super) fn moves(kinematics: Option<&NodeKinematics>) -> [bool; 2] {
+    kinematics.map_or([false; 2], |k| k.moves)
+}
+
 /// Which force components a mode asks the node to hold a motion with that no unknown takes part in (normal, tangential):
 /// they are left to the support.
 pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
@@ -72,16 +78,16 @@ pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
 
 /// Checks a node's mode and leaves that of the next minor iteration in it; returns the record and whether mode and
 /// T_max have settled.
-pub fn judge(
+pub fn check(
     node: &mut ContactState,
-    site: &NodeKinematics,
+    kinematics: Option<&NodeKinematics>,
     given: NodeIncrement,
     friction: &Friction,
     check: &Check,
 ) -> (ContactRecord, bool) {
     let before = *node;
     let ties = &check.ties;
-    let (record, turned) = record(&before, site, given, friction, check);
+    let (record, turned) = record(&before, kinematics, given, friction, check);
     let [normal, tangential] = given.motion;
     node.travel = if normal.abs() > f64::MIN_POSITIVE {
         tangential / normal
@@ -110,7 +116,7 @@ pub fn judge(
 /// What a minor iteration found at a node, and the direction of T_max where the strategy knows it.
 fn record(
     node: &ContactState,
-    site: &NodeKinematics,
+    kinematics: Option<&NodeKinematics>,
     given: NodeIncrement,
     friction: &Friction,
     check: &Check,
@@ -118,11 +124,13 @@ fn record(
     let (settings, ties) = (&check.settings, &check.ties);
     let (f_n, f_t) = (node.f_n + given.force[0], node.f_t + given.force[1]);
     let [normal, tangential] = given.motion;
+    let gap = kinematics.map_or(f64::INFINITY, |k| k.gap);
+    let moves = moves(kinematics);
     let here = tangential
         - if node.ratio == 0.0 {
             0.0
         } else {
-            site.gap * node.ratio
+            gap * node.ratio
         };
     let slip = match (node.mode, settings.slip) {
         (Mode::Free, _) => 0.0,
@@ -133,35 +141,34 @@ fn record(
     let limit = t_max(friction, f_n, sign);
     let entry = if friction.is_smooth() {
         Entry::Smooth
-    } else if strategy::enters_sliding(settings.strategy) {
-        Entry::Sliding
     } else {
-        Entry::Fixed
+        check.method.entry()
     };
     let numbers = Numbers {
         mode: node.mode,
-        gap: site.gap - normal,
+        gap: gap - normal,
         f_n,
         f_t,
         t_max: limit,
         slip,
         entry,
     };
-    let (mut decision, turned) = match settings.strategy {
-        Strategy::Newton => {
-            let slip = node.slipped(settings) + here;
-            let numbers = Numbers { slip, ..numbers };
-            let (stiffness, had) = (check.stiffness, node.sign);
-            let (decision, sign) = strategy::newton(&numbers, friction, stiffness, had, ties);
-            (decision, Some(sign))
-        }
-        _ => (decide(&numbers, ties), None),
+    let known = method::Known {
+        friction,
+        ties,
+        spring: check.stiffness,
+        sign: node.sign,
+        slip: node.slipped(settings) + here,
     };
+    let method::Choice {
+        mut decision,
+        sign: turned,
+    } = check.method.choose(&numbers, &known);
     let fixed = decision.before == Mode::Fixed && decision.next == Mode::Fixed;
-    if fixed && !site.moves[1] && slip.abs() > ties.length {
+    if fixed && !moves[1] && slip.abs() > ties.length {
         decision = decision.dragged(slip);
     }
-    if site.gap.is_infinite() {
+    if kinematics.is_none() {
         decision.rule = Rule::OffSurface;
         (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
     } else if let Forced::Held(mode) = node.forced {
@@ -188,9 +195,9 @@ fn record(
             _ => node.drift + here,
         },
         spot: node.spot,
-        normal: site.normal,
-        foot: site.foot,
-        carried: carried(node.mode, site.moves),
+        normal: kinematics.map_or(node.normal, |k| k.normal),
+        foot: kinematics.map_or([f64::NAN; 2], |k| k.foot),
+        carried: carried(node.mode, moves),
     };
     (record, turned)
 }

@@ -1,8 +1,16 @@
 //! The interface problem of one major iteration, by itself: geometry and stiffness frozen, no bodies in sight.
+//!
+//! - [`problem`]: the problem, and its answer to one assumption of what every node does; [`response`]: how its forces
+//!   answer motions; [`kinematics`]: how a node stands over its surface.
+//! - [`minor`]: one minor iteration at one node; [`method`]: what a strategy decides in it; [`minor_history`]: what went
+//!   into the minor iterations so far, and cycles of them.
+//! - [`census`] and [`lemke`]: what finds a consistent state, all nodes together.
 
 pub mod census;
 pub mod kinematics;
 pub mod lemke;
+pub mod method;
 pub mod minor;
+pub mod minor_history;
 pub mod problem;
 pub mod response;

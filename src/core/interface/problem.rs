@@ -11,11 +11,11 @@ use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, Known, Limit};
 use crate::contact::table2::Ties;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::minor::{self, Check, supported};
+use crate::interface::method::Method;
+use crate::interface::minor::{self, Check, moves, supported};
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
 use crate::model::{self, Friction, Mode, Settings};
-use crate::strategy::one_at_a_time;
 use serde::{Deserialize, Serialize};
 
 /// Estimated norm of a scaled inverse from which on an assumption counts as singular.
@@ -40,7 +40,9 @@ pub struct InterfaceProblem {
 pub struct ProblemNode {
     /// Contact number in the scene.
     pub slave: usize,
-    pub site: NodeKinematics,
+    /// How it stands over its surface; `None` past the ends of all surfaces.
+    #[serde(rename = "site")]
+    pub kinematics: Option<NodeKinematics>,
     /// Relative motion, along n and t, that no unknown takes part in.
     pub prescribed: [f64; 2],
     pub friction: Friction,
@@ -95,9 +97,14 @@ impl Assumed {
 }
 
 impl ProblemNode {
+    /// Whether any unknown takes part in its normal and in its tangential motion.
+    pub fn moves(&self) -> [bool; 2] {
+        moves(self.kinematics.as_ref())
+    }
+
     /// What the node can be assumed to do: without friction, sliding has no direction and sticking no sense.
     pub fn choices(&self) -> &'static [Assumed] {
-        if self.site.gap.is_infinite() {
+        if self.kinematics.is_none() {
             &[Assumed::Free]
         } else if self.friction.is_smooth() {
             &[Assumed::Free, Assumed::Plus]
@@ -109,11 +116,7 @@ impl ProblemNode {
     /// Table 1's equations of an assumption, T_max in them.
     pub fn equations(&self, assumed: Assumed, settings: &Settings) -> [Equation; 2] {
         let known = Known {
-            gap: if self.site.gap.is_finite() {
-                self.site.gap
-            } else {
-                0.0
-            },
+            gap: self.kinematics.map_or(0.0, |k| k.gap),
             ratio: 0.0,
             slip: self.state.slipped(settings),
             f_n: self.state.f_n,
@@ -124,7 +127,7 @@ impl ProblemNode {
                 cohesion: self.friction.cohesion,
             },
         };
-        supported(assumed.mode(), &known, self.site.moves)
+        supported(assumed.mode(), &known, self.moves())
     }
 }
 
@@ -226,7 +229,11 @@ impl<'a> Trials<'a> {
 
     /// One minor iteration: solves for what the nodes bring, and leaves in them what they bring into the next. Returns
     /// what it did at each node, and whether all has settled; none where the equations are singular.
-    pub fn minor(&mut self, nodes: &mut [ContactState]) -> Option<(Vec<ContactRecord>, bool)> {
+    pub fn minor(
+        &mut self,
+        nodes: &mut [ContactState],
+        method: &'static dyn Method,
+    ) -> Option<(Vec<ContactRecord>, bool)> {
         let problem = self.problem;
         let given = self.given(nodes)?;
         let forces = nodes.iter().zip(&given).flat_map(|(node, given)| {
@@ -235,6 +242,7 @@ impl<'a> Trials<'a> {
         let ties = problem.ties(forces.fold(problem.force, f64::max));
         let check = Check {
             settings: problem.settings,
+            method,
             ties,
             stiffness: problem.spring,
         };
@@ -243,13 +251,18 @@ impl<'a> Trials<'a> {
         let all = nodes.iter_mut().zip(&problem.nodes).zip(given);
         let mut records: Vec<ContactRecord> = all
             .map(|((state, node), given)| {
-                let (record, still) =
-                    minor::judge(state, &node.site, given, &node.friction, &check);
+                let (record, still) = minor::check(
+                    state,
+                    node.kinematics.as_ref(),
+                    given,
+                    &node.friction,
+                    &check,
+                );
                 settled &= still;
                 record
             })
             .collect();
-        if one_at_a_time(problem.settings.strategy, false) {
+        if method.is_single(false) {
             minor::one_at_a_time(nodes, &before, &mut records);
         }
         Some((records, settled))
@@ -258,7 +271,14 @@ impl<'a> Trials<'a> {
     /// What a minor iteration gives for what the nodes bring.
     pub fn given(&mut self, nodes: &[ContactState]) -> Option<Vec<NodeIncrement>> {
         let settings = self.problem.settings;
-        self.solve(|s, node| minor::rows(&nodes[s], &node.site, &node.friction, &settings))
+        self.solve(|s, node| {
+            minor::rows(
+                &nodes[s],
+                node.kinematics.as_ref(),
+                &node.friction,
+                &settings,
+            )
+        })
     }
 
     /// How the answer to the last solve's equations changes by the right-hand side of equation k of a node.
@@ -327,7 +347,12 @@ impl InterfaceProblem {
         let (mut matrix, mut rhs) = (vec![0.0; count * count], vec![0.0; count]);
         for &s in &rest {
             let node = &self.nodes[s];
-            let rows = minor::rows(&node.state, &node.site, &node.friction, &self.settings);
+            let rows = minor::rows(
+                &node.state,
+                node.kinematics.as_ref(),
+                &node.friction,
+                &self.settings,
+            );
             for (k, row) in rows.iter().enumerate() {
                 rhs[2 * s + k] = relation.place_row(s, k, row, node.prescribed, &mut matrix);
             }
@@ -383,7 +408,7 @@ pub fn judge(
 ) -> NodeAnswer {
     let (f_n, f_t) = (node.state.f_n + force[0], node.state.f_t + force[1]);
     let limit = f_n.abs() * node.friction.coefficient() + node.friction.cohesion;
-    let gap = node.site.gap - motion[0];
+    let gap = node.kinematics.map_or(f64::INFINITY, |k| k.gap) - motion[0];
     let slip = node.state.slipped(&problem.settings) + motion[1];
     let of_force = |condition, value: f64| Margin {
         condition,

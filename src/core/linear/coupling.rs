@@ -4,7 +4,7 @@ use crate::contact::geometric_tangent::Variation;
 use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
-use crate::linear::bodies::Bodies;
+use crate::linear::condensation::Condensation;
 use crate::model::Model;
 
 /// What moves, in a slave node's equations: one Cartesian displacement with its share in u_S* − u_S.
@@ -126,7 +126,7 @@ impl Interface {
     }
 
     /// Finds its places, unless it has them, in the condensed bodies.
-    pub fn find_unknowns(&mut self, model: &Model, bodies: &Bodies) {
+    pub fn find_unknowns(&mut self, model: &Model, bodies: &Condensation) {
         if std::mem::replace(&mut self.placed, true) {
             return;
         }

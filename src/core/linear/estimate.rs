@@ -141,28 +141,50 @@ impl Estimate {
         }
     }
 
-    /// Why a scene does not fit with a solver; none where it does.
-    pub fn too_large(&self, solver: Solver) -> Option<String> {
+    /// Why a scene does not fit with a solver; `None` where it does.
+    pub fn too_large(&self, solver: Solver) -> Option<TooLarge> {
         let (effort, name) = self.with(solver);
-        if effort.bytes <= self.budget {
-            return None;
-        }
         let other = match solver {
-            Solver::Condensed => format!(
-                "; settings.solver=augmented takes about {}",
-                bytes(self.augmented.bytes)
-            ),
-            Solver::Augmented => format!(
-                "; settings.solver=condensed takes about {}",
-                bytes(self.condensed.bytes)
-            ),
-            Solver::Auto => String::new(),
+            Solver::Condensed => Some(("augmented", self.augmented.bytes)),
+            Solver::Augmented => Some(("condensed", self.condensed.bytes)),
+            Solver::Auto => None,
         };
-        Some(format!(
-            "the scene takes about {} of memory ({name}), and may take {}{other}; a coarser mesh takes less, and settings.memory sets what it may take (GB)",
-            bytes(effort.bytes),
-            bytes(self.budget),
-        ))
+        (effort.bytes > self.budget).then_some(TooLarge {
+            bytes: effort.bytes,
+            name,
+            budget: self.budget,
+            other,
+        })
+    }
+}
+
+/// A scene takes more memory than it may.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TooLarge {
+    /// Bytes that it takes.
+    pub bytes: f64,
+    /// The solver that takes them.
+    pub name: &'static str,
+    /// Bytes that it may take.
+    pub budget: f64,
+    /// Another solver, and the bytes that it takes.
+    pub other: Option<(&'static str, f64)>,
+}
+
+impl std::error::Error for TooLarge {}
+
+impl fmt::Display for TooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (takes, may) = (bytes(self.bytes), bytes(self.budget));
+        write!(
+            f,
+            "the scene takes about {takes} of memory ({}), and may take {may}",
+            self.name
+        )?;
+        if let Some((other, takes)) = self.other {
+            write!(f, "; settings.solver={other} takes about {}", bytes(takes))?;
+        }
+        f.write_str("; a coarser mesh takes less, and settings.memory sets what it may take (GB)")
     }
 }
 

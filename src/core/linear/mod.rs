@@ -1,10 +1,25 @@
-//! The linearised equations of a major iteration.
+//! The linearised equations of a major iteration, behind a seam.
+//!
+//! - [`source`]: what the stepper needs of what deforms; [`bodies`]: our own bodies as one; [`constant`]: a constant
+//!   interface response as another.
+//! - `system`: the bodies' system about a state; `residual`: its out-of-balance forces; [`norms`] of them; `sizes`: what is
+//!   large, what is nothing, and what double precision leaves.
+//! - `augmented` (eqn 9) and `reduced` (eqn 6): the two ways to solve a minor iteration; `condensation`: the bodies
+//!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `ordering`: the order of
+//!   elimination.
+//! - [`singular`]: why there is no solution; [`estimate`]: what a scene takes of time and memory.
 
-mod bodies;
+mod augmented;
+pub mod bodies;
+mod condensation;
 pub mod condensed;
 mod coupling;
 pub mod estimate;
 pub mod norms;
+mod ordering;
+mod reduced;
+mod residual;
 pub mod singular;
 mod sizes;
-pub mod system;
+pub mod source;
+mod system;

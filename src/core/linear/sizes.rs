@@ -8,9 +8,9 @@
 //!   reactions of what is moved. A beam that is 1e16 times stiffer along its axis than across has axial forces that are
 //!   known to a few loads only; whatever the residual says, no digit of its contact forces is right.
 
+use crate::linear::source::At;
 use crate::model::Component;
 use crate::model::{Body, BodyKind, Form, Load, Model};
-use crate::step::state::State;
 
 /// MajorCycle-off of an internal force, or of a length, in units of the machine precision times the terms that it sums up.
 pub const ROUND_OFF: f64 = 8.0;
@@ -79,9 +79,9 @@ impl Sizes {
 
     /// The forces that are wanted: loads, contact forces, and reactions where motions are prescribed; `reaction` is the
     /// force there. Where no load is named, at least what it takes to move the softest body as far as the scene has moved.
-    pub fn wanted(&self, model: &Model, state: &State, reaction: impl Fn(usize) -> f64) -> f64 {
+    pub fn wanted(&self, model: &Model, at: &At<'_>, reaction: impl Fn(usize) -> f64) -> f64 {
         let mut wanted = self.reference;
-        for node in &state.nodes {
+        for node in at.contacts {
             wanted = wanted.max(node.f_n.abs()).max(node.f_t.abs());
         }
         for prescribed in &model.prescribed {
@@ -90,7 +90,7 @@ impl Sizes {
             }
         }
         if self.reference == 0.0 {
-            let motions = state.u.iter().zip(&self.kind);
+            let motions = at.u.iter().zip(&self.kind);
             let motions = motions.filter(|(_, kind)| **kind == Kind::Force);
             let largest = motions.fold(0.0_f64, |most, (u, _)| most.max(u.abs()));
             wanted = wanted.max(self.softest * largest);

@@ -2,12 +2,12 @@
 
 use crate::contact::judge::Finding;
 use crate::contact::record::ContactRecord;
+use crate::interface::method::NotFound;
+use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::Strategy;
 use crate::step::major_history::MajorCycle;
-use crate::step::minor_history::Cycle;
-use crate::strategy::NotFound;
 use serde::{Deserialize, Serialize};
 
 /// Where the solver is. All counts start at 1.
@@ -42,7 +42,7 @@ pub enum Outcome {
     Minor,
     /// The minor iterations cycle, and the settings want this major iteration damped: it starts its minor iterations
     /// again, aiming at this load factor.
-    Damped { cycle: Cycle, aim: f64 },
+    Damped { cycle: Cycle, target: f64 },
     /// The strategy cannot go on, and the ladder's next one leads this major iteration from its start on.
     Climbed { why: Failure, to: Strategy },
     /// The increment failed, and is started again with this size.

@@ -3,10 +3,10 @@
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
-use crate::linear::estimate::Estimate;
+use crate::linear::estimate::{Estimate, TooLarge};
 use crate::model::{Friction, Settings, Touch, least};
 use crate::model::{Mode, Model};
-use crate::step::state::{Search, State, Status};
+use crate::step::state::{Progress, State, Status};
 use crate::step::sub_increment::SubIncrement;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -32,7 +32,38 @@ pub enum Intervention {
     Settings(Settings),
 }
 
-/// Where a slave node is to start from in the next minor iteration, as [`crate::debug::diagnosis::started`] has it.
+/// Why an intervention is refused; the state stays as it was.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// There is nothing left to change.
+    #[error("the history is done; step back first")]
+    Done,
+    /// No contact has this number.
+    #[error("there are {count} slave nodes, numbered from 0; {slave} is none")]
+    NoContact {
+        /// The number that was asked for.
+        slave: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A contact without a surface can only be free.
+    #[error("the node is past the end of its surface: it has nothing to touch")]
+    OffSurface,
+    /// A friction out of bounds.
+    #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
+    Friction,
+    /// A limit of no iterations.
+    #[error("limits of iterations are at least 1")]
+    Limits,
+    /// An increment that is no positive number.
+    #[error("an increment is a positive number, not {0}")]
+    Increment(f64),
+    /// The solver that was asked for does not fit the memory.
+    #[error(transparent)]
+    TooLarge(TooLarge),
+}
+
+/// Where a slave node is to start from in the next minor iteration, known from elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     pub slave: usize,
@@ -47,33 +78,33 @@ impl State {
     ///
     /// # Errors
     /// A message for values that make no sense, and when the history is done.
-    pub fn intervene(&mut self, model: &Model, intervention: &Intervention) -> Result<(), String> {
+    pub fn intervene(&mut self, model: &Model, intervention: &Intervention) -> Result<(), Refusal> {
         if self.status == Status::Finished {
-            return Err("the history is done; step back first".into());
+            return Err(Refusal::Done);
         }
         match intervention {
             Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,
             Intervention::Assume(starts) => self.assume(starts)?,
             Intervention::Release { slave } => self.node_mut(*slave)?.forced = Forced::No,
             Intervention::Increment(increment) => self.retry(model, *increment)?,
-            Intervention::Friction(friction) => self.rub(friction)?,
+            Intervention::Friction(friction) => self.set_friction(friction)?,
             Intervention::Settings(settings) => self.set(model, settings)?,
         }
-        self.search = Search::default();
-        self.forget_trail();
-        self.forget_rounds();
+        self.search = Progress::default();
+        self.forget_minors();
+        self.forget_majors();
         Ok(())
     }
 
     /// Forgets what went into the minor iterations so far.
-    pub(super) fn forget_trail(&mut self) {
+    pub(super) fn forget_minors(&mut self) {
         if !self.minor_history.is_empty() {
             Arc::make_mut(&mut self.minor_history).clear();
         }
     }
 
     /// Forgets what went into the major iterations so far.
-    pub(super) fn forget_rounds(&mut self) {
+    pub(super) fn forget_majors(&mut self) {
         if !self.major_history.is_empty() {
             Arc::make_mut(&mut self.major_history).clear();
         }
@@ -85,24 +116,24 @@ impl State {
         (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
         self.net = false;
         self.load_factor = self.sub_increment.target();
-        self.search = Search::default();
+        self.search = Progress::default();
         (self.target, self.last_target) = (self.load_factor, self.start.load_factor);
-        self.forget_trail();
-        self.forget_rounds();
+        self.forget_minors();
+        self.forget_majors();
     }
 
-    fn node_mut(&mut self, slave: usize) -> Result<&mut ContactState, String> {
+    fn node_mut(&mut self, slave: usize) -> Result<&mut ContactState, Refusal> {
         let count = self.nodes.len();
-        self.nodes.get_mut(slave).ok_or_else(|| {
-            format!("there are {count} slave nodes, numbered from 0; {slave} is none")
-        })
+        self.nodes
+            .get_mut(slave)
+            .ok_or(Refusal::NoContact { slave, count })
     }
 
-    fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), String> {
+    fn force(&mut self, slave: usize, mode: Mode, hold: bool) -> Result<(), Refusal> {
         let touch = self.controls.settings.touch;
         let node = self.node_mut(slave)?;
         if node.spot.is_none() && mode != Mode::Free {
-            return Err("the node is past the end of its surface: it has nothing to touch".into());
+            return Err(Refusal::OffSurface);
         }
         if node.mode == Mode::Free && mode != Mode::Free && touch != Touch::Start && !node.kept {
             node.ratio = node.travel;
@@ -116,7 +147,7 @@ impl State {
         Ok(())
     }
 
-    fn assume(&mut self, starts: &[Start]) -> Result<(), String> {
+    fn assume(&mut self, starts: &[Start]) -> Result<(), Refusal> {
         let mut assumed = self.clone();
         for start in starts {
             assumed.force(start.slave, start.mode, false)?;
@@ -132,14 +163,11 @@ impl State {
         Ok(())
     }
 
-    fn rub(&mut self, friction: &Friction) -> Result<(), String> {
+    fn set_friction(&mut self, friction: &Friction) -> Result<(), Refusal> {
         let sound = (0.0..90.0).contains(&friction.angle)
             && (0.0..f64::INFINITY).contains(&friction.cohesion);
         if !sound {
-            return Err(
-                "a friction angle is at least 0 and less than 90 degrees, a cohesion not negative"
-                    .into(),
-            );
+            return Err(Refusal::Friction);
         }
         Arc::make_mut(&mut self.controls).friction.fill(*friction);
         for node in &mut self.nodes {
@@ -148,24 +176,22 @@ impl State {
         Ok(())
     }
 
-    fn set(&mut self, model: &Model, settings: &Settings) -> Result<(), String> {
+    fn set(&mut self, model: &Model, settings: &Settings) -> Result<(), Refusal> {
         if settings.minors == 0 || settings.majors == 0 {
-            return Err("limits of iterations are at least 1".into());
+            return Err(Refusal::Limits);
         }
         if settings.solver != self.controls.settings.solver
             && let Some(why) = Estimate::of(model).too_large(settings.solver)
         {
-            return Err(why);
+            return Err(Refusal::TooLarge(why));
         }
         Arc::make_mut(&mut self.controls).settings = *settings;
         Ok(())
     }
 
-    fn retry(&mut self, model: &Model, increment: f64) -> Result<(), String> {
+    fn retry(&mut self, model: &Model, increment: f64) -> Result<(), Refusal> {
         if !(increment.is_finite() && increment > 0.0) {
-            return Err(format!(
-                "an increment is a positive number, not {increment}"
-            ));
+            return Err(Refusal::Increment(increment));
         }
         let controls = Arc::make_mut(&mut self.controls);
         controls.increment = increment;

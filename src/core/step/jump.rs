@@ -14,11 +14,11 @@
 
 use crate::contact::judge::Verdict;
 use crate::linear::norms::Norms;
-use crate::model::{Jumps, Strategy};
+use crate::model::Jumps;
 use crate::step::event::{Failure, Outcome};
-use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
+use crate::strategy;
 use serde::{Deserialize, Serialize};
 
 /// How many times what is expected an increment may move without being suspected.
@@ -82,8 +82,8 @@ impl Stepper {
     pub(super) fn land(&mut self, after: Norms, verdict: Verdict) -> Outcome {
         let state = self.state();
         let size = (state.load_factor - state.start.load_factor).abs();
-        let motion = largest_motion(self.model().dofs.first.iter(), state);
-        let looks = state.controls.settings.strategy == Strategy::Ladder;
+        let motion = self.source.moved(&state.u, &state.start.u);
+        let looks = !strategy::rungs(state.controls.settings.strategy).is_empty();
         let beyond =
             looks && motion > NOTHING * self.model().length && state.pace.is_exceeded(motion, size);
         if !beyond {
@@ -109,8 +109,7 @@ impl Stepper {
                 return self.settle(after, verdict, motion / size);
             }
             if jumps == Jumps::Stop {
-                self.state.next.major += 1;
-                self.state.next.minor = 1;
+                self.next_major();
                 return Outcome::Failed(why);
             }
         }
@@ -121,8 +120,8 @@ impl Stepper {
 
     /// Takes an increment whole whose halves have failed that were to tell whether it jumps.
     pub(super) fn leap_over(&mut self, why: &Failure) -> Option<Outcome> {
-        let cuts = self.state.controls.settings.strategy == Strategy::Ladder
-            && self.model().jumps == Jumps::Cut;
+        let rungs = strategy::rungs(self.state.controls.settings.strategy);
+        let cuts = !rungs.is_empty() && self.model().jumps == Jumps::Cut;
         if !cuts || matches!(why, Failure::Leapt { .. }) {
             return None;
         }
@@ -145,14 +144,6 @@ impl Stepper {
         }
         self.accept(after, verdict, None, false)
     }
-}
-
-/// Largest displacement since the increment began, of nodes with these first degrees of freedom.
-fn largest_motion<'a>(nodes: impl Iterator<Item = &'a usize>, state: &State) -> f64 {
-    let moved = |d: usize| (state.u[d] - state.start.u[d]).abs();
-    nodes.fold(0.0, |most: f64, &first| {
-        most.max(moved(first)).max(moved(first + 1))
-    })
 }
 
 #[cfg(test)]

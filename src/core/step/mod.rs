@@ -1,11 +1,26 @@
 //! The two-level solver as a stepper: one call, one minor iteration, one event.
+//!
+//! - [`stepper`]: the algorithm box; [`state`]: plain data from which everything goes on; [`event`]: what a minor
+//!   iteration did, typed.
+//! - `minor`, `major`, `increment`: the three levels; `search`: what happens where the modes do not settle.
+//! - [`sub_increment`]: increments whole and cut; [`jump`]: those that end on another branch of equilibrium; `verdict`:
+//!   what becomes of a state that the judge refuses.
+//! - [`major_history`]: cycles of major iterations.
+//! - [`intervene`]: what a user changes in between.
 
 pub mod event;
+mod increment;
 pub mod intervene;
-mod jump;
+pub mod jump;
+mod major;
 pub mod major_history;
-pub mod minor_history;
+mod minor;
+mod search;
 pub mod state;
 pub mod stepper;
 pub mod sub_increment;
 mod verdict;
+
+pub use event::{Event, Failure, Outcome};
+pub use state::{State, Status};
+pub use stepper::Stepper;

@@ -6,14 +6,16 @@
 use crate::contact::judge::Verdict;
 use crate::contact::state::ContactState;
 use crate::fem::assembly::history_len;
-use crate::model::{BoundUpdate, Strategy, least};
+use crate::interface::method::Searched;
+use crate::interface::minor_history::MinorHistory;
+use crate::linear::source::{Accepted, At};
+use crate::model::least;
 use crate::model::{Friction, Model, Settings};
 use crate::step::event::{Failure, Position};
 use crate::step::jump::Pace;
 use crate::step::major_history::MajorHistory;
-use crate::step::minor_history::MinorHistory;
 use crate::step::sub_increment::SubIncrement;
-use crate::strategy::{LADDER, limit};
+use crate::strategy;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -45,7 +47,7 @@ pub struct State {
     #[serde(rename = "reached")]
     pub last_target: f64,
     /// How far the strategy has come in the present increment.
-    pub search: Search,
+    pub search: Progress,
     /// The part of an increment that is aimed at.
     #[serde(rename = "piece")]
     pub sub_increment: SubIncrement,
@@ -95,7 +97,7 @@ pub struct IncrementStart {
 
 /// How far the strategy has come ([`crate::strategy`]).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Search {
+pub struct Progress {
     /// The rung of the ladder that the increment has come to.
     pub rung: usize,
     /// What the first rung failed of in the present major iteration.
@@ -104,20 +106,9 @@ pub struct Search {
     pub fewest: Option<usize>,
     pub rounds: u32,
     /// How far pivoting has come in the present major iteration, and how many states that it found were not confirmed.
-    pub pivoting: Pivoting,
+    #[serde(rename = "pivoting")]
+    pub searched: Searched,
     pub unconfirmed: usize,
-}
-
-/// How far pivoting, or the census, has come in a major iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Pivoting {
-    /// The modes that the iteration began with are tried first.
-    #[default]
-    Not,
-    /// The next minor iteration is this pivot, from this start; of a census, this answer of it.
-    At { start: usize, pivot: usize },
-    /// A state was found from this start, and the next minor iteration checks it.
-    Found { start: usize },
 }
 
 /// What the user can turn during a run.
@@ -133,9 +124,15 @@ pub struct Controls {
 }
 
 impl State {
-    /// The scene before its first increment.
+    /// Our own bodies before their first increment.
     pub fn new(model: &Model) -> Self {
-        let u = Arc::new(vec![0.0; model.dofs.len()]);
+        let (u, history) = (vec![0.0; model.dofs.len()], vec![0.0; history_len(model)]);
+        State::at_start(model, u, history)
+    }
+
+    /// A scene before its first increment, with a source's unknowns and what its elements remember.
+    pub fn at_start(model: &Model, u: Vec<f64>, history: Vec<f64>) -> Self {
+        let u = Arc::new(u);
         let nodes: Vec<ContactState> = model
             .contacts
             .iter()
@@ -153,7 +150,7 @@ impl State {
             leg: 0,
             u: u.clone(),
             nodes: nodes.clone(),
-            history: vec![0.0; history_len(model)],
+            history,
             verdict: None,
         };
         let sub_increment = SubIncrement::whole(model, &start, controls.increment);
@@ -174,7 +171,7 @@ impl State {
             major_history: Arc::default(),
             target,
             last_target: load_factor,
-            search: Search::default(),
+            search: Progress::default(),
             sub_increment,
             minors: 0,
             unsettled: 0,
@@ -187,14 +184,26 @@ impl State {
 
     /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
     pub fn settings(&self) -> Settings {
-        let mut settings = self.controls.settings;
-        if settings.strategy == Strategy::Ladder {
-            settings.strategy = LADDER[self.search.rung.min(LADDER.len() - 1)];
-            if self.search.rung > 0 {
-                settings.t_max = BoundUpdate::Consistent;
-            }
+        strategy::in_force(&self.controls.settings, self.search.rung)
+    }
+
+    /// What a source may look at.
+    pub fn at(&self) -> At<'_> {
+        At {
+            u: &self.u,
+            accepted: Accepted {
+                u: &self.start.u,
+                history: &self.start.history,
+                contacts: &self.start.nodes,
+            },
+            target: self.target,
+            last_target: self.last_target,
+            contacts: &self.nodes,
+            friction: &self.controls.friction,
+            entered: self.minor_history.first(self.nodes.len()),
+            correction: self.correction,
+            chosen: &self.controls.settings,
+            settings: self.settings(),
         }
-        settings.t_max = limit(settings.strategy, settings.t_max);
-        settings
     }
 }

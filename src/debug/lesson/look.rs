@@ -3,9 +3,9 @@
 use crate::contact::record::ContactRecord;
 use crate::debug::session::Frame;
 use crate::interface::census::census;
+use crate::interface::minor_history::Cycle;
 use crate::model::{Mode, Model};
 use crate::step::event::{Event, Failure, Outcome};
-use crate::step::minor_history::Cycle;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
@@ -80,9 +80,12 @@ impl Look {
     /// # Errors
     /// Where the bodies cannot be condensed, or there are too many nodes for a census.
     pub fn answers(&self) -> Result<usize, String> {
-        let frozen = self.stepper().frozen();
+        let frozen = self.stepper().interface_problem();
         let frozen = frozen.ok_or("the bodies of this state cannot be condensed")?;
-        Ok(census(&frozen)?.answers.len())
+        Ok(census(&frozen)
+            .map_err(|why| why.to_string())?
+            .answers
+            .len())
     }
 
     fn stepper(&self) -> Stepper {

@@ -84,7 +84,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         length,
     };
     match Estimate::of(&model).too_large(model.settings.solver) {
-        Some(message) => Err(Fault::new(at!["settings", "memory"], message)),
+        Some(message) => Err(Fault::new(at!["settings", "memory"], message.to_string())),
         None => Ok((model, names)),
     }
 }

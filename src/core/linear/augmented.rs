@@ -1,0 +1,139 @@
+//! A minor iteration on the whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
+
+use super::source::{At, Solved};
+use super::system::{System, dot};
+use crate::contact::state::ContactState;
+use crate::contact::table1::{Equation, Motion};
+use crate::model::Model;
+
+/// Estimated norm of the scaled inverse from which on a system is suspected to be singular.
+const SUSPICIOUS: f64 = 1e12;
+
+impl System {
+    pub(super) fn solve_augmented(&mut self, model: &Model, at: &At<'_>) -> Solved {
+        self.condensed.fresh = false;
+        self.scale(model, at);
+        self.start_values();
+        let unknowns = model.dofs.equations;
+        for s in 0..self.interfaces.len() {
+            let rows = self.rows(s, at);
+            let frame = self.interfaces[s].frame(&at.contacts[s]);
+            for (k, row) in rows.iter().enumerate() {
+                self.rhs[unknowns + 2 * s + k] = self.place_row(s, k, row, frame);
+            }
+        }
+        let solved = self.factor_and_solve();
+        for (s, node) in at.contacts.iter().enumerate() {
+            let row = unknowns + 2 * s;
+            self.condensed.forces[s] = [self.x[row], self.x[row + 1]];
+            self.condensed.motions[s] = self.motion_of_solution(model, s, node);
+        }
+        solved
+    }
+
+    /// Finds the scale of all systems of this linearisation: that of the one in which every node is held.
+    pub(super) fn scale(&mut self, model: &Model, at: &At<'_>) {
+        if std::mem::replace(&mut self.scaled, true) {
+            return;
+        }
+        self.start_values();
+        for s in 0..self.interfaces.len() {
+            let frame = self.interfaces[s].frame(&at.contacts[s]);
+            for (k, row) in springs(0.0).iter().enumerate() {
+                self.place_row(s, k, row, frame);
+            }
+        }
+        self.sizes.units(model, self.spring(model), &mut self.work);
+        if let Some(factors) = &mut self.whole {
+            factors.scale(&self.values, model.dofs.equations, &self.work);
+        }
+    }
+
+    /// Stiffness and out-of-balance forces, without any interface.
+    pub(super) fn start_values(&mut self) {
+        self.values.copy_from_slice(&self.stiffness);
+        self.start_rhs();
+    }
+
+    pub(super) fn start_rhs(&mut self) {
+        let balance = self.residual.iter().zip(&self.coupling);
+        for (rhs, (residual, coupling)) in self.rhs.iter_mut().zip(balance) {
+            *rhs = residual - coupling;
+        }
+    }
+
+    /// Enters an equation of a slave node, and the column of its force; returns the equation's right-hand side.
+    pub(super) fn place_row(
+        &mut self,
+        s: usize,
+        k: usize,
+        row: &Equation,
+        frame: [[f64; 2]; 2],
+    ) -> f64 {
+        let interface = &self.interfaces[s];
+        self.values[interface.block[2 * k]] = row.d_n;
+        self.values[interface.block[2 * k + 1]] = row.d_t;
+        let direction = match row.motion {
+            Motion::None => [0.0; 2],
+            Motion::Normal => frame[0],
+            Motion::Tangential => frame[1],
+        };
+        for link in &interface.links {
+            let Some(slots) = link.slots else { continue };
+            self.values[slots[2 * k]] += link.weight * direction[link.axis];
+            self.values[slots[2 * k + 1]] += link.weight * frame[k][link.axis];
+        }
+        row.value - dot(direction, interface.prescribed)
+    }
+
+    pub(super) fn factor_and_solve(&mut self) -> Solved {
+        let Some(factors) = &mut self.whole else {
+            return Solved::Not;
+        };
+        if factors.factor(&self.values).is_err() || factors.solve(&self.rhs, &mut self.x).is_err() {
+            return Solved::Not;
+        }
+        suspicion(factors.inverse_norm())
+    }
+
+    pub(super) fn motion_of_solution(
+        &self,
+        model: &Model,
+        slave: usize,
+        node: &ContactState,
+    ) -> [f64; 2] {
+        let interface = &self.interfaces[slave];
+        let mut motion = [0.0; 2];
+        for link in &interface.links {
+            motion[link.axis] += link.weight * self.increment(model, link.dof);
+        }
+        let frame = interface.frame(node);
+        [dot(frame[0], motion), dot(frame[1], motion)]
+    }
+}
+
+/// `motion − ΔF / stiffness = 0` in both directions, for `give` = −1 / stiffness.
+pub(super) fn springs(give: f64) -> [Equation; 2] {
+    [
+        Equation {
+            motion: Motion::Normal,
+            d_n: give,
+            d_t: 0.0,
+            value: 0.0,
+        },
+        Equation {
+            motion: Motion::Tangential,
+            d_n: 0.0,
+            d_t: give,
+            value: 0.0,
+        },
+    ]
+}
+
+pub(super) fn suspicion(inverse_norm: f64) -> Solved {
+    if inverse_norm > SUSPICIOUS {
+        Solved::NearlySingular
+    } else {
+        Solved::Well
+    }
+}

@@ -1,0 +1,462 @@
+//! The bodies condensed to their interface (eqn 6), once a major iteration, from one sparse factorization.
+//!
+//! The interface's unknowns are the displacements of all slave nodes and of all nodes of the surfaces that they may
+//! touch; they are eliminated last, so that the condensed stiffness S falls out of the factors
+//! ([`SymmetricFactors`]). With springs of stiffness k between every slave node and its S*, and z the gaps that the
+//! springs are given,
+//!
+//! ```text
+//! A u_c = r̃ + k Gᵀ z,      A = S + k Gᵀ G + T,      v = G u_c,      ΔF = k (v − z),
+//! ```
+//!
+//! where v is the relative motion of all slave nodes, normal and tangential, r̃ the condensed out-of-balance force and
+//! T what turning interaction forces add. The springs make a body regular that only its contacts hold, and drop out
+//! again exactly when z is solved for. All of it is of the interface's size, and no sparse solve is needed but one for
+//! r̃ and one to recover the displacements inside.
+//!
+//! Where all bodies are solids, and every slave node can move both ways and is no master's, no springs are needed
+//! ([`Way::Direct`]): with F the frames and M the master nodes' shares in S*, v = F (M u_m − u_s), so that the slave nodes'
+//! displacements give way to v,
+//!
+//! ```text
+//! u_s = M u_m − Fᵀ v,      K' = Bᵀ (S + T) B over (u_m, v),      ΔF = r'_v − K'_vm u_m − K'_vv v,
+//! ```
+//!
+//! and only the masters' block K'_mm has to be factored: the relation of `condensed` in the limit of stiff springs.
+
+use crate::interface::response::InterfaceResponse;
+use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
+use crate::linear::coupling::Interface;
+use crate::model::{Body, BodyKind, Model};
+use std::sync::Arc;
+
+/// How the interface's answer is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// About springs between slave nodes and masters.
+    Springs,
+    /// In relative motions instead of the slave nodes' displacements, which are the last unknowns.
+    Direct,
+}
+
+/// The condensed bodies of a major iteration. Matrices are stored column by column.
+pub struct Condensation {
+    pattern: Arc<Pattern>,
+    factors: SymmetricFactors,
+    way: Way,
+    /// Number among the interface's unknowns, by equation.
+    number: Vec<Option<usize>>,
+    /// The equations of the interface's unknowns.
+    equations: Vec<usize>,
+    /// Added to S's diagonal where it is factored.
+    shift: f64,
+    /// S with the shift.
+    schur: Vec<f64>,
+    /// T.
+    pub turning: Vec<f64>,
+    /// A, or S + T and then K'.
+    matrix: Vec<f64>,
+    /// What is factored.
+    inner: Vec<f64>,
+    dense: DenseFactors,
+    /// Out-of-balance force of all equations, and their displacements under it with the interface on the shift's springs.
+    residual: Vec<f64>,
+    free: Vec<f64>,
+    /// u_c at z = 0; directly, r' and then u_m at v = 0.
+    start: Vec<f64>,
+    /// Change of u_c by z; directly, that of u_m by −v.
+    motions: Vec<f64>,
+    /// u_c of the last solve, less that of `free`, and the force that it takes.
+    offset: Vec<f64>,
+    pull: Vec<f64>,
+}
+
+impl Condensation {
+    /// Lays out the bodies' stiffness; `entries` are its places `(row, column)`, in equations.
+    ///
+    /// # Errors
+    /// [`SolveError`] if it cannot be analysed.
+    pub fn new(model: &Model, mut entries: Vec<(usize, usize)>) -> Result<Self, SolveError> {
+        let n = model.dofs.equations;
+        entries.retain(|(row, column)| row <= column);
+        let pattern = Arc::new(Pattern::new(n, entries));
+        let (way, equations) = match direct_equations(model) {
+            Some(equations) => (Way::Direct, equations),
+            None => (Way::Springs, interface_equations(model)),
+        };
+        let mut number = vec![None; n];
+        for (k, &equation) in equations.iter().enumerate() {
+            number[equation] = Some(k);
+        }
+        let (c, z) = (equations.len(), 2 * model.contacts.len());
+        let solved = match way {
+            Way::Springs => c,
+            Way::Direct => c - z,
+        };
+        Ok(Condensation {
+            way,
+            factors: SymmetricFactors::new(pattern.clone(), &equations)?,
+            pattern,
+            number,
+            shift: 0.0,
+            schur: vec![0.0; c * c],
+            turning: vec![0.0; c * c],
+            matrix: vec![0.0; c * c],
+            dense: DenseFactors::new(solved, z)?,
+            inner: vec![0.0; solved * solved],
+            residual: vec![0.0; n],
+            free: vec![0.0; n],
+            start: vec![0.0; c],
+            motions: vec![0.0; c * z],
+            offset: vec![0.0; c],
+            pull: vec![0.0; c],
+            equations,
+        })
+    }
+
+    /// The pattern of the upper half of the bodies' stiffness.
+    pub fn pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
+    }
+
+    /// Number of an equation among the interface's unknowns, if it is one.
+    pub fn number(&self, equation: usize) -> Option<usize> {
+        self.number[equation]
+    }
+
+    /// Place of an entry in the matrices of the interface.
+    pub fn place(&self, row: usize, column: usize) -> Option<usize> {
+        Some(column * self.equations.len() + row)
+    }
+
+    /// Factors the stiffness with these values and finds how the interface answers: fills `start` and `response` of
+    /// `out`, whose springs it takes. Returns an estimate of the norm of A's scaled inverse.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] where the stiffness cannot be factored without pivoting.
+    pub fn condense(
+        &mut self,
+        stiffness: &[f64],
+        residual: &[f64],
+        interfaces: &[Interface],
+        frames: &[[[f64; 2]; 2]],
+        out: &mut InterfaceResponse,
+    ) -> Result<f64, SolveError> {
+        let k = out.stiffness;
+        self.shift = k;
+        self.factors.factor(stiffness, k)?;
+        self.residual.copy_from_slice(residual);
+        self.factors.solve(&self.residual, &mut self.free)?;
+        self.factors.condensed(&mut self.schur);
+        self.load();
+        if self.way == Way::Direct {
+            return self.relate(interfaces, frames, out);
+        }
+        self.assemble(interfaces, k);
+        self.dense.factor(&self.matrix);
+        self.push(interfaces, frames, k);
+        self.dense.solve(&mut self.start)?;
+        self.dense.solve(&mut self.motions)?;
+        self.respond(interfaces, frames, out);
+        Ok(self.dense.inverse_norm())
+    }
+
+    /// The relation without springs, and an estimate of the norm of the scaled inverse of K'_mm.
+    fn relate(
+        &mut self,
+        interfaces: &[Interface],
+        frames: &[[[f64; 2]; 2]],
+        out: &mut InterfaceResponse,
+    ) -> Result<f64, SolveError> {
+        let (c, z) = (self.equations.len(), out.start.len());
+        let m = c - z;
+        out.stiffness = f64::INFINITY;
+        self.add_turning();
+        self.transform(interfaces, frames);
+        for (k, column) in self.matrix.chunks_exact(c.max(1)).enumerate() {
+            let to = if k < m {
+                &mut self.inner[k * m..(k + 1) * m]
+            } else {
+                out.response[(k - m) * z..(k - m + 1) * z].copy_from_slice(&column[m..]);
+                &mut self.motions[(k - m) * m..(k - m + 1) * m]
+            };
+            to.copy_from_slice(&column[..m]);
+        }
+        let motions = &mut self.motions[..m * z];
+        let (at_rest, given) = self.start.split_at_mut(m);
+        self.dense.factor(&self.inner);
+        self.dense.solve(at_rest)?;
+        self.dense.solve(motions)?;
+        out.start.copy_from_slice(given);
+        if m > 0 {
+            let mixed = (&self.matrix[m..], c);
+            subtract_product((&mut out.response, z), mixed, (&*motions, m), [z, m, z]);
+            subtract_product((&mut out.start, z), mixed, (&*at_rest, m), [z, m, 1]);
+        }
+        out.response.iter_mut().for_each(|k| *k = -*k);
+        Ok(self.dense.inverse_norm())
+    }
+
+    /// Bᵀ (S + T) B into `matrix`, Bᵀ r̃ into `start`.
+    fn transform(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
+        let c = self.equations.len();
+        let m = c - 2 * interfaces.len();
+        for (s, (interface, frame)) in interfaces.iter().zip(frames).enumerate() {
+            let (masters, slaves) = self.matrix.split_at_mut(m * c);
+            let own = &mut slaves[2 * s * c..2 * (s + 1) * c];
+            for link in &interface.links[2..] {
+                if let Some(j) = link.unknown {
+                    let from = &own[link.axis * c..(link.axis + 1) * c];
+                    for (to, from) in masters[j * c..(j + 1) * c].iter_mut().zip(from) {
+                        *to += link.weight * from;
+                    }
+                }
+            }
+            let (x, y) = own.split_at_mut(c);
+            for (x, y) in x.iter_mut().zip(y) {
+                (*x, *y) = (-along(frame[0], *x, *y), -along(frame[1], *x, *y));
+            }
+        }
+        let columns = self.matrix.chunks_exact_mut(c.max(1));
+        for column in columns.chain(std::iter::once(&mut self.start[..])) {
+            let (masters, slaves) = column.split_at_mut(m);
+            for ((interface, frame), own) in interfaces
+                .iter()
+                .zip(frames)
+                .zip(slaves.chunks_exact_mut(2))
+            {
+                for link in &interface.links[2..] {
+                    if let Some(j) = link.unknown {
+                        masters[j] += link.weight * own[link.axis];
+                    }
+                }
+                let [x, y] = [own[0], own[1]];
+                (own[0], own[1]) = (-along(frame[0], x, y), -along(frame[1], x, y));
+            }
+        }
+    }
+
+    /// S + T into `matrix`.
+    fn add_turning(&mut self) {
+        let parts = self.schur.iter().zip(&self.turning);
+        for (to, (schur, turning)) in self.matrix.iter_mut().zip(parts) {
+            *to = schur + turning;
+        }
+        let c = self.equations.len();
+        self.matrix
+            .iter_mut()
+            .step_by(c + 1)
+            .for_each(|entry| *entry -= self.shift);
+    }
+
+    /// A.
+    fn assemble(&mut self, interfaces: &[Interface], k: f64) {
+        let c = self.equations.len();
+        self.add_turning();
+        for interface in interfaces {
+            for col in &interface.links {
+                let Some(j) = col.unknown else { continue };
+                for row in interface.links.iter().filter(|row| row.axis == col.axis) {
+                    if let Some(i) = row.unknown {
+                        self.matrix[j * c + i] += k * row.weight * col.weight;
+                    }
+                }
+            }
+        }
+    }
+
+    /// r̃ into `start`.
+    fn load(&mut self) {
+        for (offset, &equation) in self.offset.iter_mut().zip(&self.equations) {
+            *offset = self.free[equation];
+        }
+        multiply(&self.schur, &self.offset, &mut self.start);
+    }
+
+    /// k Gᵀ into `motions`.
+    fn push(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], k: f64) {
+        let c = self.equations.len();
+        self.motions.fill(0.0);
+        let columns = self.motions.chunks_exact_mut(c.max(1));
+        let directions = interfaces
+            .iter()
+            .zip(frames)
+            .flat_map(|(interface, frame)| frame.iter().map(move |d| (interface, d)));
+        for (column, (interface, direction)) in columns.zip(directions) {
+            for link in &interface.links {
+                if let Some(i) = link.unknown {
+                    column[i] += k * link.weight * direction[link.axis];
+                }
+            }
+        }
+    }
+
+    /// ΔF at z = 0, and its change by z.
+    fn respond(
+        &self,
+        interfaces: &[Interface],
+        frames: &[[[f64; 2]; 2]],
+        out: &mut InterfaceResponse,
+    ) {
+        let (c, k) = (self.equations.len(), out.stiffness);
+        let motion = |interface: &Interface, direction: &[f64; 2], u: &[f64]| {
+            let share = interface.links.iter().map(|link| {
+                link.unknown
+                    .map_or(0.0, |i| link.weight * direction[link.axis] * u[i])
+            });
+            share.sum::<f64>()
+        };
+        let rows = || interfaces.iter().zip(frames);
+        let count = out.start.len();
+        for (s, (interface, frame)) in rows().enumerate() {
+            for (component, direction) in frame.iter().enumerate() {
+                out.start[2 * s + component] = k * motion(interface, direction, &self.start);
+            }
+        }
+        for (j, column) in out.response.chunks_exact_mut(count.max(1)).enumerate() {
+            let u = &self.motions[j * c..(j + 1) * c];
+            for (s, (interface, frame)) in rows().enumerate() {
+                for (component, direction) in frame.iter().enumerate() {
+                    column[2 * s + component] = k * motion(interface, direction, u);
+                }
+            }
+            column[j] -= k;
+        }
+    }
+
+    /// Displacement increments of all equations for these z, of which there is one for each of `frames`' directions.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] if they cannot be found.
+    pub fn recover(
+        &mut self,
+        gaps: &[f64],
+        interfaces: &[Interface],
+        frames: &[[[f64; 2]; 2]],
+        x: &mut [f64],
+    ) -> Result<(), SolveError> {
+        match self.way {
+            Way::Springs => self.offset.copy_from_slice(&self.start),
+            Way::Direct => self.move_masters(gaps),
+        }
+        let sign = if self.way == Way::Direct { -1.0 } else { 1.0 };
+        let moved = match self.way {
+            Way::Springs => self.equations.len(),
+            Way::Direct => self.equations.len() - gaps.len(),
+        };
+        for (column, gap) in self.motions.chunks_exact(moved.max(1)).zip(gaps) {
+            for (offset, motion) in self.offset.iter_mut().zip(column) {
+                *offset += sign * motion * gap;
+            }
+        }
+        if self.way == Way::Direct {
+            self.move_slaves(gaps, interfaces, frames);
+        }
+        for (offset, &equation) in self.offset.iter_mut().zip(&self.equations) {
+            *offset -= self.free[equation];
+        }
+        // Forces on the interface that bring its unknowns from `free` to where they must be.
+        multiply(&self.schur, &self.offset, &mut self.pull);
+        for (force, &equation) in self.pull.iter().zip(&self.equations) {
+            self.residual[equation] += force;
+        }
+        self.factors.solve(&self.residual, x)
+    }
+
+    /// u_m at v = 0 into `offset`.
+    fn move_masters(&mut self, gaps: &[f64]) {
+        let m = self.equations.len() - gaps.len();
+        self.offset[..m].copy_from_slice(&self.start[..m]);
+    }
+
+    /// u_s into `offset`, which has u_m.
+    fn move_slaves(&mut self, gaps: &[f64], interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
+        let (masters, slaves) = self.offset.split_at_mut(self.equations.len() - gaps.len());
+        let nodes = interfaces.iter().zip(frames).zip(gaps.chunks_exact(2));
+        for (((interface, frame), v), own) in nodes.zip(slaves.chunks_exact_mut(2)) {
+            for (axis, own) in own.iter_mut().enumerate() {
+                *own = -(frame[0][axis] * v[0] + frame[1][axis] * v[1]);
+            }
+            for link in &interface.links[2..] {
+                if let Some(j) = link.unknown {
+                    own[link.axis] += link.weight * masters[j];
+                }
+            }
+        }
+    }
+}
+
+/// Component of a vector along a direction.
+fn along(direction: [f64; 2], x: f64, y: f64) -> f64 {
+    direction[0] * x + direction[1] * y
+}
+
+/// y = A x, A stored column by column.
+fn multiply(a: &[f64], x: &[f64], y: &mut [f64]) {
+    y.fill(0.0);
+    for (column, x) in a.chunks_exact(y.len().max(1)).zip(x) {
+        for (y, a) in y.iter_mut().zip(column) {
+            *y += a * x;
+        }
+    }
+}
+
+/// The interface's equations for [`Way::Direct`]: the masters' first, then x and y of every slave node. None where some body
+/// is no solid, or a slave node cannot move both ways, is a master's too, or is listed twice.
+fn direct_equations(model: &Model) -> Option<Vec<usize>> {
+    let solid = |body: &Body| matches!(body.kind, BodyKind::Solid(_));
+    if !model.bodies.iter().all(solid) {
+        return None;
+    }
+    let mut slaves = Vec::with_capacity(2 * model.contacts.len());
+    for slave in &model.contacts {
+        let first = model.dofs.first[slave.node];
+        slaves.extend([model.dofs.equation[first]?, model.dofs.equation[first + 1]?]);
+    }
+    let mut is_slave = vec![false; model.dofs.equations];
+    for &equation in &slaves {
+        if std::mem::replace(&mut is_slave[equation], true) {
+            return None;
+        }
+    }
+    let masters = master_equations(model);
+    if masters.iter().any(|&equation| is_slave[equation]) {
+        return None;
+    }
+    Some(masters.into_iter().chain(slaves).collect())
+}
+
+/// The equations of all slave nodes' displacements and of those of the surfaces that they may touch, ascending.
+fn interface_equations(model: &Model) -> Vec<usize> {
+    let slaves = model.contacts.iter().map(|slave| slave.node);
+    let mut equations = equations_of(model, slaves);
+    equations.extend(master_equations(model));
+    equations.sort_unstable();
+    equations.dedup();
+    equations
+}
+
+/// Those of the surfaces that slave nodes may touch, ascending.
+fn master_equations(model: &Model) -> Vec<usize> {
+    let masters = model
+        .contacts
+        .iter()
+        .flat_map(|slave| &slave.surfaces)
+        .filter(|&&surface| !model.surfaces[surface].rigid)
+        .flat_map(|&surface| model.surfaces[surface].elements.iter().flatten());
+    let mut nodes: Vec<usize> = masters.copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let mut equations = equations_of(model, nodes.into_iter());
+    equations.sort_unstable();
+    equations
+}
+
+fn equations_of(model: &Model, nodes: impl Iterator<Item = usize>) -> Vec<usize> {
+    nodes
+        .flat_map(|node| {
+            let first = model.dofs.first[node];
+            (first..first + 2).filter_map(|dof| model.dofs.equation[dof])
+        })
+        .collect()
+}

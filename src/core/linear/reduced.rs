@@ -1,0 +1,200 @@
+//! A minor iteration on the interface alone, the bodies condensed to it once a major iteration (eqn 6).
+
+use super::augmented::{springs, suspicion};
+use super::source::{At, Solved};
+use super::system::{Layout, System, dot};
+use crate::interface::problem::{InterfaceProblem, ProblemNode};
+use crate::linalg::{Factors, SolveError};
+use crate::model::Model;
+
+/// Estimated norm of the scaled inverse from which on the interface's system is suspected to be singular: the springs that
+/// hold a loose body cost digits before they drop out.
+const SUSPICIOUS: f64 = 1e9;
+
+impl System {
+    /// Solves for the interface alone, about a compliance of it that is made once a major iteration.
+    pub(super) fn solve_condensed(&mut self, model: &Model, at: &At<'_>) -> Solved {
+        if !self.condensed.fresh {
+            self.condensed.norm = match self.condense(model, at) {
+                Ok(norm) => norm,
+                Err(_) => return Solved::Not,
+            };
+            self.condensed.fresh = true;
+        }
+        self.condensed.clear();
+        for s in 0..self.interfaces.len() {
+            let rows = self.rows(s, at);
+            let frame = self.frames[s];
+            let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
+            for (k, row) in rows.iter().enumerate() {
+                self.condensed.place_row(s, k, row, prescribed);
+            }
+        }
+        let Ok(norm) = self.condensed.solve() else {
+            return Solved::Not;
+        };
+        for (s, frame) in self.frames.iter().enumerate() {
+            let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
+            self.condensed.read(s, prescribed);
+        }
+        if norm > SUSPICIOUS {
+            return Solved::NearlySingular;
+        }
+        suspicion(self.condensed.norm)
+    }
+
+    /// The interface problem of the last linearisation, to be looked at by itself; costs a condensation, unless the
+    /// minor iterations have made it already.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the bodies cannot be condensed.
+    pub fn problem(&mut self, model: &Model, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
+        if !self.condensed.fresh {
+            if self.estimate.condensed.bytes > self.estimate.budget {
+                return Err(SolveError::OutOfMemory);
+            }
+            self.condensed.norm = self.condense(model, at)?;
+            self.condensed.fresh = true;
+        }
+        let relation = self.condensed.relation.clone();
+        let nodes = at
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(slave, node)| ProblemNode {
+                slave,
+                kinematics: self.kinematics(slave),
+                prescribed: self.frames[slave].map(|d| dot(d, self.interfaces[slave].prescribed)),
+                friction: node.friction(&at.friction[slave]),
+                state: *node,
+            });
+        let largest = relation.start.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        Ok(InterfaceProblem {
+            nodes: nodes.collect(),
+            force: if self.norms.scale > 0.0 {
+                self.norms.scale
+            } else {
+                largest
+            },
+            length: model.length,
+            spring: self.spring(model),
+            settings: at.settings,
+            relation,
+        })
+    }
+
+    /// Condenses the bodies to the interface; returns an estimate of the norm of the inverse of what was factored.
+    ///
+    /// Bodies that [`Bodies`] cannot factor in this state are factored with the interface, and with pivoting.
+    pub(super) fn condense(&mut self, model: &Model, at: &At<'_>) -> Result<f64, SolveError> {
+        self.condensed.resize(self.interfaces.len())?;
+        self.frames.clear();
+        let nodes = self.interfaces.iter().zip(at.contacts);
+        self.frames.extend(nodes.map(|(i, node)| i.frame(node)));
+        if self.layout == Some(Layout::Bodies) {
+            self.condensed.relation.stiffness = self.spring(model);
+            self.start_rhs();
+            if let Some(bodies) = &mut self.bodies
+                && let Ok(norm) = bodies.condense(
+                    &self.stiffness,
+                    &self.rhs,
+                    &self.interfaces,
+                    &self.frames,
+                    &mut self.condensed.relation,
+                )
+            {
+                return Ok(norm);
+            }
+            self.linearise_in(Layout::Whole, model, at)?;
+            self.turn(model, at);
+        }
+        self.condensed.relation.stiffness = self.spring(model);
+        self.condense_whole(model, at)
+    }
+
+    /// Condenses with every interface equation replaced by `motion − ΔF / stiffness = z`: the forces are then a linear
+    /// function of z, found column by column.
+    pub(super) fn condense_whole(&mut self, model: &Model, at: &At<'_>) -> Result<f64, SolveError> {
+        self.scale(model, at);
+        self.start_values();
+        let unknowns = model.dofs.equations;
+        let give = -1.0 / self.condensed.relation.stiffness;
+        for s in 0..self.interfaces.len() {
+            for (k, row) in springs(give).iter().enumerate() {
+                self.place_row(s, k, row, self.frames[s]);
+                self.rhs[unknowns + 2 * s + k] = 0.0;
+            }
+        }
+        let Some(factors) = &mut self.whole else {
+            return Err(SolveError::Singular);
+        };
+        factors.factor(&self.values)?;
+        factors.solve(&self.rhs, &mut self.x)?;
+        let norm = factors.inverse_norm();
+        self.condensed
+            .relation
+            .start
+            .copy_from_slice(&self.x[unknowns..]);
+        let (count, size) = (2 * self.interfaces.len(), self.x.len());
+        for first in (0..count).step_by(Factors::BLOCK) {
+            let columns = first..count.min(first + Factors::BLOCK);
+            self.block.clear();
+            self.block.resize(size * columns.len(), 0.0);
+            for (column, k) in self.block.chunks_exact_mut(size).zip(columns.clone()) {
+                column[unknowns + k] = 1.0;
+            }
+            factors.solve_block(&mut self.block)?;
+            let response = &mut self.condensed.relation.response[first * count..];
+            for (to, column) in response
+                .chunks_exact_mut(count)
+                .zip(self.block.chunks_exact(size))
+            {
+                to.copy_from_slice(&column[unknowns..]);
+            }
+        }
+        Ok(norm)
+    }
+
+    /// Stiffness of the springs. What lies k times above or below it loses as many digits when the springs drop out, so
+    /// it is midway between the stiffest degree of freedom of the interface and the softest body as a whole.
+    pub fn spring(&self, model: &Model) -> f64 {
+        let Some(pattern) = self.pattern() else {
+            return 1.0;
+        };
+        let diagonal = |e: usize| pattern.slot(e, e).map_or(0.0, |k| self.stiffness[k].abs());
+        let slaves = self
+            .interfaces
+            .iter()
+            .flat_map(|i| &i.links)
+            .filter_map(|l| model.dofs.equation[l.dof]);
+        let stiffest = slaves.map(diagonal).fold(0.0, f64::max);
+        if stiffest > 0.0 {
+            (stiffest * self.sizes.softest).sqrt()
+        } else {
+            self.sizes.softest
+        }
+    }
+
+    /// Completes a solve: finds what it does to the bodies. Costs one back substitution where the bodies were
+    /// condensed, else nothing.
+    pub fn recover(&mut self, model: &Model) -> Solved {
+        if !self.condensed.fresh {
+            return Solved::Well;
+        }
+        let done = match (self.layout, &mut self.bodies, &mut self.whole) {
+            (Some(Layout::Bodies), Some(bodies), _) => {
+                let (interfaces, frames) = (&self.interfaces, &self.frames);
+                bodies.recover(&self.condensed.gaps, interfaces, frames, &mut self.x)
+            }
+            (_, _, Some(factors)) => {
+                self.rhs[model.dofs.equations..].copy_from_slice(&self.condensed.gaps);
+                factors.solve(&self.rhs, &mut self.x)
+            }
+            _ => Err(SolveError::Singular),
+        };
+        match done {
+            Ok(()) => Solved::Well,
+            Err(_) => Solved::Not,
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Out-of-balance forces of a linearisation (eqn 22), their norms, and what round-off leaves of them.
+
+use super::norms::Norms;
+use super::sizes::ROUND_OFF;
+use super::source::At;
+use super::system::{Layout, System};
+use crate::model::{Mode, Model, Sticking};
+
+impl System {
+    /// Out-of-balance force R − F of eqn (22) and its norms.
+    pub(super) fn balance(&mut self, model: &Model, at: &At<'_>) {
+        self.interaction.fill(0.0);
+        for (interface, node) in self.interfaces.iter().zip(at.contacts) {
+            let force = node.force();
+            for link in &interface.links {
+                self.interaction[link.dof] -= link.weight * force[link.axis];
+            }
+        }
+        let tolerance = at.chosen.tolerance;
+        let mut scale = self.sizes.reference.max(self.sizes.least_scale(tolerance));
+        let (mut force, mut length) = (0.0_f64, 0.0_f64);
+        for (d, equation) in model.dofs.equation.iter().enumerate() {
+            let balance = self.external[d] + self.interaction[d] - self.force[d];
+            match self.sizes.lever(d) {
+                None => length = length.max(balance.abs() / model.length),
+                Some(lever) => {
+                    scale = scale
+                        .max(self.size[d] / lever)
+                        .max(self.external[d].abs() / lever);
+                    if equation.is_some() {
+                        force = force.max(balance.abs() / lever);
+                    }
+                }
+            }
+            if let Some(equation) = equation {
+                self.residual[*equation] = balance;
+            }
+        }
+        let [floor, length_floor] = self.round_off(model, &at.u);
+        let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
+        let wanted = self.sizes.wanted(model, at, |dof| self.nodal_force(dof));
+        let noise = if floor > 0.0 { floor / wanted } else { 0.0 };
+        self.norms = Norms {
+            force,
+            relative: relative(force).max(length),
+            interface: 0.0,
+            correction: at.correction,
+            scale,
+            limit: tolerance
+                .max(relative(floor))
+                .max(length_floor / model.length),
+            noise: noise.max(length_floor / model.length),
+        };
+        self.norms.interface = self.violation(model, at);
+    }
+
+    /// Aims the last linearisation at another load, at the same displacements; nothing else of it changes where no motion is
+    /// prescribed and no element remembers what was accepted.
+    pub fn aim(&mut self, model: &Model, at: &At<'_>) {
+        self.load(model, at);
+        self.balance(model, at);
+    }
+
+    pub(super) fn load(&mut self, model: &Model, at: &At<'_>) {
+        self.external.fill(0.0);
+        for load in &model.loads {
+            self.external[load.dof] += load.value * load.scale.at(at.target);
+        }
+    }
+
+    /// Renews the residual after the forces of the interface were changed, geometry and stiffness staying.
+    pub fn rebalance(&mut self, model: &Model, at: &At<'_>) {
+        self.balance(model, at);
+    }
+
+    /// MajorCycle-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
+    fn round_off(&mut self, model: &Model, u: &[f64]) -> [f64; 2] {
+        let Some(pattern) = self.pattern().cloned() else {
+            return [0.0; 2];
+        };
+        self.x.fill(0.0);
+        for (d, equation) in model.dofs.equation.iter().enumerate() {
+            if let Some(e) = equation {
+                self.x[*e] = u[d];
+            }
+        }
+        let half = self.layout == Some(Layout::Bodies);
+        pattern.multiply_abs(&self.stiffness, &self.x, &mut self.work, half);
+        let mut worst = [0.0_f64; 2];
+        for (d, equation) in model.dofs.equation.iter().enumerate() {
+            let Some(e) = *equation else { continue };
+            match self.sizes.lever(d) {
+                Some(lever) => worst[0] = worst[0].max(self.work[e] / lever),
+                None => worst[1] = worst[1].max(self.work[e]),
+            }
+        }
+        worst.map(|worst| ROUND_OFF * f64::EPSILON * worst)
+    }
+
+    /// Largest relative violation of the interface conditions by a state's forces and gaps.
+    fn violation(&self, model: &Model, at: &At<'_>) -> f64 {
+        let mut worst = 0.0_f64;
+        // Also in the middle of a major iteration this is about what it began with.
+        let first = at.entered;
+        for (s, node) in at.contacts.iter().enumerate() {
+            let (mode, t_max) = match first.get(s) {
+                Some(input) => (input.mode, input.t_max),
+                None => (node.mode, node.t_max),
+            };
+            let Some(gap) = self.interfaces[s].footing.map(|f| f.gap) else {
+                continue;
+            };
+            let length = match mode {
+                Mode::Free => (-gap).max(0.0),
+                _ => gap.abs(),
+            };
+            let force = match mode {
+                Mode::Sliding => (node.f_t - t_max).abs(),
+                _ => 0.0,
+            };
+            let anchored = at.chosen.sticking == Sticking::Anchored || node.corner.is_some();
+            let drift = match mode {
+                Mode::Fixed if anchored && self.interfaces[s].moves[1] => node.drift.abs(),
+                _ => 0.0,
+            };
+            worst = worst.max(length.max(drift) / model.length);
+            if force > 0.0 {
+                worst = worst.max(force / self.norms.scale);
+            }
+        }
+        worst
+    }
+
+    /// Norms of the last linearisation, with the interface conditions of this state: what is told of it must not hang on
+    /// whether the workspace was made anew since.
+    pub fn norms_of(&mut self, model: &Model, at: &At<'_>) -> Norms {
+        self.norms.interface = self.violation(model, at);
+        self.norms
+    }
+
+    /// Internal force at each degree of freedom in the last linearisation.
+    pub fn internal(&self) -> &[f64] {
+        &self.force
+    }
+
+    /// Internal force less applied load at a degree of freedom: what support or surface must give there.
+    pub fn nodal_force(&self, dof: usize) -> f64 {
+        self.force[dof] - self.external[dof]
+    }
+
+    /// Interaction force at a degree of freedom in the last linearisation.
+    pub fn interaction(&self, dof: usize) -> f64 {
+        self.interaction[dof]
+    }
+}

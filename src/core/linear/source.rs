@@ -1,0 +1,182 @@
+//! The seam between the stepper and what deforms: bodies of our own, constant matrices, or another code.
+//!
+//! A major iteration freezes geometry and stiffness. What it needs from then on is how the interface answers (eqn 6):
+//! the response of the forces to the motions, the gap and the frame of every contact, and what is prescribed. When its
+//! minor iterations have settled, the source takes the forces back: it moves its bodies, follows the slave nodes over
+//! their surfaces, and linearises anew. Whoever can do this can be stepped.
+
+use crate::contact::judge::Verdict;
+use crate::contact::projection::SurfacePoint;
+use crate::contact::state::ContactState;
+use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
+use crate::interface::minor_history::Input;
+use crate::interface::problem::InterfaceProblem;
+use crate::linalg::SolveError;
+use crate::linear::norms::Norms;
+use crate::linear::singular::Singular;
+use crate::model::{Friction, Settings, Watched};
+
+/// The state about which a source linearises.
+#[derive(Debug, Clone, Copy)]
+pub struct At<'a> {
+    /// The source's own unknowns at the start of the present major iteration; of our bodies the values of all degrees
+    /// of freedom ([`crate::model::Dofs`]).
+    pub u: &'a [f64],
+    /// The last accepted state.
+    pub accepted: Accepted<'a>,
+    /// Load factor that the present major iteration aims at.
+    pub target: f64,
+    /// Load factor that the last major iteration aimed at: that of `u`.
+    pub last_target: f64,
+    /// One entry a contact.
+    pub contacts: &'a [ContactState],
+    /// Friction in force, by contact.
+    pub friction: &'a [Friction],
+    /// What went into the first minor iteration of the present major one, by contact; empty before that.
+    pub entered: &'a [Input],
+    /// Largest displacement change in the last major iteration over the scene's length.
+    pub correction: f64,
+    /// The settings as the user has them.
+    pub chosen: &'a Settings,
+    /// The settings in force: the strategy is the rung that the ladder has come to.
+    pub settings: Settings,
+}
+
+/// The last accepted state, from which the present increment started.
+#[derive(Debug, Clone, Copy)]
+pub struct Accepted<'a> {
+    /// The source's own unknowns there.
+    pub u: &'a [f64],
+    /// What the elements remember of it.
+    pub history: &'a [f64],
+    /// One entry a contact.
+    pub contacts: &'a [ContactState],
+}
+
+/// How one solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Solved {
+    /// The solution satisfies the equations.
+    Well,
+    /// It does, but the matrix is singular to working precision.
+    NearlySingular,
+    /// There is no solution, or none that can be computed.
+    Not,
+}
+
+/// What deforms under the interface.
+///
+/// Everything but the methods' arguments is workspace: it can be made again from a state, and is never saved.
+pub trait Source: Send {
+    /// Its own unknowns before the first increment.
+    fn start(&self) -> Vec<f64>;
+
+    /// What its elements remember before the first increment.
+    fn history(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Finds where every contact stands in a state: the point on its surface, normal, stick point and drift. `anew` says
+    /// that a sliding contact takes its stick point along.
+    fn follow(&mut self, u: &[f64], contacts: &mut [ContactState], anew: bool);
+
+    /// Places the stick points of contacts that bring slip into the scene.
+    fn place_stick_points(&mut self, _contacts: &mut [ContactState]) {}
+
+    /// Goes back, or on, to a state; [`Source::linearise`] follows. What keeps nothing but workspace has nothing to do.
+    fn restore(&mut self, _at: &At<'_>) {}
+
+    /// Freezes geometry, stiffness and out-of-balance forces about a state (eqn 5).
+    ///
+    /// # Errors
+    /// [`SolveError`] if the equations cannot be laid out.
+    fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError>;
+
+    /// Adds to the linearisation what turning and travelling interaction forces do, once the state has its final forces.
+    fn turn(&mut self, _at: &At<'_>) {}
+
+    /// Whether the last linearisation holds for a state that differs in the load factor only; then its out-of-balance
+    /// forces are renewed.
+    fn aim(&mut self, _at: &At<'_>) -> bool {
+        false
+    }
+
+    /// How far the state of the last linearisation is from equilibrium, with its interface conditions.
+    fn norms(&mut self, at: &At<'_>) -> Norms;
+
+    /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.
+    fn kinematics(&self, contact: usize) -> Option<NodeKinematics>;
+
+    /// One minor iteration: solves for the modes of the contacts.
+    fn solve(&mut self, at: &At<'_>) -> Solved;
+
+    /// What the last solve gave at a contact.
+    fn increment(&self, contact: usize) -> NodeIncrement;
+
+    /// The interface problem of the last linearisation.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the bodies cannot be condensed.
+    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError>;
+
+    /// A stiffness of the size of the interface's, by which lengths compare with forces (force by length).
+    fn spring(&self) -> f64;
+
+    /// Whether the minor iterations are solved on the condensed interface with these settings.
+    fn condenses(&self, _settings: &Settings) -> bool {
+        true
+    }
+
+    /// Finds what the last solve does to the bodies.
+    fn recover(&mut self) -> Solved;
+
+    /// Takes the forces of the last minor iteration back: moves the bodies on. Returns the largest displacement.
+    fn advance(&mut self, u: &mut [f64]) -> f64;
+
+    /// The stick point of a contact that touched in this major iteration: where its path pierced the surface.
+    fn stick_point(&self, _contact: usize, _state: &ContactState) -> Option<SurfacePoint> {
+        None
+    }
+
+    /// Gives contacts the forces that the stresses call for (residual method 2), where these tell them. Returns whether
+    /// any changed; the out-of-balance forces are renewed by [`Source::rebalance`].
+    fn take_forces_from_stresses(&mut self, _contacts: &mut [ContactState]) -> bool {
+        false
+    }
+
+    /// Renews the out-of-balance forces after forces of contacts were changed.
+    fn rebalance(&mut self, _at: &At<'_>) {}
+
+    /// The state is accepted: renews what the elements remember.
+    fn accept(&mut self, _u: &[f64], _before: &[f64], _history: &mut [f64]) {}
+
+    /// Which motions nothing resists, for these modes.
+    fn explain(&self, _contacts: &[ContactState]) -> Singular {
+        Singular::Unexplained
+    }
+
+    /// Current position of the slave node of a contact.
+    fn position(&self, contact: usize) -> [f64; 2];
+
+    /// Largest displacement of a state; a rotation counts as the displacement that it makes over the scene's length.
+    fn largest_motion(&self, u: &[f64]) -> f64;
+
+    /// Largest displacement between two states (length).
+    fn moved(&self, u: &[f64], before: &[f64]) -> f64;
+
+    /// Judges a converged state by positions and forces alone ([`crate::contact::judge`]).
+    fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict;
+
+    /// Gives contacts that touched in the last accepted state the stick points of there back, so that their net slip
+    /// counts. The state has been judged just before.
+    fn count_net_slip(
+        &mut self,
+        _tolerance: f64,
+        _accepted: &[ContactState],
+        _contacts: &mut [ContactState],
+    ) {
+    }
+
+    /// Value of a monitor in the state of the last linearisation.
+    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64;
+}

@@ -1,0 +1,169 @@
+//! The end of a major iteration: displacements and forces are taken back, the geometry is renewed, and the question is
+//! whether the increment is done.
+
+use crate::interface::method::Searched;
+use crate::linear::norms::Norms;
+use crate::linear::singular::Singular;
+use crate::linear::source::Solved;
+use crate::model::{AtLimit, Mode, ResidualMethod, SlipCount, Sticking};
+use crate::step::event::{Failure, Outcome};
+use crate::step::major_history::{MajorCycle, Scales};
+use crate::step::stepper::Stepper;
+use std::sync::Arc;
+
+/// A displacement this many times the scene's length is divergence.
+const DIVERGED: f64 = 1e4;
+/// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
+/// the length instead.
+const STILL: f64 = 1e-8;
+
+impl Stepper {
+    /// Updates displacements and forces, renews the geometry, and asks whether the increment is done. `settled` is false
+    /// where the limit of minor iterations was accepted.
+    pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
+        if self.source.recover() == Solved::Not {
+            let singular = self.explain();
+            return self.fail(Failure::Singular(singular));
+        }
+        self.update();
+        let search = &mut self.state.search;
+        (search.first, search.fewest, search.rounds) = (None, None, 0);
+        search.searched = Searched::Not;
+        self.kept = None;
+        let norms = self.norms();
+        self.state.unsettled += u32::from(!settled);
+        let Some(after) = norms else {
+            return self.fail(Failure::Singular(Singular::Unexplained));
+        };
+        let settings = self.state.controls.settings;
+        let size = self.source.largest_motion(&self.state.u);
+        let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
+        let balanced = self.is_balanced(&after);
+        let at_limit = self.state.next.major.is_multiple_of(settings.majors);
+        let drowned = after.noise > Norms::LOUDEST;
+        if settled && balanced && !drowned {
+            return self.finish(after);
+        }
+        let accepts = settings.at_major_limit == AtLimit::Accept && !drowned;
+        if at_limit && bounded && accepts {
+            self.state.unsettled += 1;
+            return self.finish(after);
+        }
+        self.next_major();
+        if !bounded {
+            return self.fail(Failure::Diverged {
+                relative: after.relative,
+            });
+        }
+        if drowned && (at_limit || settled && balanced) {
+            return self.fail(Failure::RoundOff { noise: after.noise });
+        }
+        if settings.at_major_limit == AtLimit::Stop
+            && let Some(cycle) = self.find_major_cycle()
+        {
+            self.state.forget_majors();
+            return self.fail(Failure::MajorCycle(cycle));
+        }
+        if at_limit {
+            return self.fail(Failure::MajorLimit {
+                limit: settings.majors,
+                relative: after.relative,
+                interface: after.interface,
+            });
+        }
+        Outcome::Major { after, settled }
+    }
+
+    /// Whether forces and interface conditions are met at the whole load of the increment.
+    fn is_balanced(&self, after: &Norms) -> bool {
+        let tolerance = self.state.controls.settings.tolerance;
+        let exact = after.relative <= tolerance;
+        self.state.last_target == self.state.load_factor
+            && (exact || (after.relative <= after.limit && after.correction <= STILL))
+            && after.interface <= after.limit.max(tolerance)
+    }
+
+    /// Goes on with the first minor iteration of another major one.
+    pub(super) fn next_major(&mut self) {
+        self.state.next.major += 1;
+        self.state.next.minor = 1;
+    }
+
+    /// Whether the next major iteration starts from where an earlier one of this increment did.
+    fn find_major_cycle(&mut self) -> Option<MajorCycle> {
+        let scales = Scales {
+            force: self.force_scale(),
+            length: self.model.length,
+        };
+        let (major, contacts) = (self.state.next.major, self.state.nodes.len());
+        let source = &self.source;
+        let places = (0..contacts).map(|contact| source.position(contact));
+        let history = Arc::make_mut(&mut self.state.major_history);
+        history.push(&self.state.nodes, places);
+        history.cycle(contacts, major, scales)
+    }
+
+    /// Takes displacements and forces of the last minor iteration into the state, and linearises about that.
+    fn update(&mut self) {
+        self.state.last_target = self.state.target;
+        self.state.target = self.state.load_factor;
+        let largest = self
+            .source
+            .advance(Arc::make_mut(&mut self.state.u).as_mut_slice());
+        self.state.correction = largest / self.model.length;
+        if self.state.next.major == 1 {
+            self.state.pace.predicted = largest;
+        }
+        for contact in 0..self.state.nodes.len() {
+            self.take_increment(contact);
+        }
+        self.state.forget_minors();
+        self.follow();
+        self.linearised = self.source.linearise(&self.state.at()).is_ok();
+        let by_stress = self.state.controls.settings.residual == ResidualMethod::Stress;
+        if by_stress && self.source.take_forces_from_stresses(&mut self.state.nodes) {
+            self.source.rebalance(&self.state.at());
+        }
+        self.source.turn(&self.state.at());
+    }
+
+    /// Takes a contact's forces and slip of the last minor iteration; one that has touched is stuck where its path pierced
+    /// the surface.
+    ///
+    /// T_max stays that of the last minor iteration: forces from stresses carry the whole error of the linearisation,
+    /// which can exceed F_n itself, and a first trial with such a T_max opens contacts that are closed.
+    fn take_increment(&mut self, contact: usize) {
+        let record = self.record(contact);
+        let (before, f_n, f_t) = (record.decision.before, record.f_n, record.f_t);
+        let node = &mut self.state.nodes[contact];
+        (node.f_n, node.f_t) = (f_n, f_t);
+        node.slip = if before == Mode::Free && !node.kept {
+            0.0
+        } else {
+            let motion = self.source.increment(contact).motion;
+            let touched = self.source.kinematics(contact).map_or(0.0, |over| {
+                if node.ratio == 0.0 {
+                    0.0
+                } else {
+                    over.gap * node.ratio
+                }
+            });
+            node.slip + motion[1] - touched
+        };
+        if before != Mode::Free && node.anchor.is_none() {
+            node.anchor = self.source.stick_point(contact, node);
+        }
+        node.ratio = 0.0;
+        node.travel = 0.0;
+    }
+
+    /// Finds anew where every contact stands.
+    pub(super) fn follow(&mut self) {
+        // Where slip is counted anew in every major iteration, so is what to stick to.
+        let settings = &self.state.controls.settings;
+        let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
+        self.source
+            .follow(&self.state.u, &mut self.state.nodes, anew);
+        self.linearised = false;
+    }
+}

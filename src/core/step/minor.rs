@@ -1,0 +1,218 @@
+//! A minor iteration: is there a solution, do the modes hold, and have modes and T_max settled?
+
+use crate::contact::record::ContactRecord;
+use crate::contact::table2::Ties;
+use crate::interface::minor::{self, Check, carried};
+use crate::interface::minor_history::Cycle;
+use crate::linear::singular::Singular;
+use crate::linear::source::Solved;
+use crate::model::{self, AtCycle, AtLimit};
+use crate::step::event::{Failure, Outcome};
+use crate::step::stepper::Stepper;
+use crate::strategy;
+use std::sync::Arc;
+
+/// Two states of a minor loop whose numbers differ by less than this, relatively, are the same. It is far below any
+/// tolerance, so that T_max that converges slowly has settled before two rounds look alike.
+const SAME: f64 = 1e-14;
+/// Forces this many times larger than the interface's stiffness over the scene's length are no forces.
+const UNBOUNDED: f64 = 1e10;
+/// Rounds that all changes at once may go on without getting fewer.
+const PATIENCE: u32 = 10;
+
+impl Stepper {
+    /// Notes what goes into this minor iteration, to recognise a cycle.
+    pub(super) fn remember(&mut self) {
+        Arc::make_mut(&mut self.state.minor_history).push(&self.state.nodes);
+    }
+
+    /// Why a solve gave no answer, or none that means anything.
+    pub(super) fn unsolvable(&self, solved: Solved) -> Option<Failure> {
+        let singular = match solved {
+            Solved::Well => None,
+            Solved::NearlySingular => {
+                Some(self.explain()).filter(|why| matches!(why, Singular::Rigid { .. }))
+            }
+            Solved::Not => Some(self.explain()),
+        };
+        singular
+            .map(Failure::Singular)
+            .or_else(|| self.over_constrained())
+    }
+
+    /// Which motions nothing resists, for the modes of this minor iteration.
+    pub(super) fn explain(&self) -> Singular {
+        self.source.explain(&self.state.nodes)
+    }
+
+    /// A touching contact with a gap that no unknown can close.
+    fn over_constrained(&self) -> Option<Failure> {
+        let tolerance = self.state.controls.settings.tolerance * self.model.length;
+        self.state
+            .nodes
+            .iter()
+            .enumerate()
+            .find_map(|(slave, node)| {
+                let over = self.source.kinematics(slave)?;
+                let holds = carried(node.mode, over.moves)[0] && over.gap < -tolerance;
+                holds.then_some(Failure::OverConstrained {
+                    slave,
+                    gap: over.gap,
+                })
+            })
+    }
+
+    /// Whether the last solve gave forces out of all proportion: those of a singular system, kept finite by round-off.
+    pub(super) fn is_unbounded(&self) -> bool {
+        let natural = self.source.spring() * self.model.length;
+        (0..self.state.nodes.len()).any(|contact| {
+            let forces = self.source.increment(contact).force;
+            forces.iter().any(|f| f.abs() > UNBOUNDED * natural)
+        })
+    }
+
+    /// What failed before a ladder found a state in which nothing is pressed: where the equations were singular, such a
+    /// state holds nothing that was loose.
+    pub(super) fn unsupported(&self) -> Option<Failure> {
+        let first = self.state.search.first.as_deref()?;
+        let force = self.ties().force;
+        let pressed = |record: &ContactRecord| record.f_n > force;
+        let loose = matches!(first, Failure::Singular(_)) && !self.event.nodes.iter().any(pressed);
+        loose.then(|| first.clone())
+    }
+
+    fn ties(&self) -> Ties {
+        let settings = &self.state.controls.settings;
+        Ties {
+            force: settings.tolerance * self.force_scale(),
+            length: settings.tolerance * self.model.length,
+            keep: settings.ties == model::Ties::Keep,
+        }
+    }
+
+    /// Size of forces: where displacements are prescribed, none may act before the first solve but at the interface.
+    pub(super) fn force_scale(&self) -> f64 {
+        let nodes = self.state.nodes.iter().enumerate();
+        nodes.fold(self.norms.scale, |scale, (contact, node)| {
+            let [d_n, d_t] = self.source.increment(contact).force;
+            scale
+                .max((node.f_n + d_n).abs())
+                .max((node.f_t + d_t).abs())
+        })
+    }
+
+    /// Checks every contact's mode and records it; true where modes and T_max have settled.
+    ///
+    /// Leaves the modes of the next minor iteration in the state.
+    pub(super) fn check(&mut self) -> bool {
+        let settings = self.state.settings();
+        let method = strategy::method(settings.strategy);
+        let check = Check {
+            settings,
+            method,
+            ties: self.ties(),
+            stiffness: if method.compares_by_springs() {
+                self.source.spring()
+            } else {
+                1.0
+            },
+        };
+        let mut settled = true;
+        let controls = self.state.controls.clone();
+        let singly = method.is_single(self.is_stalled());
+        if singly {
+            self.before.clone_from(&self.state.nodes);
+        }
+        for (contact, node) in self.state.nodes.iter_mut().enumerate() {
+            let over = self.source.kinematics(contact);
+            let increment = self.source.increment(contact);
+            let friction = node.friction(&controls.friction[contact]);
+            let (record, still) = minor::check(node, over.as_ref(), increment, &friction, &check);
+            settled &= still;
+            self.event.nodes.push(record);
+        }
+        if method.counts_changes() {
+            self.count_changes();
+        }
+        if singly {
+            minor::one_at_a_time(&mut self.state.nodes, &self.before, &mut self.event.nodes);
+        }
+        settled
+    }
+
+    /// Whether all changes at once have gone on for long without getting fewer.
+    fn is_stalled(&self) -> bool {
+        self.state.search.rounds > PATIENCE
+    }
+
+    /// Counts the rounds since fewer nodes changed than ever before in this major iteration. What went before a change
+    /// of pace tells nothing of cycles.
+    fn count_changes(&mut self) {
+        let all = self.event.nodes.iter();
+        let changing = all.filter(|record| record.decision.changes()).count();
+        let stalled = self.is_stalled();
+        let search = &mut self.state.search;
+        if search.fewest.is_none_or(|fewest| changing < fewest) {
+            (search.fewest, search.rounds) = (Some(changing), 0);
+        } else {
+            search.rounds += 1;
+        }
+        if self.is_stalled() != stalled {
+            self.state.forget_minors();
+        }
+    }
+
+    /// The minor loop has not settled: look for a cycle and at the limit, and count on.
+    pub(super) fn go_on(&mut self) -> Outcome {
+        let settings = self.state.settings();
+        let method = strategy::method(settings.strategy);
+        if method.search().is_some() {
+            return self.begin_search();
+        }
+        let accept = settings.at_minor_limit == AtLimit::Accept;
+        let tried = self.state.minor_history.len(self.state.nodes.len()) as u32;
+        let at_limit = tried > 0 && tried.is_multiple_of(settings.minors);
+        if at_limit && accept {
+            return self.end_major(false);
+        }
+        let moves_on = method.counts_changes() && !self.is_stalled();
+        if !accept
+            && !moves_on
+            && let Some(cycle) = self.find_cycle()
+        {
+            if settings.at_cycle == AtCycle::Damp && self.damp() {
+                self.state.next.minor += 1;
+                return Outcome::Damped {
+                    cycle,
+                    target: self.state.target,
+                };
+            }
+            return self.escalate(Failure::Cycle(cycle));
+        }
+        if at_limit {
+            let changing = self.changing();
+            return self.escalate(Failure::MinorLimit {
+                limit: settings.minors,
+                changing,
+            });
+        }
+        self.state.next.minor += 1;
+        Outcome::Minor
+    }
+
+    /// Contacts whose mode or T_max still changed in the last minor iteration.
+    fn changing(&self) -> Vec<usize> {
+        let force = self.ties().force;
+        let moves =
+            |r: &ContactRecord| r.decision.changes() || (r.t_max - r.t_max_used).abs() > force;
+        let records = self.event.nodes.iter().enumerate();
+        records.filter(|(_, r)| moves(r)).map(|(s, _)| s).collect()
+    }
+
+    /// Whether the next minor iteration starts from where an earlier one of this major did.
+    fn find_cycle(&self) -> Option<Cycle> {
+        let force = SAME * self.force_scale();
+        let (state, minor) = (&self.state, self.state.next.minor);
+        state.minor_history.cycle(&state.nodes, minor, force, SAME)
+    }
+}

@@ -1,0 +1,216 @@
+//! What happens where the modes do not settle: the next strategy of the ladder, or a search over all nodes.
+
+use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::state::ContactState;
+use crate::contact::table1::t_max;
+use crate::contact::table2::{Decision, Rule, Test, Tested};
+use crate::interface::method::{Asked, NoProposal, Proposal, Searched};
+use crate::interface::minor_history::Input;
+use crate::interface::problem::Assumed;
+use crate::linear::singular::Singular;
+use crate::model::Mode;
+use crate::step::event::{Failure, Outcome};
+use crate::step::state::Progress;
+use crate::step::stepper::Stepper;
+use crate::strategy;
+
+impl Stepper {
+    /// The strategy cannot go on: the ladder's next one takes over, from where the major iteration began. Where there is
+    /// none, the increment fails.
+    pub(super) fn escalate(&mut self, why: Failure) -> Outcome {
+        let searches = strategy::method(self.state.settings().strategy)
+            .search()
+            .is_some();
+        if searches && self.state.search.searched == Searched::Not {
+            return self.begin_search();
+        }
+        let rungs = strategy::rungs(self.state.controls.settings.strategy);
+        let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
+        if rungs.is_empty() || self.state.nodes.iter().any(held) {
+            let unsolved = matches!(why, Failure::Singular(_) | Failure::OverConstrained { .. });
+            self.state.next.minor += u32::from(!unsolved);
+            self.state.forget_minors();
+            return self.fail(why);
+        }
+        self.begin_again();
+        let search = &mut self.state.search;
+        let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
+        if let Some(&to) = rungs.get(search.rung + 1) {
+            search.rung += 1;
+            (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
+            self.state.next.minor += 1;
+            return Outcome::Climbed { why, to };
+        }
+        let first = first.clone();
+        self.state.search = Progress::default();
+        self.fail(ended(*first, why))
+    }
+
+    /// Gives the contacts what they brought into the present major iteration.
+    pub(super) fn begin_again(&mut self) {
+        self.take_back();
+        self.state.forget_minors();
+    }
+
+    fn take_back(&mut self) {
+        let first = self.state.minor_history.first(self.state.nodes.len());
+        for (node, input) in self.state.nodes.iter_mut().zip(first) {
+            (node.mode, node.ratio) = (input.mode, input.ratio);
+            if input.mode == Mode::Sliding {
+                (node.t_max, node.sign) = (input.t_max, input.t_max.signum());
+            }
+        }
+    }
+
+    /// The modes that were tried do not hold: the next start of a search over all nodes, or its next answer.
+    pub(super) fn begin_search(&mut self) -> Outcome {
+        let search = &mut self.state.search;
+        let start = match search.searched {
+            Searched::Not => {
+                search.unconfirmed = 0;
+                0
+            }
+            Searched::At { start, .. } => start + 1,
+            Searched::Found { start } => {
+                search.unconfirmed += 1;
+                start + 1
+            }
+        };
+        search.searched = Searched::At { start, step: 0 };
+        self.take_back();
+        self.state.next.minor += 1;
+        Outcome::Minor
+    }
+
+    /// The start and step that a search over all nodes has come to, if this minor iteration is one of it.
+    pub(super) fn searching(&self) -> Option<(usize, usize)> {
+        let method = strategy::method(self.state.settings().strategy);
+        match (method.search(), self.state.search.searched) {
+            (Some(_), Searched::At { start, step }) => Some((start, step)),
+            _ => None,
+        }
+    }
+
+    /// One proposal of a search over all nodes.
+    pub(super) fn propose(&mut self, start: usize, step: usize) -> Outcome {
+        self.state.minors += 1;
+        let brought = self.brought();
+        let Stepper {
+            state,
+            source,
+            kept,
+            ..
+        } = self;
+        let method = strategy::method(state.settings().strategy);
+        let asked = Asked {
+            start,
+            step,
+            unconfirmed: state.search.unconfirmed,
+            brought: &brought,
+            problem: &mut || source.problem(&state.at()).ok(),
+            kept,
+        };
+        let Some(proposed) = method.search().map(|search| search.propose(asked)) else {
+            return Outcome::Minor;
+        };
+        match proposed {
+            Ok(proposal) => self.take(&proposal),
+            Err(NoProposal::NotFound(why)) => self.escalate(Failure::NotFound(why)),
+            Err(NoProposal::NoAnswer { tried }) => {
+                let first = self.state.search.first.clone();
+                self.escalate(Failure::NoAnswer { first, tried })
+            }
+        }
+    }
+
+    /// Records what a search has the contacts do, and leaves it in the state.
+    fn take(&mut self, proposal: &Proposal) -> Outcome {
+        self.state.search.searched = proposal.next;
+        for (contact, &(assumed, numbers)) in proposal.nodes.iter().enumerate() {
+            self.assume(contact, assumed, numbers, proposal);
+        }
+        if let Some((contact, tested)) = proposal.bound {
+            self.event.nodes[contact].decision.tests[1] = Some(Test {
+                tested,
+                value: 0.0,
+                bound: 0.0,
+                margin: 0.0,
+                tie: false,
+            });
+        }
+        self.state.next.minor += 1;
+        Outcome::Minor
+    }
+
+    /// What the contacts brought into the present major iteration.
+    fn brought(&self) -> Vec<Assumed> {
+        let first = self.state.minor_history.first(self.state.nodes.len());
+        let of = |input: &Input| Assumed::of(input.mode, input.t_max);
+        first.iter().map(of).collect()
+    }
+
+    fn assume(
+        &mut self,
+        contact: usize,
+        assumed: Assumed,
+        [f_n, f_t, gap, slip]: [f64; 4],
+        proposal: &Proposal,
+    ) {
+        let node = &mut self.state.nodes[contact];
+        let friction = node.friction(&self.state.controls.friction[contact]);
+        let over = self.source.kinematics(contact);
+        let before = node.mode;
+        node.mode = assumed.mode();
+        node.ratio = 0.0;
+        node.sign = assumed.sign();
+        let sign = if f_t == 0.0 { node.sign } else { f_t.signum() };
+        node.t_max = t_max(&friction, f_n, sign);
+        let test = Test {
+            tested: Tested::Cover,
+            value: proposal.cover,
+            bound: 0.0,
+            margin: -proposal.cover,
+            tie: false,
+        };
+        let rule = match over {
+            Some(_) => proposal.rule,
+            None => Rule::OffSurface,
+        };
+        self.event.nodes.push(ContactRecord {
+            decision: Decision {
+                before,
+                next: node.mode,
+                rule,
+                tests: [over.map(|_| test), None],
+                wanted: node.mode,
+            },
+            forced: node.forced,
+            gap,
+            f_n,
+            f_t,
+            t_max: node.t_max,
+            t_max_used: node.t_max,
+            slip,
+            drift: node.drift,
+            spot: node.spot,
+            normal: over.map_or(node.normal, |k| k.normal),
+            foot: over.map_or([f64::NAN; 2], |k| k.foot),
+            carried: [false; 2],
+        });
+    }
+}
+
+/// What a ladder failed of whose first rung failed of `first` and whose last of `last`.
+fn ended(first: Failure, last: Failure) -> Failure {
+    match (first, last) {
+        (
+            first @ (Failure::Singular(Singular::Rigid { .. }) | Failure::OverConstrained { .. }),
+            _,
+        ) => first,
+        (_, last @ Failure::NoAnswer { .. }) => last,
+        (first, last) => Failure::LadderEnded {
+            first: Box::new(first),
+            last: Box::new(last),
+        },
+    }
+}

@@ -1,0 +1,24 @@
+//! Block pivoting: all changes at once, and one at a time while their number does not fall.
+//!
+//! As long as fewer nodes change than ever before in a major iteration, or did so a few rounds ago, the modes may
+//! return to earlier ones without that being a cycle.
+
+use crate::contact::table2::Entry;
+use crate::interface::method::Method;
+
+/// Rough nodes enter sliding; all changes at once until that stalls.
+pub struct Block;
+
+impl Method for Block {
+    fn entry(&self) -> Entry {
+        Entry::Sliding
+    }
+
+    fn is_single(&self, stalled: bool) -> bool {
+        stalled
+    }
+
+    fn counts_changes(&self) -> bool {
+        true
+    }
+}

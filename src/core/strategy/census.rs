@@ -1,0 +1,60 @@
+//! The census as a strategy: all assumptions of what the nodes do are tried ([`crate::interface::census`]), and the
+//! consistent ones taken one after the other, those first that change the least.
+
+use crate::contact::table2::Rule;
+use crate::interface::census;
+use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
+use crate::interface::problem::{Assumed, NodeAnswer};
+use crate::model::BoundUpdate;
+
+/// All assumptions over the nodes that can touch.
+pub struct Census;
+
+impl Method for Census {
+    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
+        BoundUpdate::Consistent
+    }
+
+    fn search(&self) -> Option<&dyn Search> {
+        Some(self)
+    }
+}
+
+impl Search for Census {
+    /// The answer of number `asked.start`.
+    fn propose(&self, asked: Asked<'_>) -> Result<Proposal, NoProposal> {
+        let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
+        let undecided: Vec<usize> = (0..problem.nodes.len())
+            .filter(|&place| problem.nodes[place].choices().len() > 1)
+            .collect();
+        let problem = problem.reduced(&undecided).ok_or(NotFound::Loose)?;
+        let too_many = |census::TooMany { nodes }| NotFound::TooMany { nodes };
+        let mut census = census::census(&problem).map_err(too_many)?;
+        let differs = |(place, node): (&usize, &NodeAnswer)| asked.brought[*place] != node.assumed;
+        census.answers.sort_by_key(|found| {
+            let all = undecided.iter().zip(&found.answer.nodes);
+            all.filter(|&pair| differs(pair)).count()
+        });
+        let Some(found) = census.answers.get(asked.start) else {
+            return Err(match census.answers.len() {
+                0 => NoProposal::NoAnswer {
+                    tried: census.tried,
+                },
+                states => NotFound::Unconfirmed { states }.into(),
+            });
+        };
+        let free = (Assumed::Free, [0.0, 0.0, f64::INFINITY, 0.0]);
+        let mut nodes = vec![free; asked.brought.len()];
+        for (&place, node) in undecided.iter().zip(&found.answer.nodes) {
+            let numbers = [node.f_n, node.f_t, node.gap, node.slip];
+            nodes[place] = (node.assumed, numbers);
+        }
+        Ok(Proposal {
+            nodes,
+            rule: Rule::Found,
+            cover: 0.0,
+            bound: None,
+            next: Searched::Found { start: asked.start },
+        })
+    }
+}

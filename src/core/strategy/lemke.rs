@@ -1,0 +1,97 @@
+//! Lemke's pivoting on the linear complementarity problem of Coulomb's law ([`crate::interface::lemke`]), a pivot a minor
+//! iteration. What it finds is checked by Table 2 in the minor iteration after.
+
+use crate::contact::table2::Rule;
+use crate::interface::lemke::{End, Lemke as Tableau, STARTS};
+use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
+use crate::model::BoundUpdate;
+
+/// Pivoting from several starts.
+pub struct Lemke;
+
+/// A tableau, the start that it came from, and the pivots done.
+struct Path {
+    tableau: Tableau,
+    start: usize,
+    step: usize,
+}
+
+impl Method for Lemke {
+    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
+        BoundUpdate::Consistent
+    }
+
+    fn search(&self) -> Option<&dyn Search> {
+        Some(self)
+    }
+}
+
+impl Search for Lemke {
+    /// One pivot; where the path has ended on a ray, the next start is next.
+    fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
+        let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
+        let mut path: Box<Path> = match kept {
+            Some(path) if is_at(&path, &asked) => path,
+            _ => Box::new(path(&mut asked)?),
+        };
+        // It has ended already where its start is the answer.
+        if path.tableau.pivot().is_some() {
+            path.step += 1;
+        }
+        let tableau = &path.tableau;
+        let start = path.start;
+        let ended = tableau.ended();
+        let nodes = (0..asked.brought.len()).map(|k| (tableau.assumed(k), tableau.numbers(k)));
+        let proposal = Proposal {
+            nodes: nodes.collect(),
+            rule: match ended {
+                Some(End::Solved) => Rule::Found,
+                _ => Rule::Pivots,
+            },
+            cover: tableau.cover(),
+            bound: tableau.bound(),
+            next: match ended {
+                None => Searched::At {
+                    start,
+                    step: path.step,
+                },
+                Some(End::Solved) => Searched::Found { start },
+                Some(End::Ray | End::Astray) => Searched::At {
+                    start: start + 1,
+                    step: 0,
+                },
+            },
+        };
+        *asked.kept = Some(path);
+        Ok(proposal)
+    }
+}
+
+fn is_at(path: &Path, asked: &Asked<'_>) -> bool {
+    (path.start, path.step) == (asked.start, asked.step)
+}
+
+/// The tableau after so many pivots from a start, or from the first one behind it whose basis is regular.
+fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
+    let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
+    let mut starts = (asked.start..STARTS).filter_map(|number| {
+        let tableau = Tableau::new(&problem, asked.brought, number)?;
+        Some((tableau, number))
+    });
+    let Some((mut tableau, start)) = starts.next() else {
+        return Err(match (asked.start, asked.unconfirmed) {
+            (0, _) => NotFound::NoStart,
+            (_, 0) => NotFound::Ray,
+            (_, states) => NotFound::Unconfirmed { states },
+        });
+    };
+    let step = if start == asked.start { asked.step } else { 0 };
+    for _ in 0..step {
+        tableau.pivot();
+    }
+    Ok(Path {
+        tableau,
+        start,
+        step,
+    })
+}

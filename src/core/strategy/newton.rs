@@ -1,0 +1,76 @@
+//! Semismooth Newton on the projections of the forces.
+//!
+//! A node is pressed where F_n exceeds what a spring of stiffness k would push off it through the gap, and slides where
+//! force and spring together exceed the friction that this gives:
+//!
+//! ```text
+//! opens    F_n − k g <= 0
+//! slides   |F_t + k slip| > tan φ (F_n − k g) + c
+//! ```
+
+use crate::contact::table2::{Decision, Numbers, Rule, Tested};
+use crate::interface::method::{Choice, Known, Method};
+use crate::model::{BoundUpdate, Mode};
+
+/// Projections of the forces.
+pub struct Newton;
+
+impl Method for Newton {
+    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
+        BoundUpdate::Consistent
+    }
+
+    fn compares_by_springs(&self) -> bool {
+        true
+    }
+
+    fn choose(&self, numbers: &Numbers, known: &Known<'_>) -> Choice {
+        let (friction, ties) = (known.friction, known.ties);
+        let (stiffness, had) = (known.spring, known.sign);
+        let before = numbers.mode;
+        let pressure = numbers.f_n - stiffness * numbers.gap;
+        let drag = numbers.f_t + stiffness * known.slip;
+        let limit = friction.coefficient() * pressure + friction.cohesion;
+        // A tie keeps what the node does.
+        let tie = if ties.keep { ties.force } else { 0.0 };
+        let opens = pressure <= if before == Mode::Free { tie } else { -tie };
+        let goes_on = before == Mode::Sliding && had * drag >= limit - tie;
+        let (next, rule) = if opens {
+            (Mode::Free, Rule::NewtonOpens)
+        } else if friction.is_smooth() || goes_on || drag.abs() > limit + tie {
+            (Mode::Sliding, Rule::NewtonSlides)
+        } else {
+            (Mode::Fixed, Rule::NewtonSticks)
+        };
+        let sign = if goes_on || drag == 0.0 {
+            had
+        } else {
+            drag.signum()
+        };
+        let kept = |keeps: bool, distance: f64| {
+            if keeps {
+                distance.abs()
+            } else {
+                -distance.abs()
+            }
+        };
+        let touch = kept(opens == (before == Mode::Free), pressure);
+        let pressed = ties.test(Tested::Pressure, pressure, 0.0, touch, ties.force);
+        let shear = kept(next == before && sign == had, drag.abs() - limit);
+        let sheared = ties.test(Tested::Drag, drag.abs(), limit, shear, ties.force);
+        let decision = Decision {
+            before,
+            next,
+            rule,
+            tests: [
+                Some(pressed),
+                (!opens && !friction.is_smooth()).then_some(sheared),
+            ],
+            wanted: next,
+        };
+        Choice {
+            decision,
+            sign: Some(sign),
+        }
+    }
+}
