@@ -59,10 +59,12 @@ fn problem_01_meets_the_closed_form_over_the_whole_loop() {
                 let here: HashMap<u64, &crate::common::Accepted> = part(branch == "load")
                     .map(|(_, a)| ((a.load * 1e6).round() as u64, a))
                     .collect();
+                let mut met = 0;
                 for row in &rows {
                     let Some(a) = here.get(&((number(row, "P") * 1e6).round() as u64)) else {
                         continue;
                     };
+                    met += 1;
                     // In the loop's own scale, and relative to each value itself.
                     let (u, exact) = (a.monitors["u_x"], number(row, "u_ENG"));
                     let wrong = (u - exact).abs();
@@ -82,6 +84,7 @@ fn problem_01_meets_the_closed_form_over_the_whole_loop() {
                         a.event.nodes[0].f_t
                     );
                 }
+                assert!(met > 2, "{increment} {branch}: only {met} rows met");
             }
         }
     }
