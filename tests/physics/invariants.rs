@@ -7,7 +7,7 @@ use stickslip::scene::spec::{LoadSpec, Mode, Nodes, Point, Spec};
 use stickslip::scene::{Friction, Model, Scene};
 use stickslip::solve::{Outcome, State, Status, Stepper};
 
-/// All built-in scenes but those that are to fail, of which `tests/oscillators.rs` speaks; the inclined cantilever with its
+/// All built-in scenes but those that are to fail, of which `tests/solver/oscillators.rs` speaks; the inclined cantilever with its
 /// node forced to slide once where it stops.
 fn accepted_everywhere(check: impl Fn(&Scene, &crate::common::Accepted)) {
     let fails = |name: &str| name.starts_with("osc-") && name != "osc-inclined-cantilever";
