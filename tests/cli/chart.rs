@@ -48,7 +48,7 @@ fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() 
     let output = ran(directory.path(), &arguments);
     let table = rows(&output);
     let errors: Vec<f64> = table.iter().map(|r| number(r, "error")).collect();
-    // As in `tests/references.rs`, over both displacements and fewer loads.
+    // As in `tests/physics/references.rs`, over both displacements and fewer loads.
     let limits = [4e-4, 2e-4, 4e-5];
     assert!(
         errors.iter().zip(limits).all(|(e, limit)| *e < limit),

@@ -11,3 +11,5 @@ mod study;
 mod map;
 // Work-precision charts draw what they measured, failures too.
 mod chart;
+// One thread or two, one job or two: the same bytes.
+mod threads;

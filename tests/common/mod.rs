@@ -107,6 +107,11 @@ pub fn number(row: &HashMap<String, String>, column: &str) -> f64 {
         .unwrap_or_else(|_| panic!("{column}: {:?}", row[column]))
 }
 
+/// The order of convergence from a coarse to a fine error, where the mesh or the increment was divided by `finer`.
+pub fn order(coarse: f64, fine: f64, finer: f64) -> f64 {
+    (coarse / fine).ln() / finer.ln()
+}
+
 /// Two strips pressed on each other, the lower one held below, `refine` times finer than 25 slave nodes: with 8, 193
 /// slave nodes and about 10,000 unknowns.
 pub fn two_blocks(refine: usize) -> Scene {

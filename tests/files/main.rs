@@ -25,5 +25,7 @@ mod refusals;
 mod writing;
 // The program may be passed on with all that it is made of.
 mod licences;
+// The declared Rust version is true, and the same everywhere.
+mod versions;
 // The README shows what the program shows.
 mod readme;

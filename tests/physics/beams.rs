@@ -1,6 +1,6 @@
 //! Beams alone, against closed forms: no surface, no slave node.
 
-use crate::common::{Run, run};
+use crate::common::{Run, order, run};
 use std::f64::consts::PI;
 use stickslip::scene::Scene;
 
@@ -38,11 +38,10 @@ fn an_end_moment_rolls_a_straight_beam_into_a_full_circle() {
             let elements = 24 / (m - 1);
             let load = format!("Moment(node: \"b.end\", value: {})", 2.0 * PI);
             let run = cantilever(&line(elements, m), material, &load, 0.1);
-            // The nodes of a beam of constant curvature lie on the circle whatever the elements' order.
+            // Constant curvature turns every element alike, so that the nodes close exactly, whatever the elements' order.
             assert!((end(&run, "r") - 2.0 * PI).abs() < 1e-8, "m {m}");
-            let limit = if m == 2 { 2e-3 } else { 1e-3 };
             assert!(
-                (end(&run, "x") + 1.0).abs() < limit && end(&run, "y").abs() < limit,
+                (end(&run, "x") + 1.0).abs() < 1e-12 && end(&run, "y").abs() < 1e-12,
                 "m {m}"
             );
             assert!((end(&run, "m") + 2.0 * PI).abs() < 1e-8);
@@ -82,16 +81,27 @@ fn a_slender_beam_does_not_lock_and_a_shear_rigid_one_is_its_limit() {
 fn a_curved_reference_shape_straightens_under_the_moment_that_its_curvature_asks_for() {
     // A quarter circle of radius 2/pi has length 1; the moment EI kappa straightens it.
     let radius = 2.0 / PI;
-    for m in 3..=9 {
+    let off = |elements: usize, m: usize| {
         let shape = format!(
-            "Arc(id: \"b\", center: (0.0, {radius}), radius: {radius}, from: -90.0, to: 0.0, elements: {}, per_element: {m})",
-            24 / (m - 1)
+            "Arc(id: \"b\", center: (0.0, {radius}), radius: {radius}, from: -90.0, to: 0.0, elements: {elements}, per_element: {m})"
         );
         let load = format!("Moment(node: \"b.end\", value: {})", -1.0 / radius);
         let run = cantilever(&shape, "EA: 1e4, EI: 1.0", &load, 0.25);
         let (x, y) = (radius + end(&run, "x"), radius + end(&run, "y"));
-        let limit = if m == 3 { 3e-3 } else { 1e-4 };
-        assert!((x - 1.0).abs() < limit && y.abs() < limit, "m {m}: {x} {y}");
+        (x - 1.0).hypot(y)
+    };
+    // The reference shape is a polynomial through points of the arc: of order p + 1 for elements of degree p, at least.
+    for m in 2..=6 {
+        let (coarse, fine) = (off(4, m), off(8, m));
+        let rate = order(coarse, fine, 2.0);
+        assert!(
+            rate > m as f64 - 0.2,
+            "m {m}: order {rate}, {coarse:e} {fine:e}"
+        );
+        assert!(fine < 1e-2);
+    }
+    for m in 7..=9 {
+        assert!(off(4, m) < 1e-9, "m {m}");
     }
 }
 
@@ -131,6 +141,10 @@ fn newton_is_quadratic_at_the_end() {
             _ => {}
         }
     }
-    let last: Vec<f64> = residuals.iter().rev().take(2).copied().collect();
-    assert!(last[0] < 10.0 * last[1] * last[1].sqrt(), "{residuals:?}");
+    // The order from three residuals that fall; the last is still well above round-off.
+    let [a, b, c] = *residuals.last_chunk().unwrap();
+    let order = (c / b).ln() / (b / a).ln();
+    println!("{residuals:?}: order {order}");
+    assert!(a < 0.1 && c > 1e-13, "{residuals:?}");
+    assert!((1.8..2.5).contains(&order), "{residuals:?}: order {order}");
 }

@@ -3,7 +3,7 @@
 use crate::common::{force, go_on, run, scene};
 use std::sync::Arc;
 use stickslip::model::Mode;
-use stickslip::model::Model;
+use stickslip::model::{Friction, Model};
 use stickslip::scene::Scene;
 use stickslip::scene::builtin;
 use stickslip::scene::spec::{LoadSpec, Nodes, Point, Spec};
@@ -11,7 +11,7 @@ use stickslip::step::event::Outcome;
 use stickslip::step::state::{State, Status};
 use stickslip::step::stepper::Stepper;
 
-/// All built-in scenes but those that are to fail, of which `tests/oscillators.rs` speaks; the inclined cantilever with its
+/// All built-in scenes but those that are to fail, of which `tests/solver/oscillators.rs` speaks; the inclined cantilever with its
 /// node forced to slide once where it stops.
 fn accepted_everywhere(check: impl Fn(&Scene, &crate::common::Accepted)) {
     let fails = |name: &str| name.starts_with("osc-") && name != "osc-inclined-cantilever";
@@ -78,32 +78,101 @@ fn with_reactions(model: &Model, axis: usize) -> Model {
     model
 }
 
+/// What an accepted increment does against contact and Coulomb's law, where a slave node has this friction.
+fn against_coulomb(
+    scene: &Scene,
+    a: &crate::common::Accepted,
+    friction: impl Fn(usize) -> Friction,
+) -> Vec<String> {
+    let Outcome::Increment { after, .. } = &a.event.outcome else {
+        unreachable!()
+    };
+    let (force, length) = (1e-8 * after.scale, 1e-8 * scene.model.length);
+    let mut found = Vec::new();
+    for (slave, (node, record)) in a.state.start.nodes.iter().zip(&a.event.nodes).enumerate() {
+        let mut must = |holds: bool, what: &str| {
+            if !holds {
+                found.push(format!(
+                    "{} load {} node {slave} {:?}: {what}",
+                    scene.name, a.load, node.mode
+                ));
+            }
+        };
+        let friction = friction(slave);
+        let limit = node.f_n.abs() * friction.coefficient() + friction.cohesion;
+        if node.mode == Mode::Free {
+            must(record.gap >= -length, "penetrates");
+            must(node.f_n == 0.0 && node.f_t == 0.0, "has a force");
+            continue;
+        }
+        must(record.gap.abs() <= length, "gap");
+        must(node.f_n >= -force, "pulls");
+        if node.mode == Mode::Fixed {
+            must(record.slip.abs() <= length, "slips");
+            must(node.f_t.abs() <= limit + force, "more than friction gives");
+        } else {
+            must((node.f_t.abs() - limit).abs() <= force, "not at its limit");
+            must(
+                node.t_max * record.slip >= -force * length,
+                "friction goes with slip",
+            );
+        }
+    }
+    found
+}
+
 #[test]
 fn accepted_increments_obey_contact_and_coulomb() {
     accepted_everywhere(|scene, a| {
-        let Outcome::Increment { after, .. } = &a.event.outcome else {
-            unreachable!()
-        };
-        let (force, length) = (1e-8 * after.scale, 1e-8 * scene.model.length);
-        for (node, record) in a.state.start.nodes.iter().zip(&a.event.nodes) {
-            let limit = node.f_n.abs() * scene.model.contacts[0].friction.coefficient();
-            match node.mode {
-                Mode::Free => assert!(record.gap >= -length && node.f_n == 0.0 && node.f_t == 0.0),
-                Mode::Fixed => {
-                    assert!(record.gap.abs() <= length && record.slip.abs() <= length);
-                    assert!(node.f_n >= -force && node.f_t.abs() <= limit + force);
-                }
-                Mode::Sliding => {
-                    assert!(record.gap.abs() <= length && node.f_n >= -force);
-                    assert!((node.f_t.abs() - limit).abs() <= force);
-                    assert!(
-                        node.t_max * record.slip >= -force * length,
-                        "friction opposes slip"
-                    );
-                }
-            }
-        }
+        let own = |slave: usize| scene.model.contacts[slave].friction;
+        assert_eq!(against_coulomb(scene, a, own), [""; 0]);
     });
+}
+
+/// A block that is pressed on a floor and pulled along it, smooth in front, rough behind, and cohesive between.
+const FRICTIONS: &str = r#"(title: "t",
+    nodes: [Block(id: "k", corners: [(0, 0), (4, 1)], elements: (4, 1)),
+        Line(id: "floor", from: (9, 0), to: (-9, 0), elements: 1, per_element: 2)],
+    materials: [Elastic(id: "m", E: 100, nu: 0.3)], bodies: [Solid(id: "k", mesh: "k", material: "m")],
+    surfaces: [(id: "floor", along: "floor")],
+    slaves: [
+        (nodes: ["k.bottom.1", "k.bottom.2", "k.bottom.3"], on: ["floor"], friction: (angle: 35)),
+        (nodes: ["k.bottom.4", "k.bottom.5", "k.bottom.6"], on: ["floor"], friction: (angle: 5, cohesion: 0.05)),
+        (nodes: ["k.bottom.7", "k.bottom.8", "k.bottom.9"], on: ["floor"]),
+    ],
+    loads: [Displacement(node: "k.top.all", component: y, value: -0.02, scale: [(0, 0), (1, 1)]),
+        Displacement(node: "k.top.all", component: x, value: 0.05, scale: [(1, 0), (2, 1)])],
+    history: (path: [0, 2], increment: 0.1))"#;
+
+#[test]
+fn each_node_obeys_coulomb_with_its_own_friction_and_cohesion() {
+    let scene = Scene::from_text("frictions", FRICTIONS, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let run = run(&scene);
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let slaves = &scene.model.contacts;
+    let all = |friction: &dyn Fn(usize) -> Friction| -> Vec<String> {
+        let one = |a| against_coulomb(&scene, a, friction);
+        run.accepted.iter().flat_map(one).collect()
+    };
+    assert_eq!(all(&|slave| slaves[slave].friction), [""; 0]);
+    // Nodes of each kind stick and slide, so that the law of any other is broken.
+    for k in 0..3 {
+        let mine = 3 * k..3 * k + 3;
+        let with = |mode: Mode| {
+            let has = |a: &crate::common::Accepted| {
+                mine.clone().any(|s| a.state.start.nodes[s].mode == mode)
+            };
+            run.accepted.iter().any(has)
+        };
+        assert!(with(Mode::Sliding), "nothing of group {k} slides");
+        assert!(k == 2 || with(Mode::Fixed), "nothing of group {k} sticks");
+    }
+    assert_ne!(all(&|_| slaves[0].friction), [""; 0]);
+    let without_cohesion = |slave: usize| Friction {
+        cohesion: 0.0,
+        ..slaves[slave].friction
+    };
+    assert_ne!(all(&without_cohesion), [""; 0]);
 }
 
 #[test]

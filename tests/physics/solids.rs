@@ -1,7 +1,7 @@
 //! Solids alone, against closed forms and beam theory.
 
 use crate::blocks::{block, finished, last};
-use crate::common::{Run, run};
+use crate::common::{Run, order, run};
 use stickslip::scene::Scene;
 
 /// A clamped bar of length 10 with a shear force, that of its end face times `shear`.
@@ -242,13 +242,22 @@ fn the_updated_update_depends_on_the_increments_and_comes_to_the_rate_law() {
         }
         sigma
     };
-    for (increment, steps) in [("0.5", 1), ("0.1", 5), ("0.05", 10)] {
+    // The rate law is dσ / d ln l = σ + modulus, so that σ = modulus (l − 1).
+    let rate_law = 0.5 * modulus;
+    let mut errors = Vec::new();
+    for (increment, steps) in [("0.5", 1), ("0.1", 5), ("0.05", 10), ("0.025", 20)] {
         let (found, expected) = (force("updated", increment), by_hand(steps));
         assert!(
             (found - expected).abs() < 1e-9,
             "{increment}: {found} {expected}"
         );
+        errors.push((found - rate_law).abs());
     }
+    let rates = [1, 2].map(|k| order(errors[k], errors[k + 1], 2.0));
+    assert!(
+        rates.iter().all(|rate| (0.9..1.1).contains(rate)),
+        "{rates:?} {errors:?}"
+    );
     assert!((by_hand(1) - total[0]).abs() < 1e-9 * modulus);
     assert!((by_hand(10) - by_hand(1)).abs() > 0.05 * by_hand(1));
 }
@@ -285,7 +294,7 @@ fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
 }
 
 #[test]
-#[ignore = "a measurement: cargo test --release --test continuum -- --ignored --nocapture"]
+#[ignore = "a measurement: cargo test --release --test physics solids -- --ignored --nocapture"]
 fn time_of_an_assembly_of_50000_unknowns() {
     use std::time::Instant;
     use stickslip::fem::assembly::{Assembled, Assembly, Moved};
