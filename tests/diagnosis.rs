@@ -4,8 +4,8 @@
 mod common;
 
 use common::{Run, force, go_on, run, scene};
-use stickslip::debug::diagnosis::{Cause, Diagnosis, words};
-use stickslip::debug::influence::influences;
+use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
+use stickslip::explain::influence::influences;
 use stickslip::scene::Mode;
 use stickslip::solve::frozen::{Frozen, Trials};
 use stickslip::solve::{Failure, Status};
@@ -85,13 +85,13 @@ fn a_core_is_no_larger_than_its_cycle_and_cycles_by_itself() {
         assert!(core.places.len() <= diagnosis.cycle.members.len());
         assert_eq!(core.problem.nodes.len(), core.places.len());
         assert!(
-            stickslip::debug::core::cycle(&core.problem).is_some(),
+            stickslip::explain::core::cycle(&core.problem).is_some(),
             "{name}"
         );
         for drop in 0..core.places.len() {
             let fewer: Vec<usize> = (0..core.places.len()).filter(|&p| p != drop).collect();
             let smaller = core.problem.reduced(&fewer).unwrap();
-            let still = stickslip::debug::core::cycle(&smaller);
+            let still = stickslip::explain::core::cycle(&smaller);
             assert!(fewer.is_empty() || still.is_none(), "{name} without {drop}");
         }
     }

@@ -3,11 +3,12 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use stickslip::debug::command::{Command, Unit};
-use stickslip::debug::session::{Frame, Session};
-use stickslip::debug::strip::Strip;
-use stickslip::debug::tree::BUDGET;
+use stickslip::history::frame::Frame;
+use stickslip::history::strip::Strip;
+use stickslip::history::tree::BUDGET;
+use stickslip::record::command::{Command, Unit};
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use stickslip::solve::State;
 
 struct Counting;

@@ -11,10 +11,10 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
-use stickslip::debug::journal::Journal;
-use stickslip::debug::session::Session;
 use stickslip::outside::shown;
+use stickslip::record::journal::Journal;
 use stickslip::scene::{Scene, builtin};
+use stickslip::session::Session;
 use tempfile::TempDir;
 
 const CYCLES: &str = "osc-two6";
@@ -111,7 +111,7 @@ fn harmful() -> TempDir {
     let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
     session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
     for line in ["step", "rename x", "watch gap a"] {
-        use stickslip::debug::command::{Action, Context, parse};
+        use stickslip::action::{Action, Context, parse};
         let context = Context {
             model: Some(session.model()),
             ..Context::default()

@@ -6,8 +6,8 @@ mod program;
 
 use common::{Run, run, scene};
 use program::{code, err, program};
-use stickslip::debug::report::advice;
-use stickslip::debug::smaller::{Smaller, smaller};
+use stickslip::explain::report::advice;
+use stickslip::explain::smaller::{Smaller, smaller};
 use stickslip::scene::Scene;
 use stickslip::solve::event::Singular;
 use stickslip::solve::rounds::Round;

@@ -18,10 +18,12 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stickslip::debug::command::{Action, Command, Context, parse};
-use stickslip::debug::session::Session;
-use stickslip::debug::snapshot::{Applied, Snapshot, SnapshotError, compare};
+use stickslip::action::{Action, Context, parse};
+use stickslip::record::command::Command;
+use stickslip::record::differences::compare;
+use stickslip::record::snapshot::{Applied, Snapshot, SnapshotError};
 use stickslip::scene::Mode;
+use stickslip::session::Session;
 use stickslip::solve::{Intervention, Outcome, Stepper};
 
 fn recorded() -> Vec<PathBuf> {

@@ -3,9 +3,10 @@
 use proptest::prelude::*;
 use std::collections::HashSet;
 use stickslip::contact::projection::{footing, project};
+use stickslip::scene::cost::Cost;
 use stickslip::scene::model::{BodyKind, Watched};
 use stickslip::scene::spec::{Component, FrictionLimit};
-use stickslip::scene::{Cost, Model, Scene, SceneError, Spec, builtin, paths, read};
+use stickslip::scene::{Model, Scene, SceneError, Spec, builtin, paths, read};
 
 const PINNED: &str = "01-pinned-beam-rough-floor";
 

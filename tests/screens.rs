@@ -9,15 +9,16 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use std::sync::Arc;
 use stickslip::contact::decision::{Decision, Entry, Numbers, Rule, Ties, decide};
-use stickslip::debug::command::{Command, Unit};
-use stickslip::debug::session::{Frame, Session};
+use stickslip::history::frame::Frame;
+use stickslip::record::command::{Command, Unit};
 use stickslip::scene::model::{Beam, Body, BodyKind, Dofs, Monitor, Node, Slave, Surface, Watched};
 use stickslip::scene::{Friction, Mode, Model, Scene, Settings};
+use stickslip::session::Session;
 use stickslip::solve::event::{Cycle, Position};
 use stickslip::solve::{Event, Failure, Forced, NodeRecord, Norms, Outcome, State};
 use stickslip::tui::app::{App, Effect, Offer};
 use stickslip::tui::theme::Theme;
-use stickslip::tui::{Debugger, View, draw, keys};
+use stickslip::tui::{Debugger, View, keys, screen};
 
 /// A beam of five nodes over a floor; all of its nodes are slaves, or as many as asked for.
 fn model(slaves: usize) -> Model {
@@ -220,7 +221,7 @@ fn view<'a>(model: &'a Model, frames: &'a [Frame]) -> View<'a> {
         frames,
         strips: &[],
         tree: None,
-        looks: None,
+        background: None,
         cursor: frames.len() - 1,
         running: false,
         residuals: residuals(),
@@ -253,7 +254,7 @@ fn type_text(app: &mut App, view: &View, text: &str) {
 fn render(app: &App, view: &View, width: u16, height: u16) -> Buffer {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
-    draw::draw(&mut buffer, area, app, Some(view));
+    screen::draw(&mut buffer, area, app, Some(view));
     buffer
 }
 
@@ -287,7 +288,7 @@ fn whole_screens() {
     for (width, height) in [(80, 24), (120, 40), (200, 60)] {
         insta::assert_snapshot!(
             format!("by-hand-{width}x{height}"),
-            draw::text(&app(), Some(&view), width, height)
+            screen::text(&app(), Some(&view), width, height)
         );
     }
 }
@@ -300,7 +301,7 @@ fn the_small_screen_turns_its_page() {
     let mut app = app();
     let mut seen = Vec::new();
     for _ in 0..9 {
-        seen.push(draw::text(&app, Some(&view), 80, 24));
+        seen.push(screen::text(&app, Some(&view), 80, 24));
         press(&mut app, &view, "Tab");
     }
     let titles = [
@@ -322,7 +323,7 @@ fn the_small_screen_turns_its_page() {
     }
     assert!(seen[3].contains("Tab page 4/9"));
     assert_eq!(
-        draw::text(&app, Some(&view), 80, 24)
+        screen::text(&app, Some(&view), 80, 24)
             .matches(" Remedies ")
             .count(),
         1,
@@ -399,7 +400,7 @@ fn a_tie_is_told_from_a_near_tie() {
     let frames = frames(&model, event((1, 1, 1), vec![tie, near], Outcome::Minor));
     let view = view(&model, &frames);
     let mut app = app();
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(
         screen.contains("|F_t| 5.000000000e-1 = |T_max| 5.000000000e-1"),
         "{screen}"
@@ -410,7 +411,7 @@ fn a_tie_is_told_from_a_near_tie() {
     );
     assert!(screen.contains(" 1-2e-10 "), "{screen}");
     press(&mut app, &view, "Down");
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(screen.contains("margin 1.000000083e-10 force"), "{screen}");
 }
 
@@ -439,7 +440,7 @@ fn held_and_off_surface_nodes_are_told_in_words() {
     frames[1].state.nodes[0].forced = Forced::Held(Mode::Free);
     let view = view(&model, &frames);
     let mut app = app();
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(
         screen.contains("You hold it free; Table 2 (◁) wanted fixed."),
         "{screen}"
@@ -454,7 +455,7 @@ fn held_and_off_surface_nodes_are_told_in_words() {
             .contains(Modifier::UNDERLINED)
     );
     press(&mut app, &view, "Down");
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(
         screen.contains("the projection lies past an end of every surface"),
         "{screen}"
@@ -467,7 +468,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
     let model = model(5);
     let say = |outcome| {
         let frames = frames(&model, event((3, 2, 4), records(), outcome));
-        draw::text(&app(), Some(&view(&model, &frames)), 120, 40)
+        screen::text(&app(), Some(&view(&model, &frames)), 120, 40)
             .lines()
             .nth(2)
             .unwrap_or("")
@@ -521,7 +522,7 @@ fn hundreds_of_nodes_scroll_with_the_selection() {
     let mut app = app();
     press(&mut app, &view, "End Up PageUp");
     assert_eq!(app.selected, 388);
-    assert!(draw::text(&app, Some(&view), 80, 24).contains("▸  beam.389"));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains("▸  beam.389"));
     press(&mut app, &view, "/");
     type_text(&mut app, &view, "beam.77");
     press(&mut app, &view, "Enter");
@@ -534,7 +535,7 @@ fn hundreds_of_nodes_scroll_with_the_selection() {
 
 /// Names in the table on the screen, from the top down.
 fn listed(app: &App, view: &View) -> Vec<String> {
-    let screen = draw::text(app, Some(view), 120, 40);
+    let screen = screen::text(app, Some(view), 120, 40);
     let rows = screen.lines().filter(|line| line.starts_with('┃'));
     rows.filter_map(|row| {
         row.split_whitespace()
@@ -558,7 +559,7 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     // Of 4 and 5, free both, the gap over the length counts; of the others the force over the scale, or the slip.
     assert_eq!(listed(&app, &view), ["3", "4", "2", "1", "5"]);
     assert_eq!(app.selected, 3);
-    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Slave nodes  2/5  by margin "));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains(" Slave nodes  2/5  by margin "));
     press(&mut app, &view, "Down");
     assert_eq!(app.selected, 1, "the row below, whatever its number");
     press(&mut app, &view, "<");
@@ -567,7 +568,7 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     assert_eq!(listed(&app, &view), ["4", "1", "2", "3", "5"]);
     press(&mut app, &view, "> A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"]);
-    assert!(draw::text(&app, Some(&view), 80, 24).contains(" 2/4 active of 5 "));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains(" 2/4 active of 5 "));
     press(&mut app, &view, "A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"], "one surface");
     press(&mut app, &view, "A End A");
@@ -614,18 +615,21 @@ fn the_load_is_drawn_over_a_monitor() {
     let mut view = view(&model, &frames);
     let mut app = app();
     press(&mut app, &view, "Tab Tab Tab Tab");
-    insta::assert_snapshot!("by-hand-curve-80x24", draw::text(&app, Some(&view), 80, 24));
+    insta::assert_snapshot!(
+        "by-hand-curve-80x24",
+        screen::text(&app, Some(&view), 80, 24)
+    );
     view.cursor = 4;
-    let back = draw::text(&app, Some(&view), 80, 24);
+    let back = screen::text(&app, Some(&view), 80, 24);
     assert!(back.contains("● -9.000e-2  at load 0.3"), "{back}");
     assert!(back.contains("-6.400e-1"), "the scale stays");
     press(&mut app, &view, "y");
-    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Load over tip x  2/2 "));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains(" Load over tip x  2/2 "));
     press(&mut app, &view, "Shift-Tab");
-    let medium = draw::text(&app, Some(&view), 120, 40);
+    let medium = screen::text(&app, Some(&view), 120, 40);
     assert!(medium.contains(" Load over ") && !medium.contains(" Residual "));
     view.cursor = 0;
-    assert!(draw::text(&app, Some(&view), 200, 60).contains("No increment is done yet."));
+    assert!(screen::text(&app, Some(&view), 200, 60).contains("No increment is done yet."));
 }
 
 #[test]
@@ -719,7 +723,7 @@ fn the_command_line_completes_recalls_and_complains() {
     assert_eq!(press(&mut app, &view, ": Up Enter"), [set]);
     press(&mut app, &view, ":");
     type_text(&mut app, &view, "jump");
-    assert!(draw::text(&app, Some(&view), 80, 24).contains("\n:jump"));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains("\n:jump"));
     press(&mut app, &view, "Enter");
     let screen = render(&app, &view, 80, 24);
     assert_eq!(find(&screen, "no action is called 'jump'").fg, Color::Red);
@@ -732,10 +736,10 @@ fn help_lists_every_action_and_scrolls() {
     let view = view(&model, &frames);
     let mut app = app();
     press(&mut app, &view, "?");
-    insta::assert_snapshot!("help-110x70", draw::text(&app, Some(&view), 110, 70));
-    let top = draw::text(&app, Some(&view), 80, 24);
+    insta::assert_snapshot!("help-110x70", screen::text(&app, Some(&view), 110, 70));
+    let top = screen::text(&app, Some(&view), 80, 24);
     press(&mut app, &view, "G");
-    let end = draw::text(&app, Some(&view), 80, 24);
+    let end = screen::text(&app, Some(&view), 80, 24);
     assert!(
         top.contains("Go through the iterations") && end.contains("closer to switching"),
         "{end}"
@@ -755,7 +759,7 @@ fn without_a_scene_there_is_the_chooser() {
     };
     let mut app = App::new(Theme::colour(), vec![offer("01-first"), offer("02-second")]);
     app.choose();
-    insta::assert_snapshot!("chooser-80x24", draw::text(&app, None, 80, 24));
+    insta::assert_snapshot!("chooser-80x24", screen::text(&app, None, 80, 24));
     let press = |app: &mut App, key: &str| app.key(&keys::press(key).expect("a key's name"), None);
     assert_eq!(press(&mut app, "Esc"), Some(Effect::Quit));
     press(&mut app, "Down");
@@ -764,9 +768,9 @@ fn without_a_scene_there_is_the_chooser() {
         Some(Effect::Open("02-second".into()))
     );
     press(&mut app, ":");
-    assert!(draw::text(&app, None, 80, 24).contains(":open"));
+    assert!(screen::text(&app, None, 80, 24).contains(":open"));
     press(&mut app, "Esc");
-    assert!(draw::text(&app, None, 80, 24).contains("Choose a scene"));
+    assert!(screen::text(&app, None, 80, 24).contains("Choose a scene"));
 }
 
 #[test]
@@ -1013,7 +1017,7 @@ fn a_long_outcome_goes_on_in_further_lines() {
     };
     let outcome = Outcome::Failed(Failure::Cycle(cycle));
     let frames = frames(&model, event((3, 2, 4), records(), outcome));
-    let screen = draw::text(&app(), Some(&view(&model, &frames)), 80, 24);
+    let screen = screen::text(&app(), Some(&view(&model, &frames)), 80, 24);
     let told: String = screen.lines().skip(2).take(3).collect();
     assert!(
         told.contains("beam.1 free > fixed") && told.contains("beam.5 free"),
@@ -1033,7 +1037,7 @@ fn a_title_that_does_not_fit_says_so() {
     let frames = frames(&model, minor());
     let view = view(&model, &frames);
     let first = |width| {
-        let screen = draw::text(&app(), Some(&view), width, 24);
+        let screen = screen::text(&app(), Some(&view), width, 24);
         screen.lines().next().unwrap_or_default().to_string()
     };
     assert_eq!(first(30), " stickslip by-hand  A beam ov…");
@@ -1048,7 +1052,7 @@ fn a_long_message_is_not_cut() {
     let frames = frames(&model, minor());
     let mut app = app();
     app.complain("one two three four five six seven eight nine ten eleven twelve thirteen fourteen\nfifteen sixteen");
-    let screen = draw::text(&app, Some(&view(&model, &frames)), 80, 24);
+    let screen = screen::text(&app, Some(&view(&model, &frames)), 80, 24);
     assert!(
         screen.contains("fifteen sixteen") && screen.contains("? help"),
         "{screen}"
@@ -1062,7 +1066,7 @@ fn a_narrow_screen_shows_the_cell_that_fired_alone() {
     let view = view(&model, &frames);
     let mut app = app();
     press(&mut app, &view, "Down e");
-    let screen = draw::text(&app, Some(&view), 50, 14);
+    let screen = screen::text(&app, Some(&view), 50, 14);
     assert!(
         screen.contains("fixed → sliding   F_n > 0, |F_t| > |T_max|"),
         "{screen}"

@@ -29,7 +29,6 @@ mod curves;
 mod geometry;
 
 pub use builtin::Builtin;
-pub use cost::Cost;
 pub use error::SceneError;
 pub use model::Model;
 pub use spec::{Friction, Mode, Settings, Spec};

@@ -30,7 +30,7 @@ pub enum Intervention {
     Settings(Settings),
 }
 
-/// Where a slave node is to start from in the next minor iteration, as [`crate::debug::diagnosis::started`] has it.
+/// Where a slave node is to start from in the next minor iteration, as [`crate::explain::diagnosis::started`] has it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     pub slave: usize,
