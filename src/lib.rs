@@ -1,22 +1,43 @@
 //! stickslip: a terminal step-through debugger for FEM contact iterations.
 //!
-//! The map of the house, from the ground up; an arrow of use only ever points down this list.
+//! The map of the house, from the ground up: each line uses those above it and none below.
 //!
-//! - [`outside`]: what comes from outside: files that are read, and texts of them that are shown.
-//! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
+//! - [`outside`]: what comes from outside and goes there: files that are read and written, texts of others that are shown.
 //! - [`linalg`]: the only place that knows faer, a package of its own. Sparsity patterns, factors, checked solves.
+//! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
 //! - [`fem`]: the bodies. Shape functions, beams, quadrilaterals, materials, assembly of internal forces and tangent.
 //! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.
 //! - [`solve`]: the stepper: increments, major iterations, minor iterations, one per call.
-//! - [`debug`]: the debugger without a terminal: session, commands, snapshots.
+//! - [`explain`]: what happened, why, and what could be done about it, in the words that all front ends share.
 //! - [`study`]: many runs of a scene: sweeps, stability maps, work-precision charts.
-//! - [`cli`] and [`tui`]: the two front ends.
+//! - [`history`]: what was done so far: frames, branches, breakpoints, watches.
+//! - [`record`]: what is kept in files: snapshots, journals, problems written as scenes.
+//! - [`session`]: the debugger without a terminal: commands in, frames out.
+//! - [`action`]: everything that can be done, by name, by key, or by a typed line.
+//! - [`teach`]: guided lessons.
+//! - [`tui`]: the debugger in the terminal.
+//! - [`cli`]: the command line.
 
+pub mod action;
 pub mod cli;
+<<<<<<< main
 pub mod debug;
+=======
+pub mod contact;
+pub mod explain;
+pub mod fem;
+pub mod history;
+>>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2
 pub mod outside;
+pub mod record;
 pub mod scene;
+<<<<<<< main
+=======
+pub mod session;
+pub mod solve;
+>>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2
 pub mod study;
+pub mod teach;
 pub mod tui;
 
 pub use stickslip_core::{contact, fem, interface, linalg, linear, model, step, strategy};

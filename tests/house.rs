@@ -57,13 +57,16 @@ fn arrows_point_down_only() {
             vec!["tui/", "cli/", "main.rs", "lib.rs"],
         ),
         (
-            vec!["crate::debug"],
-            vec!["debug/", "tui/", "cli/", "main.rs", "lib.rs"],
+            vec!["crate::session", "crate::action", "crate::teach"],
+            vec![
+                "session/", "action/", "teach/", "tui/", "cli/", "main.rs", "lib.rs",
+            ],
         ),
         (
             vec!["crate::solve"],
             vec![
-                "solve/", "debug/", "tui/", "cli/", "study/", "main.rs", "lib.rs",
+                "solve/", "explain/", "history/", "record/", "session/", "action/", "teach/",
+                "tui/", "cli/", "study/", "main.rs", "lib.rs",
             ],
         ),
     ];

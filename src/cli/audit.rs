@@ -1,13 +1,14 @@
 //! `stickslip audit`: the worst violation of every law over whole histories.
 
+use super::base::{Error, Exit, SetArgs, say, tell};
 use super::interrupt::Interrupt;
-use super::{Error, Exit, SetArgs, say, tell};
 use crate::contact::judge::Law;
-use crate::debug::audit::{Audit, Found};
-use crate::debug::judged;
-use crate::debug::report;
-use crate::debug::snapshot::{Applied, Snapshot};
+use crate::explain::audit::{Audit, Found};
+use crate::explain::judged;
+use crate::explain::names;
+use crate::explain::report;
 use crate::model::Model;
+use crate::record::snapshot::{Applied, Snapshot};
 use crate::scene::Scene;
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
@@ -172,7 +173,7 @@ fn row(model: &Model, law: Law, found: &Found) -> String {
     let node = found
         .finding
         .slave
-        .map_or("all", |s| report::slave(model, s));
+        .map_or("all", |s| names::slave(model, s));
     let over = if found.finding.is_broken() {
         "  BROKEN"
     } else {

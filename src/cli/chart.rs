@@ -1,11 +1,11 @@
 //! `stickslip chart`: what settings cost, and how far from the truth they are.
 
+use super::base::{Error, Exit, SetArgs, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
-use super::{Error, Exit, SetArgs, tell};
+use crate::explain::number::six;
 use crate::study::chart_file::{Chart, Truth};
-use crate::study::figure::short;
 use crate::study::precision::{self, Cost, Measure, Precision};
 use crate::study::{Vary, Watch, precision_figure};
 use std::path::{Path, PathBuf};
@@ -171,7 +171,7 @@ fn tell_chart(chart: &Precision) {
             point
                 .error
                 .map_or_else(String::new, |error| format!("{error:.2e}")),
-            short((point.seconds * 1e5).round() / 1e5),
+            six((point.seconds * 1e5).round() / 1e5),
             point.factorizations.to_string(),
             point.majors.to_string(),
             point.minors.to_string(),

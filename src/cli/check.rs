@@ -1,6 +1,6 @@
 //! `stickslip check`: is the scene sound, and what does it cost.
 
-use super::{Error, Exit, SceneArgs, say};
+use super::base::{Error, Exit, SceneArgs, say};
 use crate::scene::cost::Cost;
 use crate::scene::{Scene, paths};
 

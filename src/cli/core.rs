@@ -4,13 +4,13 @@
 //! Exit code 0 says that there is such a scene, 3 that there is none, and the message why: the scene converges, fails
 //! otherwise, or its core cannot be written as a matrix.
 
-use super::{Error, Exit, SceneArgs, say, tell};
-use crate::debug::core::core;
-use crate::debug::diagnosis::cycling;
-use crate::debug::export::{self, Origin};
-use crate::debug::files::{self, Output};
-use crate::debug::report;
+use super::base::{Error, Exit, SceneArgs, say, tell};
+use crate::explain::core::core;
+use crate::explain::diagnosis::cycling;
+use crate::explain::report;
 use crate::model::{AtCycle, AtLimit, Strategy};
+use crate::outside::files::{self, Output};
+use crate::record::export::{self, NoExport, Origin};
 use crate::scene::Scene;
 use crate::step::event::{Failure, Outcome};
 use crate::step::stepper::Stepper;
@@ -53,8 +53,25 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
+/// Why there is no core to write.
+#[derive(Debug, thiserror::Error)]
+enum NoCore {
+    #[error("it converges, so there is no cycle to write{0}")]
+    Converges(&'static str),
+    #[error("it fails, but in no cycle of minor iterations: {0}")]
+    OtherFailure(String),
+    #[error(
+        "the bodies cannot be condensed to the interface there, so there is no small problem to write"
+    )]
+    NotCondensed,
+    #[error("no core was found: too many nodes take part in the cycle, or it hangs on round-off")]
+    NotFound,
+    #[error(transparent)]
+    NoExport(#[from] NoExport),
+}
+
 /// The core's file, or why there is none.
-fn text(scene: &Scene) -> Result<String, String> {
+fn text(scene: &Scene) -> Result<String, NoCore> {
     let mut model = scene.model.clone();
     // A cycle is what is looked for, and not to be got out of.
     model.settings.at_cycle = AtCycle::Stop;
@@ -70,15 +87,13 @@ fn text(scene: &Scene) -> Result<String, String> {
             } else {
                 ""
             };
-            return Err(format!("it converges, so there is no cycle to write{hint}"));
+            return Err(NoCore::Converges(hint));
         };
         match &event.outcome {
             Outcome::Failed(Failure::Cycle(cycle)) => break cycle.clone(),
             Outcome::Failed(_) => {
                 let told = report::outcome(&scene.model, event);
-                return Err(format!(
-                    "it fails, but in no cycle of minor iterations: {told}"
-                ));
+                return Err(NoCore::OtherFailure(told));
             }
             _ => {}
         }
@@ -90,9 +105,8 @@ fn text(scene: &Scene) -> Result<String, String> {
     let problem = stepper
         .interface_problem()
         .and_then(|problem| cycling(problem, &cycle))
-        .ok_or("the bodies cannot be condensed to the interface there, so there is no small problem to write")?;
-    let core = core(&problem).ok_or(
-        "no core was found: too many nodes take part in the cycle, or it hangs on round-off",
-    )?;
-    export::core(&scene.model, &Origin::of(scene, at, load), &cycle, &core)
+        .ok_or(NoCore::NotCondensed)?;
+    let core = core(&problem).ok_or(NoCore::NotFound)?;
+    let origin = Origin::of(scene, at, load);
+    Ok(export::core(&scene.model, &origin, &cycle, &core)?)
 }

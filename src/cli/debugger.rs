@@ -1,7 +1,7 @@
 //! `stickslip [SCENE]`: the debugger.
 
-use super::{Error, Exit, SetArgs};
-use crate::debug::journal::Keep;
+use super::base::{Error, Exit, SetArgs};
+use crate::record::journal::Keep;
 use crate::tui;
 use std::io::IsTerminal;
 use std::path::PathBuf;

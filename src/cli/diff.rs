@@ -1,7 +1,8 @@
 //! `stickslip diff`: two snapshots, node by node.
 
-use super::{Error, Exit, say};
-use crate::debug::snapshot::{Snapshot, compare};
+use super::base::{Error, Exit, say};
+use crate::record::differences::compare;
+use crate::record::snapshot::Snapshot;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]

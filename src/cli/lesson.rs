@@ -1,8 +1,8 @@
 //! `stickslip lesson [NAME|FILE]`: lists the guided lessons, begins one, or checks one without a terminal.
 
-use super::{Error, Exit, say};
-use crate::debug::lesson::play::play;
-use crate::debug::lesson::{self, Lesson};
+use super::base::{Error, Exit, say};
+use crate::teach::play::play;
+use crate::teach::{self, Lesson};
 use crate::tui;
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -37,7 +37,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 }
 
 fn list() -> String {
-    let lessons: Vec<_> = lesson::list()
+    let lessons: Vec<_> = teach::list()
         .iter()
         .filter_map(|lesson| Lesson::from_text(lesson.name, lesson.text).ok())
         .collect();

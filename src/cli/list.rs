@@ -1,6 +1,6 @@
 //! `stickslip list`: the built-in scenes, one line each.
 
-use super::{Error, Exit, say};
+use super::base::{Error, Exit, say};
 use crate::scene::builtin;
 
 pub fn main() -> Result<Exit, Error> {

@@ -1,11 +1,11 @@
 //! `stickslip map`: where the iterations converge and where they do not.
 
+use super::base::{Error, Exit, SetArgs, say, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
-use super::{Error, Exit, SetArgs, say, tell};
-use crate::debug::files;
 use crate::model::{BoundUpdate, Strategy};
+use crate::outside::files;
 use crate::scene::builtin;
 use crate::strategy::method;
 use crate::study::map::{self, Cell, Map};

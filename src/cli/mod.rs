@@ -1,9 +1,10 @@
-//! The command line: one file per subcommand.
+//! The command line: one file per subcommand; `base` is what all of them need.
 //!
 //! Standard output carries data only; messages go to standard error, and progress there only if it is a terminal.
-//! Exit codes are those of [`Exit`].
+//! Exit codes are those of `base::Exit`.
 
 mod audit;
+mod base;
 mod chart;
 mod check;
 mod core;
@@ -24,60 +25,10 @@ mod story;
 mod study;
 mod table;
 
-use crate::debug::files::FileError;
-use crate::debug::journal::JournalError;
-use crate::debug::snapshot::SnapshotError;
-use crate::outside::shown;
-use crate::scene::{Scene, SceneError};
 use crate::study::origin;
+use base::{Exit, say, tell};
 use clap::{Parser, Subcommand};
-use std::io::{self, Write};
 use std::process::ExitCode;
-
-/// How the program ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Exit {
-    /// Converged, equal, or sound.
-    Good = 0,
-    /// Snapshots differ.
-    Differ = 1,
-    /// Bad input or usage.
-    Bad = 2,
-    /// The solve did not converge.
-    Unconverged = 3,
-    /// Stopped from outside: Ctrl-C, or a reader that closed the pipe.
-    Interrupted = 130,
-}
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> ExitCode {
-        ExitCode::from(exit as u8)
-    }
-}
-
-/// Why a subcommand could not do its work; all of these are bad input or usage.
-#[derive(Debug, thiserror::Error)]
-enum Error {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
-    Snapshot(#[from] SnapshotError),
-    #[error("{}{}", .0, how_to_overwrite(.0))]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Journal(#[from] JournalError),
-    #[error("{0}")]
-    Usage(String),
-    #[error("standard output: {0}")]
-    Output(io::Error),
-}
-
-fn how_to_overwrite(error: &FileError) -> &'static str {
-    match error {
-        FileError::Exists(_) => " (--force does it)",
-        FileError::Failed { .. } => "",
-    }
-}
 
 /// Steps through contact iterations of the finite element method, in a terminal.
 #[derive(Debug, Parser)]
@@ -127,36 +78,6 @@ enum Command {
     Chart(chart::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
-}
-
-/// A scene, and what is changed in it.
-#[derive(Debug, clap::Args)]
-struct SceneArgs {
-    /// A scene file, or the name of a built-in scene
-    scene: String,
-    #[command(flatten)]
-    set: SetArgs,
-}
-
-impl SceneArgs {
-    fn open(&self) -> Result<Scene, SceneError> {
-        Scene::open(&self.scene, &self.set.set)
-    }
-}
-
-/// Changes to a scene.
-#[derive(Debug, clap::Args)]
-struct SetArgs {
-    /// Changes a value of the scene, by a path as `check --paths` lists it; may be repeated
-    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
-    set: Vec<(String, String)>,
-}
-
-fn assignment(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((path, value)) => Ok((path.to_owned(), value.to_owned())),
-        None => Err("it must be PATH=VALUE, as friction.angle=20".to_owned()),
-    }
 }
 
 /// Runs the program with the arguments of the process.
@@ -214,20 +135,4 @@ pub fn main() -> ExitCode {
             Exit::Bad
         })
         .into()
-}
-
-/// A message to the user. Unlike `eprintln`, it survives a standard error that nobody reads.
-fn tell(message: &str) {
-    let _ = writeln!(io::stderr(), "{}", shown::text(message));
-}
-
-/// Data to standard output. A reader that has seen enough is no fault.
-fn say(text: &str) -> Result<(), Error> {
-    let text = shown::text(text);
-    let mut out = io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    match written {
-        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
-        _ => Ok(()),
-    }
 }

@@ -1,8 +1,8 @@
 //! What all sweeps share: where their tables and pictures go, their progress, and tables for people.
 
-use super::Error;
+use super::base::Error;
 use super::sink::{Sent, Sink};
-use crate::debug::files::Output;
+use crate::outside::files::Output;
 use crate::outside::shown;
 use crate::study::plot::PlotError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -1,10 +1,11 @@
 //! `stickslip record`: solves up to a place, and writes a snapshot of it.
 
+use super::base::{Error, Exit, SceneArgs, say, tell};
 use super::interrupt::Interrupt;
-use super::{Error, Exit, SceneArgs, say, tell};
-use crate::debug::files::{self, Output};
-use crate::debug::report;
-use crate::debug::snapshot::Snapshot;
+use crate::explain::names;
+use crate::explain::report;
+use crate::outside::files::{self, Output};
+use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::stepper::Stepper;
@@ -186,7 +187,7 @@ fn tell_missed(scene: &Scene, stepper: &Stepper, at: At, missed: Missed) -> Exit
             Exit::Unconverged
         }
         Missed::Interrupted => {
-            let reached = report::position(event.position);
+            let reached = names::position(event.position);
             tell(&format!("{name}: interrupted after {reached}"));
             Exit::Interrupted
         }

@@ -1,9 +1,9 @@
 //! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints what each
 //! costs and leaves.
 
-use super::{Error, Exit, SceneArgs, say, tell};
-use crate::debug::remedies::{self, COLUMNS, End};
-use crate::debug::report;
+use super::base::{Error, Exit, SceneArgs, say, tell};
+use crate::explain::remedies::{self, COLUMNS, End};
+use crate::explain::report;
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;

@@ -1,7 +1,8 @@
 //! `stickslip replay`: computes snapshots again, and compares.
 
-use super::{Error, Exit, say, tell};
-use crate::debug::snapshot::{Snapshot, SnapshotError, compare};
+use super::base::{Error, Exit, say, tell};
+use crate::record::differences::compare;
+use crate::record::snapshot::{Snapshot, SnapshotError};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]

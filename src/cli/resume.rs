@@ -1,8 +1,8 @@
 //! `stickslip resume [JOURNAL]`: replays a journal to its end, and goes on with the debugger.
 
+use super::base::{Error, Exit, tell};
 use super::debugger::has_terminal;
-use super::{Error, Exit, tell};
-use crate::debug::journal::{self, Journal, JournalError, Record};
+use crate::record::journal::{self, Journal, JournalError, Record};
 use crate::tui;
 use std::path::PathBuf;
 

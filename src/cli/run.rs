@@ -1,16 +1,18 @@
 //! `stickslip run`: solves a scene from start to end.
 
+use super::base::{Error, Exit, SceneArgs, tell};
 use super::interrupt::Interrupt;
 use super::sink::{Sent, Sink};
-use super::{Error, Exit, SceneArgs, table, tell};
-use crate::debug::diagnosis::{self, Cause, Diagnosis};
-use crate::debug::files::Output;
-use crate::debug::report;
-use crate::debug::smaller::smaller;
-use crate::debug::snapshot::Snapshot;
+use super::table;
+use crate::explain::diagnosis::{self, Cause, Diagnosis};
+use crate::explain::names;
+use crate::explain::report;
+use crate::explain::smaller::smaller;
 use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::model::Model;
+use crate::outside::files::Output;
+use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::stepper::Stepper;
@@ -281,7 +283,7 @@ impl<'a> Run<'a> {
             End::Finished => Exit::Good,
             End::Closed => Exit::Interrupted,
             End::Interrupted => {
-                let at = report::position(self.stepper.state().next);
+                let at = names::position(self.stepper.state().next);
                 tell(&format!("{name}: interrupted before {at}"));
                 Exit::Interrupted
             }
@@ -379,7 +381,7 @@ impl Progress {
         if !self.wanted || self.last.elapsed() < PROGRESS {
             return;
         }
-        let at = report::position(event.position);
+        let at = names::position(event.position);
         let load = event.load_factor;
         let _ = write!(
             io::stderr(),

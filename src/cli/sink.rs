@@ -1,7 +1,7 @@
 //! Where a table goes: to a file, or to standard output.
 
-use super::Error;
-use crate::debug::files::Output;
+use super::base::Error;
+use crate::outside::files::Output;
 use crate::outside::shown;
 use std::io::{self, Write};
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! `stickslip story JOURNAL`: what a session did and saw, as text.
 
-use super::{Error, Exit, say};
-use crate::debug::journal::Record;
-use crate::debug::story::story;
+use super::base::{Error, Exit, say};
+use crate::record::journal::Record;
+use crate::record::story::story;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]

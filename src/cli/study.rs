@@ -1,10 +1,11 @@
 //! `stickslip study`: a scene with many settings, as a table and as a figure.
 
+use super::base::{Error, Exit, SetArgs, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
-use super::{Error, Exit, SetArgs, tell};
-use crate::study::figure::{self, short};
+use crate::explain::number::six;
+use crate::study::figure;
 use crate::study::{self, End, Plan, Quantity, Run, Study, Vary, Watch, csv, plot};
 
 /// Monitors shown in the table of runs.
@@ -104,10 +105,10 @@ fn tell_table(plan: &Plan, runs: &[Run]) {
         row.push(format!("{}/{}", run.rows.len(), case.increments));
         row.push(run.majors().to_string());
         row.push(run.minors().to_string());
-        row.push(short(run.last().load));
+        row.push(six(run.last().load));
         for name in monitors() {
             let value = run.value(run.last(), &Quantity::Monitor(name.clone()));
-            row.push(value.map_or_else(String::new, short));
+            row.push(value.map_or_else(String::new, six));
         }
         row.push(run.unsettled().to_string());
         row.push(end(run));
@@ -126,7 +127,7 @@ fn end(run: &Run) -> String {
             failed.reason,
             failed.increment,
             failed.major,
-            short(failed.load)
+            six(failed.load)
         ),
         End::Interrupted => "interrupted".to_owned(),
         End::NotRun => "not run".to_owned(),

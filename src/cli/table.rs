@@ -11,7 +11,7 @@
 //! its end. `t_max` is that of the row's own F_n, `margin` the distance of the deciding inequality from switching
 //! (infinite where none was tested). A minor iteration that could not be solved has no rows.
 
-use crate::debug::report;
+use crate::explain::names;
 use crate::model::Model;
 use crate::step::event::{Event, Failure, Outcome};
 use crate::study::csv::field;
@@ -61,10 +61,10 @@ pub fn trace_rows(model: &Model, event: &Event) -> String {
             at.attempt,
             at.major,
             at.minor,
-            field(report::slave(model, slave)),
-            report::mode(d.before),
-            report::mode(d.next),
-            report::rule(d.rule),
+            field(names::slave(model, slave)),
+            names::mode(d.before),
+            names::mode(d.next),
+            names::rule(d.rule),
             r.gap,
             r.f_n,
             r.f_t,

@@ -1,7 +1,9 @@
-//! What comes from outside: files that are read, and texts of them that are shown.
+//! What comes from outside and goes there: files that are read and written, and texts of others that are shown.
 //!
 //! - [`input`]: the one way in which files are read: regular ones only, never waiting, never more than a stated size.
+//! - [`files`]: the one way in which files are written: whole or not at all, and never over another one unasked.
 //! - [`shown`]: the one way in which texts of others reach a terminal, a table or a picture.
 
+pub mod files;
 pub mod input;
 pub mod shown;

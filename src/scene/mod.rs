@@ -30,7 +30,6 @@ mod geometry;
 
 use crate::model::Model;
 pub use builtin::Builtin;
-pub use cost::Cost;
 pub use error::SceneError;
 pub use spec::Spec;
 

@@ -4,6 +4,7 @@ use super::plan::Plan;
 use super::plot::{Axis, Chart, Curve, End as CurveEnd};
 use super::read::Quantity;
 use super::result::{End, Run};
+use crate::explain::number::six;
 
 /// The chart of a study: a curve per run, over the plan's axes.
 pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
@@ -22,7 +23,7 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
                     "{} in increment {}, load {}",
                     failed.reason,
                     failed.increment,
-                    short(failed.load)
+                    six(failed.load)
                 )),
                 End::Interrupted => CurveEnd::Stopped("interrupted".to_owned()),
             },
@@ -55,17 +56,6 @@ pub fn short_names(paths: &[String]) -> Vec<String> {
     match short.iter().all(unique) {
         true => short,
         false => paths.to_vec(),
-    }
-}
-
-/// A number for a person: six digits at most.
-pub fn short(value: f64) -> String {
-    // Rounded in decimal, and printed as short as that reads back.
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    match rounded {
-        0.0 => "0".to_owned(),
-        x if (1e-4..1e7).contains(&x.abs()) => x.to_string(),
-        x => format!("{x:e}"),
     }
 }
 
@@ -136,10 +126,10 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_short() {
-        assert_eq!(short(0.1 + 0.2), "0.3");
-        assert_eq!(short(-0.0), "0");
-        assert_eq!(short(1.0 / 3.0), "0.333333");
-        assert_eq!(short(1.2e-9), "1.2e-9");
+    fn numbers_are_six() {
+        assert_eq!(six(0.1 + 0.2), "0.3");
+        assert_eq!(six(-0.0), "0");
+        assert_eq!(six(1.0 / 3.0), "0.333333");
+        assert_eq!(six(1.2e-9), "1.2e-9");
     }
 }

@@ -32,6 +32,7 @@ pub mod precision;
 pub mod precision_figure;
 pub mod random;
 pub mod read;
+pub mod reason;
 pub mod reference;
 pub mod result;
 pub mod run;
@@ -43,5 +44,6 @@ pub mod verdict_figure;
 
 pub use plan::{Case, Plan};
 pub use read::{Quantity, Study, Vary};
-pub use result::{End, Reason, Row, Run};
+pub use reason::Reason;
+pub use result::{End, Row, Run};
 pub use run::{Watch, run};

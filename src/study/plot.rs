@@ -2,7 +2,7 @@
 //!
 //! A chart is wider the longer its legend, and higher the more of it there is, so that nothing is cut off.
 
-use super::figure::short;
+use crate::explain::number::six;
 use crate::outside::shown;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -468,7 +468,7 @@ fn tick(axis: &Axis, at: f64, length: f64) -> String {
     let at = if at.abs() < ZERO * length { 0.0 } else { at };
     match axis.counts && at.fract() != 0.0 {
         true => String::new(),
-        false => short(at),
+        false => six(at),
     }
 }
 

@@ -250,7 +250,7 @@ fn measured(
     let Some(run) = last else { return Ok(None) };
     times.sort_by(f64::total_cmp);
     let failed = run.failed().map(|failed| {
-        let load = super::figure::short(failed.load);
+        let load = crate::explain::number::six(failed.load);
         format!("{} at load {load}", failed.verdict)
     });
     let factorizations = match Estimate::of(&model).is_condensed(model.settings.solver) {
@@ -464,8 +464,11 @@ impl Precision {
         let target = self.target?;
         let meets = |point: &Point| {
             let series = &self.series[point.series];
-            let cost = super::figure::short(self.cost.of(point));
-            let error = point.error.map(super::figure::short).unwrap_or_default();
+            let cost = crate::explain::number::six(self.cost.of(point));
+            let error = point
+                .error
+                .map(crate::explain::number::six)
+                .unwrap_or_default();
             format!(
                 "The cheapest run with an error of at most {target:?}: {series}, {}: error {error}, {} {cost}.",
                 point.name,

@@ -1,10 +1,8 @@
 //! What one run of a study came to.
 
 use super::read::Quantity;
+use super::reason::Reason;
 use super::verdict::Verdict;
-use crate::step::event::Failure;
-use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// A run, as far as it went.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,79 +59,6 @@ pub struct Failed {
     /// Minor iterations that the increment took until then.
     pub minors: u64,
     pub unsettled: u32,
-}
-
-/// Why an increment failed, in a word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Reason {
-    MinorCycle,
-    MinorLimit,
-    MajorLimit,
-    MajorCycle,
-    Singular,
-    Diverged,
-    OverConstrained,
-    Refused,
-    NoAnswer,
-    NotFound,
-    RoundOff,
-    Jump,
-}
-
-impl Reason {
-    /// A letter for it, where there is no room for the word.
-    pub fn letter(self) -> char {
-        match self {
-            Reason::MinorCycle | Reason::MajorCycle => 'o',
-            Reason::MinorLimit => 'm',
-            Reason::MajorLimit => 'M',
-            Reason::Singular => 's',
-            Reason::Diverged => 'd',
-            Reason::OverConstrained => 'j',
-            Reason::Refused => 'r',
-            Reason::NoAnswer | Reason::NotFound => 'n',
-            Reason::RoundOff => 'r',
-            Reason::Jump => 'b',
-        }
-    }
-}
-
-impl From<&Failure> for Reason {
-    fn from(failure: &Failure) -> Reason {
-        match failure {
-            Failure::Cycle(_) => Reason::MinorCycle,
-            Failure::MinorLimit { .. } => Reason::MinorLimit,
-            Failure::MajorLimit { .. } => Reason::MajorLimit,
-            Failure::MajorCycle(_) => Reason::MajorCycle,
-            Failure::Singular(_) => Reason::Singular,
-            Failure::Diverged { .. } => Reason::Diverged,
-            Failure::OverConstrained { .. } => Reason::OverConstrained,
-            Failure::Refused(_) => Reason::Refused,
-            Failure::NoAnswer { .. } => Reason::NoAnswer,
-            Failure::Leapt { .. } => Reason::Jump,
-            Failure::RoundOff { .. } => Reason::RoundOff,
-            Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
-        }
-    }
-}
-
-impl fmt::Display for Reason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Reason::MinorCycle => "minor-cycle",
-            Reason::MinorLimit => "minor-limit",
-            Reason::MajorLimit => "major-limit",
-            Reason::MajorCycle => "major-cycle",
-            Reason::Singular => "singular",
-            Reason::Diverged => "diverged",
-            Reason::OverConstrained => "jammed",
-            Reason::Refused => "refused",
-            Reason::NoAnswer => "no-answer",
-            Reason::NotFound => "not-found",
-            Reason::RoundOff => "round-off",
-            Reason::Jump => "jump",
-        })
-    }
 }
 
 impl Run {

@@ -2,7 +2,8 @@
 
 use super::log::LogError;
 use super::plan::{Case, Plan};
-use super::result::{End, Failed, Reason, Row, Run};
+use super::reason::Reason;
+use super::result::{End, Failed, Row, Run};
 use super::verdict::Verdict;
 use crate::scene::SceneError;
 use crate::step::event::Outcome;

@@ -11,7 +11,7 @@
 //! ```
 
 use super::random::{Drawn, Population};
-use super::result::Reason;
+use super::reason::Reason;
 use super::verdict::Verdict;
 use crate::interface::census::census;
 use crate::scene::condensed::{Matrix, Problem};

@@ -1,6 +1,6 @@
 //! What a run is worth: the words that stability maps sort runs by.
 
-use super::result::Reason;
+use super::reason::Reason;
 use crate::interface::method::NotFound;
 use crate::step::event::Failure;
 use serde::{Deserialize, Serialize};

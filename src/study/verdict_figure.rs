@@ -2,7 +2,7 @@
 
 use super::map::{Map, Panel};
 use super::plot::PlotError;
-use super::result::Reason;
+use super::reason::Reason;
 use super::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest};
 use super::survey::{Survey, Tally};
 use super::verdict::Verdict;

@@ -1,24 +1,22 @@
 //! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
 //! app and yields at most one [`Effect`], which the event loop carries out.
 
-use crate::debug::branches::summaries;
-use crate::debug::command::{
-    self, Action, ChartOf, Command, Context, Filter, Page, Question, Sort, Step, To, Ui, Whose,
-};
-use crate::debug::lesson::tutor::Kind;
-use crate::debug::lesson::{Guess, Tutor};
-use crate::model::Mode;
+use crate::action::{self, Action, ChartOf, Filter, Misread, Sort, Ui};
 use crate::outside::shown;
-use crate::tui::branches;
+use crate::record::command::Command;
+use crate::teach::{Guess, Tutor};
+use crate::tui::camera::Camera;
+use crate::tui::chartpage::ChartPage;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
-use crate::tui::nodes;
-use crate::tui::number;
-use crate::tui::theme::{self, Theme};
-use crate::tui::view::View;
-use crate::tui::workprecision;
+use crate::tui::theme::Theme;
+use crate::tui::view::{View, context};
 use crossterm::event::KeyEvent;
+use std::fmt;
+
+/// Nodes that a page key goes past.
+pub(super) const PAGE: isize = 10;
 
 /// What a key asks of the world outside the app.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +49,7 @@ pub enum Overlay {
         at: usize,
     },
     /// A work-precision chart.
-    Chart(Box<workprecision::Page>),
+    Chart(Box<ChartPage>),
     /// A line being typed.
     Line(CommandLine),
     /// A letter for the mode of the selected node.
@@ -72,38 +70,6 @@ pub enum Tone {
 pub struct Message {
     pub text: String,
     pub tone: Tone,
-}
-
-/// How the shape is looked at.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Camera {
-    /// 1 shows all of it.
-    pub zoom: f64,
-    /// Shift of the middle, as a fraction of what is seen at zoom 1.
-    pub pan: [f64; 2],
-}
-
-impl Camera {
-    /// All of the shape.
-    pub const ALL: Camera = Camera {
-        zoom: 1.0,
-        pan: [0.0; 2],
-    };
-
-    fn zoomed(self, factor: f64) -> Camera {
-        Camera {
-            zoom: (self.zoom * factor).clamp(0.05, 1e4),
-            ..self
-        }
-    }
-
-    fn panned(self, x: f64, y: f64) -> Camera {
-        let step = 0.1 / self.zoom;
-        Camera {
-            pan: [self.pan[0] + step * x, self.pan[1] + step * y],
-            ..self
-        }
-    }
 }
 
 /// A scene that the chooser offers.
@@ -157,15 +123,13 @@ pub struct App {
     /// Turns of the spinner.
     pub tick: usize,
     /// The last motion, for Enter.
-    last: Option<Command>,
+    pub(super) last: Option<Command>,
     /// Lines typed at `:`, oldest first.
-    history: Vec<String>,
+    pub(super) history: Vec<String>,
 }
 
 /// Largest count that digits can make.
 const MOST: u32 = 1_000_000;
-/// Nodes that a page key goes past.
-const PAGE: isize = 10;
 
 impl App {
     /// A fresh screen. Without a scene the chooser comes first.
@@ -210,11 +174,11 @@ impl App {
     }
 
     /// Says what went wrong.
-    pub fn complain(&mut self, text: impl Into<String>) {
-        self.tell(text.into(), Tone::Error);
+    pub fn complain(&mut self, text: impl fmt::Display) {
+        self.tell(text.to_string(), Tone::Error);
     }
 
-    fn tell(&mut self, text: String, tone: Tone) {
+    pub(super) fn tell(&mut self, text: String, tone: Tone) {
         let text = shown::line(&text.replace('\n', " ")).into_owned();
         self.message = Message { text, tone };
     }
@@ -275,14 +239,17 @@ impl App {
         }
     }
 
-    fn scenes(&self) -> Vec<String> {
+    pub(super) fn scenes(&self) -> Vec<String> {
         self.offers.iter().map(|offer| offer.name.clone()).collect()
     }
 
     /// Ctrl-C: closes what is open and stops a run; never the program.
     fn interrupt(&mut self, view: Option<&View>) -> Option<Effect> {
         self.close(view);
-        let trying = |view: &View| view.looks.is_some_and(|looks| looks.is_trying());
+        let trying = |view: &View| {
+            view.background
+                .is_some_and(|background| background.is_trying())
+        };
         let works = view.is_some_and(|view| view.running || trying(view));
         if works || self.measuring.is_some() || self.loading {
             return Some(Effect::Interrupt);
@@ -292,7 +259,7 @@ impl App {
     }
 
     /// Closes overlays; without a scene the chooser is what is left.
-    fn close(&mut self, view: Option<&View>) {
+    pub(super) fn close(&mut self, view: Option<&View>) {
         self.count = None;
         match view {
             Some(_) => self.overlay = Overlay::None,
@@ -300,7 +267,7 @@ impl App {
         }
     }
 
-    fn pane_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+    pub(super) fn pane_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
         if let Some(digit) = digit(name)
             && (digit > 0 || self.count.is_some())
         {
@@ -315,7 +282,7 @@ impl App {
             return None;
         }
         let count = self.count.take();
-        let Some(entry) = command::by_key(name) else {
+        let Some(entry) = action::by_key(name) else {
             self.complain(format!("{name} does nothing here; ? lists the keys"));
             return None;
         };
@@ -330,68 +297,36 @@ impl App {
     }
 
     /// Carries out an action, or says why it cannot be.
-    fn attempt(
+    pub(super) fn attempt(
         &mut self,
-        action: Result<Action, String>,
+        action: Result<Action, Misread>,
         count: Option<u32>,
         view: Option<&View>,
     ) -> Option<Effect> {
-        let action = action.and_then(|action| Ok((self.permits(&action, view)?, action)));
-        match action {
-            Ok((_, Action::Session(command))) => self.submit(command, view),
-            Ok((wanted, Action::Ui(ui))) => {
+        let action = match action {
+            Ok(action) => action,
+            Err(why) => {
+                self.complain(why);
+                return None;
+            }
+        };
+        match (self.permits(&action, view), action) {
+            (Ok(_), Action::Session(command)) => self.submit(command, view),
+            (Ok(wanted), Action::Ui(ui)) => {
                 let effect = self.ui(ui, count, view);
                 if let (true, Some(tutor), Some(view)) = (wanted, &mut self.lesson, view) {
                     tutor.settled(view.cursor, view.frame());
                 }
                 effect
             }
-            Err(message) => {
-                self.complain(message);
+            (Err(why), _) => {
+                self.complain(why);
                 None
             }
         }
     }
 
-    /// Whether the lesson, or free mode, lets an action be done; true where the lesson wants it.
-    fn permits(&mut self, action: &Action, view: Option<&View>) -> Result<bool, String> {
-        let Some(view) = view else { return Ok(false) };
-        match (&mut self.lesson, &mut self.guess) {
-            (Some(tutor), None) => tutor.permits(action, view.cursor, view.frame()),
-            (_, Some(guess)) => {
-                guess.permits(action, view.cursor, view.frame())?;
-                Ok(false)
-            }
-            (None, None) => Ok(false),
-        }
-    }
-
-    /// Free mode, of the lesson or outside.
-    pub fn guessing(&self) -> Option<&Guess> {
-        let lesson = self.lesson.as_ref().and_then(Tutor::guess);
-        lesson.or(self.guess.as_ref())
-    }
-
-    /// Whether any decision of the shown frame must not be seen yet.
-    pub fn hides_any(&self, view: &View) -> bool {
-        let frame = view.frame();
-        view.event().is_some()
-            && (self.lesson.as_ref().is_some_and(Tutor::hides)
-                || self
-                    .guessing()
-                    .is_some_and(|guess| guess.is_open(view.cursor, frame)))
-    }
-
-    /// Whether the decision on this slave node must not be seen yet.
-    pub fn hides(&self, view: &View, slave: usize) -> bool {
-        view.record(slave).is_some()
-            && (self.lesson.as_ref().is_some_and(Tutor::hides)
-                || self
-                    .guessing()
-                    .is_some_and(|guess| guess.hides(view.cursor, view.frame(), slave)))
-    }
-
-    fn submit(&mut self, command: Command, view: Option<&View>) -> Option<Effect> {
+    pub(super) fn submit(&mut self, command: Command, view: Option<&View>) -> Option<Effect> {
         match view {
             None => self.complain("open a scene first"),
             Some(_) => {
@@ -453,464 +388,6 @@ impl App {
         }
         None
     }
-
-    /// On with the lesson.
-    fn go_on(&mut self, view: Option<&View>) {
-        let (Some(tutor), Some(view)) = (&mut self.lesson, view) else {
-            return self.complain("no lesson is being taken; L begins one");
-        };
-        match tutor.on(view.cursor, view.frame()) {
-            Ok(()) => self.say(""),
-            Err(message) => self.complain(message),
-        }
-    }
-
-    /// Answers the lesson's question, or predicts.
-    fn answer(&mut self, word: &str, view: Option<&View>) {
-        let Some(view) = view else {
-            return self.complain("open a scene first");
-        };
-        let (cursor, frame, selected) = (view.cursor, view.frame(), self.selected);
-        let told = match (&mut self.lesson, &mut self.guess) {
-            (_, Some(guess)) => guess
-                .predict(view.model, cursor, frame, selected, word)
-                .map(|(_, text)| text),
-            (Some(tutor), None) => tutor
-                .answer(word, selected, cursor, frame)
-                .map(|()| String::new()),
-            (None, None) => {
-                Err("nothing is asked; p hides decisions until you predict them".into())
-            }
-        };
-        match told {
-            Ok(text) => self.say(text),
-            Err(message) => self.complain(message),
-        }
-    }
-
-    /// Switches free mode.
-    fn predict(&mut self, whose: Option<Whose>, view: Option<&View>) {
-        let Some(view) = view else {
-            return self.complain("open a scene first");
-        };
-        if self
-            .lesson
-            .as_ref()
-            .is_some_and(|tutor| tutor.step().is_some())
-        {
-            return self.complain("the lesson asks by itself");
-        }
-        let toggled = match self.guess {
-            Some(_) => Whose::Off,
-            None => Whose::Selected,
-        };
-        match (whose.unwrap_or(toggled), &self.guess) {
-            (Whose::Off, Some(guess)) => {
-                let told = format!("predicted: {} right, {} wrong", guess.right, guess.wrong);
-                self.guess = None;
-                self.say(told);
-            }
-            (Whose::Off, None) => self.complain("decisions are not hidden"),
-            (whose, _) => {
-                self.guess = Some(Guess::new(whose, view.cursor));
-                self.say("decisions hide until you predict them: step, then a and f, s or x");
-            }
-        }
-    }
-
-    fn turn(&mut self, places: usize) {
-        self.look_at(self.focus.turn(places));
-    }
-
-    /// Gives a pane the focus, and a place on the screen.
-    fn look_at(&mut self, pane: Pane) {
-        self.focus = pane;
-        if pane != Pane::Nodes {
-            self.page = pane;
-        }
-        if pane.takes_turns() {
-            self.chart = pane;
-        }
-    }
-
-    /// Shows a monitor's curve, or the next one's.
-    fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
-        let monitors = view.map_or(&[][..], |view| &view.model.monitors);
-        let next = (self.monitor + 1) % monitors.len().max(1);
-        self.monitor = monitor.unwrap_or(next);
-        match monitors.get(self.monitor) {
-            Some(monitor) => self.say(format!("load over {}", monitor.name)),
-            None => self.complain("this scene has no monitors"),
-        }
-    }
-
-    /// Gives a pane the whole screen, or takes it back.
-    fn show(&mut self, pane: Pane) {
-        self.zoomed = !(self.zoomed && self.focus == pane);
-        self.look_at(pane);
-    }
-
-    /// Shows a page of its own key; one that has nothing to show yet asks for it.
-    fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
-        self.show(match page {
-            Page::Timeline => Pane::Timeline,
-            Page::Diagnosis => Pane::Diagnosis,
-            Page::Branches => Pane::Branches,
-            Page::Remedies => Pane::Remedies,
-        });
-        let view = view?;
-        match page {
-            Page::Diagnosis if view.finding().is_none() => {
-                (self.answer, self.scroll) = (0, 0);
-                self.submit(Command::Census(Vec::new()), Some(view))
-            }
-            Page::Branches => {
-                let all = summaries(view.tree?);
-                let order = branches::order(&all);
-                let current = order.iter().position(|&(branch, _)| all[branch].is_current);
-                self.branch = current.unwrap_or(0);
-                None
-            }
-            Page::Remedies => {
-                let looks = view.looks?;
-                let here = (view.tree?.current(), view.cursor);
-                let known = looks.tried().is_some_and(|tried| tried.place == here);
-                if known || looks.is_trying() || !self.zoomed {
-                    return None;
-                }
-                self.remedy = 0;
-                self.submit(Command::Remedies, Some(view))
-            }
-            _ => None,
-        }
-    }
-
-    /// Goes to the tip of the selected branch.
-    fn go_to_branch(&mut self, view: Option<&View>) -> Option<Effect> {
-        let all = summaries(view?.tree?);
-        let (branch, _) = *branches::order(&all).get(self.branch)?;
-        let to = To::Named(format!("b{}", branch + 1));
-        self.submit(Command::Branch(to), view)
-    }
-
-    /// Starts from a consistent state of the census.
-    fn start_from(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
-        let found = view?.finding().flatten();
-        match found.and_then(|found| found.starts(number)) {
-            Some(starts) => return self.submit(Command::Assume(starts), view),
-            None if found.is_none() => {
-                self.complain(
-                    "which states are consistent is not known here yet; :census finds out",
-                );
-            }
-            None => self.complain(format!("there is no consistent state {}", number + 1)),
-        }
-        None
-    }
-
-    /// Takes a remedy of the list, where it was tried.
-    fn apply(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
-        let (looks, here) = (view?.looks?, (view?.tree?.current(), view?.cursor));
-        let Some(tried) = looks.tried().filter(|tried| !tried.trials.is_empty()) else {
-            self.complain("no remedy is tried yet; r tries them all");
-            return None;
-        };
-        let Some(trial) = tried.trials.get(number) else {
-            self.complain(format!("there is no remedy {}", number + 1));
-            return None;
-        };
-        if looks.is_trying() || tried.place != here {
-            let (branch, step) = tried.place;
-            self.complain(match looks.is_trying() {
-                true => "remedies are still being tried; Ctrl-C stops that".into(),
-                false => format!(
-                    "these were tried from step {step} of b{}; go there, or r twice tries them from here",
-                    branch + 1
-                ),
-            });
-            return None;
-        }
-        self.zoomed = false;
-        let (label, steps) = (trial.label.clone(), trial.steps.clone());
-        self.submit(Command::Follow { label, steps }, view)
-    }
-
-    fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {
-        if self.focus == Pane::Timeline
-            && let Some(to) = view.and_then(|view| along(step, count, view))
-        {
-            return self.submit(Command::Goto { step: to }, view);
-        }
-        let tried = view.and_then(|view| view.looks?.tried());
-        let answers = view.and_then(|view| Some(view.finding()??.census.as_ref()?.answers.len()));
-        let list = match self.focus {
-            Pane::Branches => {
-                let count = view.and_then(|view| Some(view.tree?.branches().len()));
-                Some((&mut self.branch, count))
-            }
-            Pane::Remedies => Some((&mut self.remedy, tried.map(|tried| tried.trials.len()))),
-            Pane::Diagnosis if matches!(step, Step::PageUp | Step::PageDown) => {
-                Some((&mut self.scroll, Some(usize::MAX)))
-            }
-            Pane::Diagnosis => Some((&mut self.answer, answers)),
-            _ => None,
-        };
-        if let Some((at, length)) = list {
-            let last = length.unwrap_or(0).saturating_sub(1);
-            *at = moved(*at, step, count, last);
-            return None;
-        }
-        let order = view.map_or(Vec::new(), |view| nodes::order(self, view));
-        let last = order.len().saturating_sub(1);
-        let here = order.iter().position(|slave| *slave == self.selected);
-        let row = |row: usize| order.get(row).copied().unwrap_or(0);
-        let to = |by: isize| {
-            let to = here
-                .unwrap_or(0)
-                .saturating_add_signed(by.saturating_mul(count));
-            row(to.min(last))
-        };
-        match (self.focus, step) {
-            (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
-            (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
-            (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),
-            (Pane::Shape, Step::Down) => self.camera = self.camera.panned(0.0, -1.0),
-            (_, Step::Up) => self.selected = to(-1),
-            (_, Step::Down) => self.selected = to(1),
-            (_, Step::PageUp) => self.selected = to(-PAGE),
-            (_, Step::PageDown) => self.selected = to(PAGE),
-            (_, Step::First) => self.selected = row(0),
-            (_, Step::Last) => self.selected = row(last),
-            (_, Step::Left | Step::Right) => {}
-        }
-        None
-    }
-
-    fn ask(&mut self, question: Question, view: Option<&View>) {
-        let has_slaves = view.is_some_and(|view| !view.model.contacts.is_empty());
-        match question {
-            Question::Mode if !has_slaves => self.complain("this scene has no slave nodes"),
-            Question::Mode => self.overlay = Overlay::Mode,
-            Question::Increment => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Increment, ""))
-            }
-            Question::Node => self.overlay = Overlay::Line(CommandLine::new(Purpose::Node, "")),
-            Question::Scene => self.choose(),
-            Question::Break => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "break "))
-            }
-            Question::Lesson => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson "))
-            }
-            Question::Answer => self.ask_answer(view),
-        }
-    }
-
-    /// Opens what an answer is typed into.
-    fn ask_answer(&mut self, view: Option<&View>) {
-        let asked = self.lesson.as_ref().and_then(Tutor::question);
-        let open = view.is_some_and(|view| self.guessing().is_some() && self.hides_any(view));
-        match asked.map(|question| question.kind) {
-            Some(Kind::Number) => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Answer, ""))
-            }
-            Some(Kind::Mode | Kind::Choice) => self.overlay = Overlay::Answer,
-            None if open => self.overlay = Overlay::Answer,
-            // What there is to say about it, the answering says.
-            None => self.answer("free", view),
-        }
-    }
-
-    fn answer_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        self.close(view);
-        if name != "Esc" {
-            self.answer(name, view);
-        }
-        None
-    }
-
-    fn mode_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        self.close(view);
-        let wanted = [Mode::Free, Mode::Sliding, Mode::Fixed]
-            .into_iter()
-            .find(|mode| theme::letter(*mode).eq_ignore_ascii_case(name));
-        match wanted {
-            Some(mode) => {
-                let hold = name.chars().all(char::is_uppercase);
-                let force = Command::Force {
-                    slave: self.selected,
-                    mode,
-                    hold,
-                };
-                self.attempt(Ok(Action::Session(force)), None, view)
-            }
-            None if name == "Esc" => None,
-            None => {
-                self.complain(format!(
-                    "{name} is no mode: f free, s sliding, x fixed; a capital holds it"
-                ));
-                None
-            }
-        }
-    }
-
-    fn help_key(&mut self, name: &str) -> Option<Effect> {
-        let Overlay::Help { top } = &mut self.overlay else {
-            return None;
-        };
-        match name {
-            "Esc" | "q" | "?" | "F1" | "Enter" => self.overlay = Overlay::None,
-            _ => *top = scrolled(*top, name, usize::MAX),
-        }
-        None
-    }
-
-    fn chart_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        let Overlay::Chart(page) = &mut self.overlay else {
-            return None;
-        };
-        if !page.key(name) && ["Esc", "q", "Enter"].contains(&name) {
-            self.close(view);
-        }
-        None
-    }
-
-    fn chooser_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        let Overlay::Chooser { at } = &mut self.overlay else {
-            return None;
-        };
-        match name {
-            "Enter" => {
-                return self
-                    .offers
-                    .get(*at)
-                    .map(|offer| Effect::Open(offer.name.clone()));
-            }
-            "q" | "Esc" if view.is_none() => return Some(Effect::Quit),
-            "q" | "Esc" => self.overlay = Overlay::None,
-            ":" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open ")),
-            "L" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson ")),
-            _ => *at = scrolled(*at, name, self.offers.len().saturating_sub(1)),
-        }
-        None
-    }
-
-    fn line_key(&mut self, key: &KeyEvent, name: &str, view: Option<&View>) -> Option<Effect> {
-        let scenes = self.scenes();
-        let context = context(view, self.selected, &scenes);
-        let Overlay::Line(line) = &mut self.overlay else {
-            return None;
-        };
-        match name {
-            "Esc" => self.close(view),
-            "Backspace" if line.text().is_empty() => self.close(view),
-            "Tab" => line.complete(1, &context),
-            "Shift-Tab" => line.complete(-1, &context),
-            "Up" => line.recall(1, &self.history),
-            "Down" => line.recall(-1, &self.history),
-            "Enter" => return self.enter(view),
-            _ => line.edit(key),
-        }
-        None
-    }
-
-    /// Carries out the line that was typed.
-    fn enter(&mut self, view: Option<&View>) -> Option<Effect> {
-        let Overlay::Line(line) = &self.overlay else {
-            return None;
-        };
-        let (purpose, text) = (line.purpose, line.text().trim().to_string());
-        self.close(view);
-        let line = match purpose {
-            _ if text.is_empty() => return None,
-            Purpose::Command => text,
-            Purpose::Increment => format!("increment {text}"),
-            Purpose::Node => format!("node {text}"),
-            Purpose::Answer => format!("answer {text}"),
-        };
-        self.history.retain(|old| *old != line);
-        self.history.push(line.clone());
-        let scenes = self.scenes();
-        let action = command::parse(&line, &context(view, self.selected, &scenes));
-        self.attempt(action, None, view)
-    }
-
-    /// What the prompt in the message line asks; none where nothing is asked.
-    pub fn question(&self, view: Option<&View>) -> Option<String> {
-        let view = view?;
-        match &self.overlay {
-            Overlay::Mode => Some(format!(
-                "mode of {}:  f free   s sliding   x fixed   (a capital holds it until M releases)",
-                view.slave(self.selected)
-            )),
-            Overlay::Answer => Some(self.asked(view)),
-            Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
-                "new increment (now {}): ",
-                number::plain(view.frame().state.controls.increment)
-            )),
-            _ => None,
-        }
-    }
-}
-
-impl App {
-    /// What the prompt of an answer says.
-    fn asked(&self, view: &View) -> String {
-        match self.lesson.as_ref().and_then(Tutor::question) {
-            Some(question) if question.kind == Kind::Choice => {
-                format!("your answer:  1 to {}", question.options.len())
-            }
-            Some(_) => "your answer:  f free   s sliding   x fixed".into(),
-            None => format!(
-                "next mode of {}:  f free   s sliding   x fixed",
-                view.slave(self.selected)
-            ),
-        }
-    }
-}
-
-/// What actions need to know to read their arguments.
-pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String]) -> Context<'a> {
-    let (model, scene) = (
-        view.map(|view| view.model),
-        view.and_then(|view| view.scene),
-    );
-    Context {
-        model,
-        scene,
-        tree: view.and_then(|view| view.tree),
-        selected,
-        scenes,
-    }
-}
-
-/// Where a step in a list of so many entries leads.
-fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
-    let by = match step {
-        Step::Up => -count,
-        Step::Down => count,
-        Step::PageUp => -PAGE,
-        Step::PageDown => PAGE,
-        Step::First => return 0,
-        Step::Last => return last,
-        Step::Left | Step::Right => 0,
-    };
-    at.saturating_add_signed(by).min(last)
-}
-
-/// Where a step along the timeline leads; none where it is no such step.
-fn along(step: Step, count: isize, view: &View) -> Option<usize> {
-    let last = view.frames.len().saturating_sub(1);
-    let by = match step {
-        Step::Left => -count,
-        Step::Right => count,
-        Step::PageUp => -PAGE,
-        Step::PageDown => PAGE,
-        Step::First => return Some(0),
-        Step::Last => return Some(last),
-        Step::Up | Step::Down => return None,
-    };
-    Some(view.cursor.saturating_add_signed(by).min(last))
 }
 
 /// What comes after one of several, round and round.
@@ -926,18 +403,4 @@ fn digit(name: &str) -> Option<u32> {
         (Some(letter), None) => letter.to_digit(10),
         _ => None,
     }
-}
-
-/// Where a list stands after a key that moves in lists.
-fn scrolled(at: usize, name: &str, last: usize) -> usize {
-    let to = match name {
-        "Up" | "k" => at.saturating_sub(1),
-        "Down" | "j" => at.saturating_add(1),
-        "PageUp" => at.saturating_sub(PAGE as usize),
-        "PageDown" | "Space" => at.saturating_add(PAGE as usize),
-        "Home" | "g" => 0,
-        "End" | "G" => last,
-        _ => at,
-    };
-    to.min(last)
 }

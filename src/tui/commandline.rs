@@ -1,6 +1,6 @@
 //! A line being typed at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
 
-use crate::debug::command::{self, Context};
+use crate::action::{self, Context};
 use crate::outside::shown;
 use crate::tui::theme::Theme;
 use crossterm::event::{Event, KeyEvent};
@@ -90,9 +90,9 @@ impl CommandLine {
 
     fn candidates(&self, context: &Context) -> Vec<String> {
         match self.purpose {
-            Purpose::Command => command::complete(self.text(), context),
+            Purpose::Command => action::complete(self.text(), context),
             Purpose::Increment | Purpose::Answer => Vec::new(),
-            Purpose::Node => command::complete(&format!("node {}", self.text()), context)
+            Purpose::Node => action::complete(&format!("node {}", self.text()), context)
                 .iter()
                 .filter_map(|line| line.strip_prefix("node ").map(String::from))
                 .collect(),
@@ -153,7 +153,7 @@ impl CommandLine {
             return Line::from(spans.collect::<Vec<_>>());
         }
         let name = self.text().split_whitespace().next();
-        let hint = match (self.purpose, name.map(command::by_name)) {
+        let hint = match (self.purpose, name.map(action::by_name)) {
             (Purpose::Increment, _) => {
                 "Enter: this increment starts again with it   Esc: leave it".into()
             }
@@ -173,7 +173,7 @@ impl CommandLine {
 
 /// The actions that a beginning could mean.
 fn choices(text: &str, context: &Context) -> String {
-    match command::complete(text.trim_start(), context) {
+    match action::complete(text.trim_start(), context) {
         found if found.is_empty() => "no action is called so; Esc and ? list them".into(),
         found => found.join("  "),
     }

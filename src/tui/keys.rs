@@ -93,7 +93,7 @@ fn spelled(code: KeyCode) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::debug::command::ACTIONS;
+    use crate::action::ACTIONS;
 
     #[test]
     fn every_key_of_the_table_can_be_pressed() {

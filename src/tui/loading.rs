@@ -1,10 +1,10 @@
 //! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
 //! while.
 
-use crate::debug::lesson::Lesson;
-use crate::debug::session::Session;
 use crate::scene::Scene;
-use crate::tui::workprecision::Page;
+use crate::session::Session;
+use crate::teach::Lesson;
+use crate::tui::chartpage::ChartPage;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
@@ -12,7 +12,7 @@ use std::thread;
 pub enum Loaded {
     Scene(Result<Box<Session>, String>),
     Lesson(Result<Box<(Lesson, Session)>, String>),
-    Chart(Result<Box<Page>, String>),
+    Chart(Result<Box<ChartPage>, String>),
 }
 
 /// Something on its way; who drops it does not want it any more.
@@ -45,7 +45,7 @@ impl Loading {
     /// The table of a chart.
     pub fn chart(file: &str) -> Loading {
         let file = file.to_owned();
-        Loading::of(move || Loaded::Chart(Page::open(&file).map(Box::new)))
+        Loading::of(move || Loaded::Chart(ChartPage::open(&file).map(Box::new)))
     }
 
     fn of(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {

@@ -1,21 +1,21 @@
 //! The event loop, and what it loops over: an app, a session, and commands that wait for the solver.
 
-use crate::debug::command::{ChartOf, Command, Unit};
-use crate::debug::journal::{JournalError, Keep};
-use crate::debug::lesson::{Lesson, Tutor};
-use crate::debug::report;
-use crate::debug::session::{Reply, Session};
+use crate::action::ChartOf;
+use crate::explain::report;
 use crate::outside::shown;
-use crate::scene::{Scene, builtin};
+use crate::record::command::{Command, Unit};
+use crate::record::journal::{JournalError, Keep};
+use crate::scene::{Scene, SceneError, builtin};
+use crate::session::{Reply, Session};
 use crate::study::measuring::Measuring;
+use crate::teach::{Lesson, Tutor};
 use crate::tui::app::{App, Effect, Offer, Overlay};
-use crate::tui::draw;
+use crate::tui::chartpage::ChartPage;
 use crate::tui::keys;
 use crate::tui::loading::{Loaded, Loading};
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
-use crate::tui::workprecision::Page;
 use crossterm::event::{self, Event, KeyEvent};
 use signal_hook::consts::SIGHUP;
 use std::collections::VecDeque;
@@ -30,8 +30,8 @@ pub enum Error {
     #[error("the debugger needs a terminal; `stickslip run SCENE` solves without one")]
     NoTerminal,
     /// The scene could not be loaded.
-    #[error("{0}")]
-    Scene(String),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// The journal cannot be written.
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -52,7 +52,7 @@ pub fn run(
 ) -> Result<(), Error> {
     let session = match scene {
         Some(scene) => {
-            let mut session = load(&scene, overrides).map_err(Error::Scene)?;
+            let mut session = load(&scene, overrides)?;
             journal.begin(&mut session)?;
             Some(session)
         }
@@ -117,7 +117,7 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
 /// # Errors
 /// If the scene cannot be loaded.
 pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
-    let session = load(scene, &[]).map_err(Error::Scene)?;
+    let session = load(scene, &[])?;
     let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
     debugger.type_keys(keys);
     Ok(debugger.text(width, height))
@@ -171,8 +171,8 @@ fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
 }
 
 /// Loads a scene.
-fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, String> {
-    let scene = Scene::open(scene, overrides).map_err(|error| error.to_string())?;
+fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, SceneError> {
+    let scene = Scene::open(scene, overrides)?;
     Ok(Session::new(scene))
 }
 
@@ -354,7 +354,7 @@ impl Debugger {
                 continue;
             }
             match &mut self.session {
-                Some(session) if session.looks().is_busy() => session.wait_for_looks(),
+                Some(session) if session.background().is_busy() => session.wait_for_background(),
                 // Under another page it would wait for ever.
                 _ if self.measuring.is_some() && matches!(self.app.overlay, Overlay::None) => {
                     std::thread::sleep(QUICK);
@@ -366,7 +366,7 @@ impl Debugger {
 
     /// The screen as plain text.
     pub fn text(&self, width: u16, height: u16) -> String {
-        draw::text(&self.app, self.view().as_ref(), width, height)
+        crate::tui::screen::text(&self.app, self.view().as_ref(), width, height)
     }
 
     fn submit(&mut self, command: Command) {
@@ -405,8 +405,8 @@ impl Debugger {
     /// Says what a command led to, unless the status at the top says the same.
     fn tell(&mut self, Reply(text): Reply) {
         // However soon the remedies are all tried, that they are being tried is not said any longer then.
-        let looks = self.session.as_ref().map(|session| session.looks());
-        self.trying |= looks.is_some_and(|looks| looks.is_trying());
+        let background = self.session.as_ref().map(|session| session.background());
+        self.trying |= background.is_some_and(|background| background.is_trying());
         let known = self.session.as_ref().and_then(|session| {
             match (session.is_running(), &session.frame().event) {
                 (true, _) => Some(text.clone()),
@@ -451,7 +451,7 @@ impl Debugger {
             .say("measuring beside all else, and shown when it is done; Ctrl-C stops it");
     }
 
-    fn show_chart(&mut self, page: Result<Page, String>) {
+    fn show_chart(&mut self, page: Result<ChartPage, String>) {
         match page {
             Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
             Err(error) => self.app.complain(error),
@@ -474,7 +474,7 @@ impl Debugger {
         };
         (self.measuring, self.app.measuring) = (None, None);
         self.app.say("");
-        self.show_chart(result.and_then(Page::of_chart));
+        self.show_chart(result.and_then(ChartPage::of_chart));
         true
     }
 
@@ -493,7 +493,7 @@ impl Debugger {
         }
         if let Some(session) = &self.session {
             session.interrupt();
-            session.looks().interrupt();
+            session.background().interrupt();
             self.app.say(match (&self.measuring, session.is_running()) {
                 (Some(_), false) => "stopping the chart",
                 _ => "stopping after this minor iteration",
@@ -536,8 +536,8 @@ impl Debugger {
         };
         let was_busy = session.is_running();
         self.app.unkept = session.lost_journal().is_some();
-        let mut seen = session.gather_looks();
-        let trying = session.looks().is_trying();
+        let mut seen = session.gather_background();
+        let trying = session.background().is_trying();
         if std::mem::replace(&mut self.trying, trying) && !trying {
             self.app.say("");
         }
@@ -582,9 +582,9 @@ impl Debugger {
         let Some(session) = &mut self.session else {
             return false;
         };
-        let before = session.looks().is_busy();
+        let before = session.background().is_busy();
         session.look(self.app.selected);
-        session.looks().is_busy() != before
+        session.background().is_busy() != before
     }
 
     /// Waits a moment for a quick step, so that keys typed fast are not told to wait. A run to the end is none.

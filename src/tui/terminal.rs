@@ -5,7 +5,7 @@
 //! expects, and take it again with a full redraw when the process goes on.
 
 use crate::tui::app::App;
-use crate::tui::draw;
+use crate::tui::screen;
 use crate::tui::view::View;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
@@ -58,7 +58,7 @@ impl Terminal {
         queue!(stdout(), BeginSynchronizedUpdate)?;
         let drawn = self.screen.draw(|frame| {
             let area = frame.area();
-            draw::draw(frame.buffer_mut(), area, app, view);
+            screen::draw(frame.buffer_mut(), area, app, view);
         });
         let drawn = drawn.map(drop);
         execute!(stdout(), EndSynchronizedUpdate)?;

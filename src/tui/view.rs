@@ -1,15 +1,20 @@
 //! What the panes show: a borrowed, read-only look at a session.
 
+use crate::action::Context;
 use crate::contact::record::{ContactRecord, Forced};
-use crate::debug::looks::{Finding, Looks, Push};
-use crate::debug::session::{Frame, Session};
-use crate::debug::strip::Strip;
-use crate::debug::tree::Tree;
+use crate::explain::examination::Examination;
+use crate::explain::influence::Push;
+use crate::history::frame::Frame;
+use crate::history::strip::Strip;
+use crate::history::tree::Tree;
 use crate::linear::norms::Norms;
 use crate::model::{Mode, Model};
 use crate::scene::Scene;
+use crate::session::Session;
+use crate::session::background::Background;
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervene::Intervention;
+use crate::teach;
 
 /// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
 #[derive(Debug, Clone)]
@@ -25,7 +30,7 @@ pub struct View<'a> {
     pub strips: &'a [Strip],
     /// The whole history, and what was found out beside it; tests by hand have neither.
     pub tree: Option<&'a Tree>,
-    pub looks: Option<&'a Looks>,
+    pub background: Option<&'a Background>,
     /// Which of them is shown.
     pub cursor: usize,
     /// Whether the solver is at work.
@@ -44,7 +49,7 @@ impl<'a> View<'a> {
             frames: session.frames(),
             strips: session.strips(),
             tree: Some(session.tree()),
-            looks: Some(session.looks()),
+            background: Some(session.background()),
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.residual_history(),
@@ -56,13 +61,14 @@ impl<'a> View<'a> {
     }
 
     /// What is found out about the problem that is solved next from here; an inner none while that is at work.
-    pub fn finding(&self) -> Option<Option<&'a Finding>> {
-        self.looks?.finding((self.tree?.current(), self.cursor))
+    pub fn examination(&self) -> Option<Option<&'a Examination>> {
+        self.background?
+            .examination((self.tree?.current(), self.cursor))
     }
 
     /// What pushed a slave node in the shown minor iteration; an inner none where that cannot be told.
     pub fn pushes(&self, slave: usize) -> Option<Option<&'a [Push]>> {
-        self.looks?
+        self.background?
             .pushes((self.tree?.current(), self.cursor), slave)
     }
 
@@ -152,5 +158,21 @@ impl<'a> View<'a> {
             Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
             _ => at,
         }
+    }
+}
+
+/// What actions need to know to read their arguments.
+pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String]) -> Context<'a> {
+    let (model, scene) = (
+        view.map(|view| view.model),
+        view.and_then(|view| view.scene),
+    );
+    Context {
+        model,
+        scene,
+        tree: view.and_then(|view| view.tree),
+        selected,
+        scenes,
+        lessons: teach::list(),
     }
 }

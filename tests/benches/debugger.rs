@@ -9,15 +9,15 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use stickslip::debug::command::{Command, Unit};
-use stickslip::debug::session::Session;
 use stickslip::model::Model;
+use stickslip::record::command::{Command, Unit};
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
 use stickslip::tui::run::Debugger;
 use stickslip::tui::theme::Theme;
-use stickslip::tui::{draw, keys};
+use stickslip::tui::{keys, screen};
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -112,7 +112,7 @@ fn draws(bencher: Bencher, debugger: &Debugger) {
     let mut buffer = Buffer::empty(area);
     bencher.bench_local(|| {
         buffer.reset();
-        draw::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
+        screen::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
     });
 }
 
@@ -149,7 +149,7 @@ fn key_while_solving(bencher: Bencher) {
             debugger.key(&press);
         }
         debugger.advance();
-        draw::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
+        screen::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
         worst = worst.max(began.elapsed());
     });
     println!("worst {worst:?}; still solving: {}", debugger.is_busy());

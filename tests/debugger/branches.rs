@@ -1,12 +1,13 @@
 //! What-if branches: nothing done is lost by going back, and how branches end is judged.
 
-use stickslip::debug::branches::Verdict;
-use stickslip::debug::command::{Command, To, Unit};
-use stickslip::debug::compare::Sameness;
-use stickslip::debug::session::{Frame, Session};
-use stickslip::debug::strip::Kind;
+use stickslip::history::compare::Sameness;
+use stickslip::history::frame::Frame;
+use stickslip::history::strip::PointKind;
+use stickslip::history::verdicts::Verdict;
 use stickslip::model::Mode;
+use stickslip::record::command::{Command, To, Unit};
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use stickslip::step::state::State;
 
 const FLOOR: &str = "01-pinned-beam-rough-floor";
@@ -99,7 +100,10 @@ fn an_intervention_at_the_tip_goes_on_in_the_same_branch() {
     force(&mut session, Mode::Sliding);
     forward(&mut session, Unit::Run, 1);
     assert_eq!(names(&session), ["b1: start"]);
-    assert_eq!(session.strips().last().map(|s| s.kind), Some(Kind::Last));
+    assert_eq!(
+        session.strips().last().map(|s| s.kind),
+        Some(PointKind::Last)
+    );
 }
 
 #[test]
@@ -159,7 +163,8 @@ fn branches_of_branches_keep_their_lines_and_motions_stay_on_the_present_one() {
 #[test]
 fn branches_are_renamed_and_wrong_names_are_told() {
     let mut session = session(OSCILLATES);
-    let refused = |session: &mut Session, command| session.submit(command).expect_err("refused");
+    let refused =
+        |session: &mut Session, command| session.submit(command).expect_err("refused").to_string();
     let only = refused(&mut session, Command::Branch(To::Next));
     assert!(
         only.contains("an intervention before the tip starts one"),
@@ -257,7 +262,7 @@ fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() 
     assert!(a.cost.minors > b.cost.minors && a.cost.majors > b.cost.majors);
     assert!(a.cost.seconds > 0.0 && a.residual < 1e-9);
     assert_eq!(a.nodes[0].mode, Mode::Sliding);
-    let forces = |side: &stickslip::debug::compare::Side| side.nodes[0].forces.expect("solved");
+    let forces = |side: &stickslip::history::compare::Side| side.nodes[0].forces.expect("solved");
     assert!((forces(a)[0] - forces(b)[0]).abs() < 1e-7);
     assert!(session.compare(0, 7).is_none());
     let told = submit(&mut session, Command::Compare(None));
@@ -289,7 +294,7 @@ fn the_strip_of_an_iteration_tells_what_its_event_tells() {
     for (frame, strip) in session.frames().iter().zip(session.strips()) {
         assert_eq!(
             frame.intervention.is_some(),
-            strip.kind == Kind::Intervention
+            strip.kind == PointKind::Intervention
         );
         if !strip.kind.is_solved() {
             continue;

@@ -1,11 +1,11 @@
 //! Breakpoints and watches: a run stops where it should, forward and backward, and says why.
 
-use stickslip::debug::breakpoints::hits;
-use stickslip::debug::command::{Action, Context, parse};
-use stickslip::debug::session::Session;
-use stickslip::debug::strip::Kind;
+use stickslip::action::{Action, Context, parse};
+use stickslip::history::breakpoints::hits;
+use stickslip::history::strip::PointKind;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use stickslip::step::event::Outcome;
 
 const FLOOR: &str = "01-pinned-beam-rough-floor";
@@ -22,10 +22,10 @@ fn type_line(session: &mut Session, line: &str) -> Result<String, String> {
         model: Some(session.model()),
         ..Context::default()
     };
-    let Action::Session(command) = parse(line, &context)? else {
+    let Action::Session(command) = parse(line, &context).map_err(|e| e.to_string())? else {
         panic!("{line} is not for the session");
     };
-    let reply = session.submit(command)?;
+    let reply = session.submit(command).map_err(|e| e.to_string())?;
     Ok(session.wait().unwrap_or(reply).0)
 }
 
@@ -155,14 +155,14 @@ fn cycles_failures_and_places_stop_a_run() {
     assert!(told.starts_with("breakpoint 3"), "{told}");
     assert!(say(&mut session, "finish").contains("load 0.15"));
     let kind = |session: &Session| session.strips()[session.cursor()].kind;
-    assert_eq!(kind(&session), Kind::Increment);
+    assert_eq!(kind(&session), PointKind::Increment);
     say(&mut session, "reverse-continue");
     assert_eq!(
         session.frame().event.as_ref().map(|e| e.position.increment),
         Some(3)
     );
     say(&mut session, "reverse-continue");
-    assert_eq!(kind(&session), Kind::Cycle);
+    assert_eq!(kind(&session), PointKind::Cycle);
 }
 
 #[test]

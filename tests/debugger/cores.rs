@@ -5,14 +5,14 @@ use std::path::Path;
 use std::process::{Command as Process, Output};
 use std::sync::Arc;
 use stickslip::contact::record::Forced;
-use stickslip::debug::command::{Command, Exported, Unit};
-use stickslip::debug::core::{Core, core};
-use stickslip::debug::export::{self, Origin, compared};
-use stickslip::debug::session::Session;
+use stickslip::explain::core::{Core, core};
 use stickslip::interface::minor_history::Cycle;
 use stickslip::interface::problem::{InterfaceProblem, Trials};
 use stickslip::model::Mode;
+use stickslip::record::command::{Command, Exported, Unit};
+use stickslip::record::export::{self, Origin, compared};
 use stickslip::scene::{Scene, builtin};
+use stickslip::session::Session;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::stepper::Stepper;
 
@@ -253,7 +253,7 @@ fn exported(scene: &Scene) -> Result<String, String> {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
     let problem = stepper.interface_problem().unwrap();
     let origin = Origin::of(scene, stepper.state().next, 1.0);
-    export::whole(&scene.model, &origin, &problem)
+    export::whole(&scene.model, &origin, &problem).map_err(|e| e.to_string())
 }
 
 #[test]
@@ -389,9 +389,9 @@ fn the_debugger_writes_cores_and_whole_problems() {
             file: file.clone(),
             overwrite: false,
         };
-        session.submit(command)?;
-        session.wait_for_looks();
-        session.exported().unwrap()?;
+        session.submit(command).map_err(|e| e.to_string())?;
+        session.wait_for_background();
+        session.exported().unwrap().map_err(|e| e.to_string())?;
         Ok::<String, String>(std::fs::read_to_string(file).unwrap())
     };
     // From the start, too, since the minor iterations run into the cycle.

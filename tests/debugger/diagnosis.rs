@@ -1,9 +1,17 @@
 //! Scenes that are known to cycle are diagnosed as their notes say (`tests/references/`, and the comments of the scenes):
 //! period, members, consistent states, cause.
 
+<<<<<<< main:tests/debugger/diagnosis.rs
 use crate::common::{Run, force, go_on, run, scene};
 use stickslip::debug::diagnosis::{Cause, Diagnosis, words};
 use stickslip::debug::influence::influences;
+=======
+mod common;
+
+use common::{Run, force, go_on, run, scene};
+use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
+use stickslip::explain::influence::influences;
+>>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:tests/diagnosis.rs
 use stickslip::interface::problem::{InterfaceProblem, Trials};
 use stickslip::model::Mode;
 use stickslip::step::event::Failure;
@@ -84,13 +92,13 @@ fn a_core_is_no_larger_than_its_cycle_and_cycles_by_itself() {
         assert!(core.places.len() <= diagnosis.cycle.members.len());
         assert_eq!(core.problem.nodes.len(), core.places.len());
         assert!(
-            stickslip::debug::core::cycle(&core.problem).is_some(),
+            stickslip::explain::core::cycle(&core.problem).is_some(),
             "{name}"
         );
         for drop in 0..core.places.len() {
             let fewer: Vec<usize> = (0..core.places.len()).filter(|&p| p != drop).collect();
             let smaller = core.problem.reduced(&fewer).unwrap();
-            let still = stickslip::debug::core::cycle(&smaller);
+            let still = stickslip::explain::core::cycle(&smaller);
             assert!(fewer.is_empty() || still.is_none(), "{name} without {drop}");
         }
     }

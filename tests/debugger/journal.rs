@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Output, Stdio};
-use stickslip::debug::command::{Action, Command, Context, Unit, parse};
-use stickslip::debug::journal::{Journal, JournalError, Record};
-use stickslip::debug::session::Session;
-use stickslip::debug::story::story;
+use stickslip::action::{Action, Context, parse};
+use stickslip::record::command::{Command, Unit};
+use stickslip::record::journal::{Journal, JournalError, Record};
+use stickslip::record::story::story;
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use tempfile::TempDir;
 
 const FLOOR: &str = "01-pinned-beam-rough-floor";

@@ -4,12 +4,13 @@
 use crate::common;
 use std::process::Command;
 use std::sync::Arc;
-use stickslip::debug::command::{self, Action, Context, Unit, Whose};
-use stickslip::debug::lesson::play::play;
-use stickslip::debug::lesson::tutor::{Kind, Paragraph};
-use stickslip::debug::lesson::{self, Guess, Lesson, Tutor};
-use stickslip::debug::session::Session;
+use stickslip::action::{self, Action, Context, Whose};
 use stickslip::model::Mode;
+use stickslip::record::command::{self, Unit};
+use stickslip::session::Session;
+use stickslip::teach::play::play;
+use stickslip::teach::tutor::{AnswerKind, Paragraph};
+use stickslip::teach::{self, Guess, Lesson, Tutor};
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
 
@@ -39,8 +40,8 @@ fn fault(text: &str) -> String {
 
 #[test]
 fn every_built_in_lesson_plays_through() {
-    assert!(lesson::list().len() >= 6);
-    for builtin in lesson::list() {
+    assert!(teach::list().len() >= 6);
+    for builtin in teach::list() {
         let lesson = Lesson::open(builtin.name).unwrap_or_else(|e| panic!("{e}"));
         assert!(!lesson.about.is_empty());
         let answers = play(&Arc::new(lesson)).unwrap_or_else(|e| panic!("{e}"));
@@ -72,7 +73,7 @@ fn what_the_lessons_teach_is_what_the_solver_does() {
 
 #[test]
 fn right_answers_follow_the_scene_and_stand_in_no_file() {
-    let text = lesson::find("3-by-hand").unwrap().text;
+    let text = teach::find("3-by-hand").unwrap().text;
     let rough = text.replace("friction: (angle: 30.0)", "friction: (angle: 40.0)");
     assert_ne!(text, rough);
     let rule = |text: &str| {
@@ -87,7 +88,7 @@ fn right_answers_follow_the_scene_and_stand_in_no_file() {
 fn a_wrong_answer_is_told_with_the_numbers_of_the_decision() {
     let mut debugger = taught("4-oscillation");
     debugger.type_keys("Space s");
-    assert_eq!(tutor(&debugger).question().unwrap().kind, Kind::Mode);
+    assert_eq!(tutor(&debugger).question().unwrap().kind, AnswerKind::Mode);
     let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
     debugger.type_keys("a s");
     let hint = "No. Look at the row free of Table 2: g = −0.0065 < 0. On a rough floor only one mode follows when g < 0.";
@@ -204,7 +205,7 @@ fn any_size_shows_what_to_do() {
 
 #[test]
 fn no_line_of_a_lesson_is_cut_off_on_a_small_screen() {
-    for builtin in lesson::list() {
+    for builtin in teach::list() {
         let lesson = Arc::new(Lesson::open(builtin.name).unwrap());
         let mut debugger = taught(builtin.name);
         // Wrong once, then right: the longest page that a step can have.
@@ -213,7 +214,7 @@ fn no_line_of_a_lesson_is_cut_off_on_a_small_screen() {
             let Some(step) = lesson.steps.get(tutor.at()) else {
                 break;
             };
-            let rows = stickslip::tui::lesson::rows(&debugger.app, 80);
+            let rows = stickslip::tui::panes::lesson::rows(&debugger.app, 80);
             assert!(
                 rows <= 15,
                 "{} step {}: {rows} rows",
@@ -222,7 +223,7 @@ fn no_line_of_a_lesson_is_cut_off_on_a_small_screen() {
             );
             match (step, tutor.solution()) {
                 (
-                    lesson::Step::Press {
+                    teach::lesson::Step::Press {
                         action: Action::Session(command),
                         ..
                     },
@@ -233,13 +234,13 @@ fn no_line_of_a_lesson_is_cut_off_on_a_small_screen() {
                     debugger.type_text(&line);
                     debugger.type_keys("Enter");
                 }
-                (lesson::Step::Press { .. }, _) => debugger.type_keys("e"),
-                (lesson::Step::Ask(_), Some(word)) => {
+                (teach::lesson::Step::Press { .. }, _) => debugger.type_keys("e"),
+                (teach::lesson::Step::Ask(_), Some(word)) => {
                     debugger.type_keys(":");
                     debugger.type_text(&format!("answer {word}"));
                     debugger.type_keys("Enter");
                 }
-                (lesson::Step::Predict { .. }, _) => break,
+                (teach::lesson::Step::Predict { .. }, _) => break,
                 _ => debugger.type_keys("Space"),
             }
         }
@@ -366,7 +367,7 @@ fn the_scene_of_a_lesson_is_checked_like_any_other() {
         "{}",
         fault(&text)
     );
-    let by_hand = lesson::find("3-by-hand").unwrap().text;
+    let by_hand = teach::find("3-by-hand").unwrap().text;
     let broken = by_hand.replace(
         "(nodes: [\"beam.end\"], on: [\"floor\"]",
         "(nodes: [\"beam.end\"], on: [\"flor\"]",
@@ -426,7 +427,7 @@ fn in_free_mode_a_decision_hides_until_it_is_predicted() {
 fn every_changed_node_can_be_asked_for() {
     let mut session = Session::new(common::two_blocks(1));
     let mut guess = Guess::new(Whose::Changed, session.cursor());
-    let step = command::parse("step", &Context::default()).unwrap();
+    let step = action::parse("step", &Context::default()).unwrap();
     guess
         .permits(&step, session.cursor(), session.frame())
         .unwrap();
@@ -473,7 +474,7 @@ fn the_command_line_lists_and_checks_lessons() {
         )
     };
     let (code, out, _) = run(&["lesson"]);
-    assert_eq!((code, out.lines().count()), (Some(0), lesson::list().len()));
+    assert_eq!((code, out.lines().count()), (Some(0), teach::list().len()));
     let (code, out, _) = run(&["lesson", "--check", "by-hand"]);
     assert!(
         code == Some(0) && out.contains("3-by-hand: sound; 13 steps, 7 questions"),

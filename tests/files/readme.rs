@@ -4,8 +4,8 @@
 
 use std::fs;
 use std::sync::Arc;
-use stickslip::debug::lesson::{Lesson, play::play};
 use stickslip::scene::Scene;
+use stickslip::teach::{Lesson, play::play};
 use stickslip::tui::{Debugger, theme::Theme};
 
 const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
@@ -29,7 +29,7 @@ fn renewed(readme: &str) -> String {
             text += &lesson_screen(what.trim_end_matches(" -->"));
             skipping = true;
         } else if line == "<!-- keys -->" {
-            text += &format!("\n{}\n", stickslip::debug::command::markdown().trim_end());
+            text += &format!("\n{}\n", stickslip::action::markdown().trim_end());
             skipping = true;
         }
     }

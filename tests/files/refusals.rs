@@ -9,9 +9,305 @@ use crate::hostile::{
 use crate::program::{code, err, well};
 use std::fs;
 use std::os::unix::fs::symlink;
+<<<<<<< main:tests/files/refusals.rs
 use stickslip::debug::journal::Journal;
 use stickslip::debug::session::Session;
 use stickslip::scene::Scene;
+=======
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use stickslip::outside::shown;
+use stickslip::record::journal::Journal;
+use stickslip::scene::{Scene, builtin};
+use stickslip::session::Session;
+use tempfile::TempDir;
+
+const CYCLES: &str = "osc-two6";
+/// What would set a title, ring, clear the screen, turn the writing, and colour by C1.
+const ORDERS: &str = "\u{1b}]0;PWN\u{7}\u{202e}\u{1b}[2J\u{9b}31m";
+const SHOWN: &str = "\\u{1b}]0;PWN\\u{7}\\u{202e}\\u{1b}[2J\\u{9b}31m";
+/// Far more than a refusal takes, since the machine may be busy with other tests.
+const DEADLINE: Duration = Duration::from_secs(20);
+
+/// Runs the program, and does not wait for ever.
+#[track_caller]
+fn run(directory: &TempDir, arguments: &[&str]) -> Output {
+    let mut child = program(directory.path(), arguments)
+        .env("XDG_STATE_HOME", directory.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // What it says fits into a pipe.
+    let begin = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if begin.elapsed() > DEADLINE {
+            child.kill().unwrap();
+            panic!("it waits for ever: {arguments:?}");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.wait_with_output().unwrap()
+}
+
+/// What it says where it refuses something: one line, not longer than one can read.
+#[track_caller]
+fn refusal(directory: &TempDir, arguments: &[&str]) -> String {
+    let output = run(directory, arguments);
+    let told = err(&output);
+    assert_eq!(code(&output), 2, "{arguments:?}: {told}");
+    assert_eq!(out(&output), "", "{arguments:?}");
+    assert!(
+        told.lines().count() == 1 && told.len() < 2000,
+        "{arguments:?}: {told}"
+    );
+    told
+}
+
+fn put(directory: &TempDir, name: &str, text: &str) {
+    fs::write(directory.path().join(name), text).unwrap();
+}
+
+fn scene(name: &str) -> String {
+    builtin::find(name).unwrap().text.to_owned()
+}
+
+const STUDY: &str = r#"(title: "ORDERSA study", about: "Why ORDERS not", scene: "osc-two6",
+    set: [("settings.strategy", "table2")], vary: [("history.increment", [0.5])])"#;
+const LESSON: &str = r#"(title: "ORDERSA lesson", about: "ORDERSabout", scene: Name("osc-two6"),
+    steps: [Text("ORDERSread"), Press(text: "ORDERSdo", press: "s"),
+    Ask(text: "ORDERSsay", answer: Mode(node: "a"), hint: "ORDERSh", then: "ORDERSt")])"#;
+const CHART: &str = "# ORDERSwhere from\nscene,series,run,status,error,seconds\n\
+    ORDERSscene,\"ORDERSone, two\",ORDERSrun=1,whole,1e-3,0.1\n\
+    ORDERSscene,\"ORDERSone, two\",ORDERSrun=2,ORDERSfailed,,0.2\n";
+const REFERENCE: &str = "# ORDERSof whom\nload,u_x,u_y\n1,0.5,0.1\n";
+const CONTACTS: &str = r#"Contacts(
+    title: "t",
+    contacts: [
+        (id: "a", gap: 0.5, friction: (angle: 20.0), load: (-1.0, 0.25)),
+        (id: "b", friction: (angle: 9.0), load: (0.0, 1.0)),
+    ],
+    matrix: Stiffness([
+        [4.0, 0.0, 0.0, 0.0],
+        [0.0, 3.0, 0.0, 0.0],
+        [0.0, 0.0, 2.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ]),
+    history: (path: [0, 1], increment: 0.5),
+)"#;
+
+/// A text with the orders in it, as RON writes them.
+fn in_ron(text: &str) -> String {
+    text.replace("ORDERS", SHOWN)
+}
+
+/// A directory with one file of every kind, each with orders in it wherever a text can be.
+fn harmful() -> TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    put(&directory, "study.ron", &in_ron(STUDY));
+    put(&directory, "lesson.ron", &in_ron(LESSON));
+    put(&directory, "chart.csv", &CHART.replace("ORDERS", ORDERS));
+    put(
+        &directory,
+        "reference.csv",
+        &REFERENCE.replace("ORDERS", ORDERS),
+    );
+    let path = directory.path().join("j");
+    let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
+    session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
+    for line in ["step", "rename x", "watch gap a"] {
+        use stickslip::action::{Action, Context, parse};
+        let context = Context {
+            model: Some(session.model()),
+            ..Context::default()
+        };
+        let Ok(Action::Session(command)) = parse(line, &context) else {
+            panic!("{line}")
+        };
+        session.submit(command).unwrap();
+        session.wait();
+    }
+    let text = fs::read_to_string(&path).unwrap();
+    put(
+        &directory,
+        "story.journal",
+        &text.replace("said:\"", &format!("said:\"{SHOWN}")),
+    );
+    let other = text
+        .replace("version:\"", &format!("version:\"{SHOWN}"))
+        .replace("name:\"osc", &format!("name:\"{SHOWN}osc"))
+        .replace("digest:\"", "digest:\"1");
+    put(&directory, "resume.journal", &other);
+    let scene = scene(CYCLES);
+    put(&directory, &format!("{ORDERS}.ron"), &scene);
+    put(
+        &directory,
+        &format!("{ORDERS}wrong.ron"),
+        &scene.replacen("title", "tittle", 1),
+    );
+    directory
+}
+
+#[test]
+fn orders_to_the_terminal_out_of_files_and_their_names_are_shown_everywhere_and_nowhere_obeyed() {
+    let directory = harmful();
+    let (good, wrong) = (format!("{ORDERS}.ron"), format!("{ORDERS}wrong.ron"));
+    let (good, wrong) = (good.as_str(), wrong.as_str());
+    let study_csv = format!("{ORDERS}.csv");
+    let cases: &[(&[&str], i32)] = &[
+        (
+            &[
+                "study",
+                "study.ron",
+                "--csv",
+                "study.csv",
+                "--svg",
+                "study.svg",
+            ],
+            0,
+        ),
+        (&["study", good, "--csv", "-", "--vary", "refine=1"], 0),
+        (&["lesson", "--check", "lesson.ron"], 0),
+        (
+            &[
+                "chart",
+                "--from",
+                "chart.csv",
+                "--csv",
+                "made.csv",
+                "--svg",
+                "chart.svg",
+            ],
+            0,
+        ),
+        (&["chart", "--from", "chart.csv", "--csv", "-"], 0),
+        (
+            &[
+                "chart",
+                CYCLES,
+                "--over",
+                "settings.strategy=ladder,lemke",
+                "--reference",
+                "reference.csv",
+                "--repeats",
+                "1",
+                "--csv",
+                "-",
+                "--svg",
+                "reference.svg",
+            ],
+            0,
+        ),
+        (&["story", "story.journal"], 0),
+        (&["story", "resume.journal"], 0),
+        (&["resume", "--check", "resume.journal"], 1),
+        (&["check", good], 0),
+        (&["check", good, "--paths"], 0),
+        (&["check", wrong], 2),
+        (&["run", good, "--csv", &study_csv], 3),
+        (&["run", good, "--set", ORDERS], 2),
+        (&["run", good, "--set", "refine=\u{1b}]0;x\u{7}"], 2),
+        (&["remedies", good], 0),
+        (&["core", good], 0),
+        (&["record", good, "--at", "1.1.1"], 0),
+        (
+            &[
+                "map",
+                good,
+                "--strategies",
+                "ladder,lemke",
+                "--csv",
+                "-",
+                "--svg",
+                "map.svg",
+            ],
+            0,
+        ),
+        (&["check", ORDERS], 2),
+        (&["study", ORDERS], 2),
+        (&["lesson", ORDERS], 2),
+        (&["story", ORDERS], 2),
+        (&["diff", ORDERS, ORDERS], 2),
+        (&["run", "a", ORDERS], 2),
+        (&[ORDERS, ORDERS], 2),
+    ];
+    for (arguments, wanted) in cases {
+        let output = run(&directory, arguments);
+        let (out, err) = (out(&output), err(&output));
+        assert_eq!(code(&output), *wanted, "{arguments:?}: {err}");
+        let told = out + &err;
+        let harm = |c: char| shown::is_order(c) && c != '\n' && c != '\t';
+        assert!(!told.contains(harm), "{arguments:?}: {told:?}");
+        // Neither escapes of RON count here nor a file whose name is not told.
+        let quiet = ["core", "lesson", "chart", "remedies", "record"].contains(&arguments[0])
+            && *wanted == 0;
+        let quiet = quiet || arguments.contains(&"--paths");
+        assert!(quiet || told.contains("\\u{1b}"), "{arguments:?}: {told}");
+    }
+    for name in [
+        "study.csv",
+        "study.svg",
+        "made.csv",
+        "chart.svg",
+        "reference.svg",
+        "map.svg",
+    ] {
+        let text = fs::read_to_string(directory.path().join(name)).unwrap();
+        let harm = text.contains(|c| shown::is_order(c) && !"\n\t\r".contains(c));
+        assert!(
+            !harm && (text.contains("\\u{1b}") || name == "study.csv"),
+            "{name}: {text}"
+        );
+    }
+    let again = well(&run(
+        &directory,
+        &["chart", "--from", "made.csv", "--csv", "-"],
+    ));
+    assert!(rows(&again)[0]["series"].starts_with(SHOWN), "{again}");
+    // A snapshot is not called as the scene's file would have it.
+    let made = names(directory.path());
+    let ours = made.iter().filter(|name| name.ends_with("-1.1.1.ron"));
+    assert!(
+        ours.into_iter().all(|name| !name.contains(shown::is_order)),
+        "{made:?}"
+    );
+}
+
+/// Every command that reads a file, with `FILE` for it.
+const READERS: &[&str] = &[
+    "check FILE",
+    "run FILE",
+    "record FILE --at 1",
+    "remedies FILE",
+    "core FILE",
+    "study FILE",
+    "map FILE",
+    "chart FILE",
+    "lesson --check FILE",
+    "story FILE",
+    "resume --check FILE",
+    "audit FILE",
+    "replay FILE",
+    "diff FILE FILE",
+    "chart --from FILE",
+    "chart osc-two6 --reference FILE",
+    "map osc-two6 --resume FILE",
+    "map --random 1 --resume FILE",
+];
+
+fn reader<'a>(line: &'a str, file: &'a str) -> Vec<&'a str> {
+    let words = line.split(' ');
+    words
+        .map(|word| if word == "FILE" { file } else { word })
+        .collect()
+}
+
+fn pipe(directory: &TempDir, name: &str) {
+    use rustix::fs::{CWD, Mode, mkfifoat};
+    mkfifoat(CWD, directory.path().join(name), Mode::RUSR | Mode::WUSR).unwrap();
+}
+>>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:tests/hostile_files.rs
 
 #[test]
 fn what_is_no_file_is_refused_at_once_by_every_command() {

@@ -6,7 +6,7 @@ use super::{seconds, seed};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::time::{Duration, Instant};
-use stickslip::debug::command;
+use stickslip::action;
 
 /// Scenes on which it is begun: quick ones, a large one, none.
 const SCENES: [&str; 7] = [
@@ -122,7 +122,7 @@ impl Typist {
             4..=5 => self.one(&KEYS).to_owned(),
             6 => format!("\x1b:{}\r", self.one(&LINES)),
             7 => {
-                let entry = &command::ACTIONS[self.below(command::ACTIONS.len())];
+                let entry = &action::ACTIONS[self.below(action::ACTIONS.len())];
                 let word = self.one(&["", " a", " 2", " sliding", " a fixed", " x y z"]);
                 format!("\x1b:{}{word}\r", entry.name)
             }

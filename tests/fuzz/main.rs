@@ -23,14 +23,16 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-use stickslip::debug::command::{self, Action, Command, Context};
-use stickslip::debug::journal::{Journal, Record};
-use stickslip::debug::lesson::Lesson;
-use stickslip::debug::session::Session;
-use stickslip::debug::snapshot::{Snapshot, compare};
-use stickslip::debug::story::story;
+use stickslip::action::{self, Action, Context};
 use stickslip::outside::shown;
-use stickslip::scene::{Cost, Scene};
+use stickslip::record::command::Command;
+use stickslip::record::differences::compare;
+use stickslip::record::journal::{Journal, Record};
+use stickslip::record::snapshot::Snapshot;
+use stickslip::record::story::story;
+use stickslip::scene::Scene;
+use stickslip::scene::cost::Cost;
+use stickslip::session::Session;
 use stickslip::step::stepper::Stepper;
 use stickslip::study::chart_file::Chart;
 use stickslip::study::precision;
@@ -39,6 +41,7 @@ use stickslip::study::reference::Reference;
 use stickslip::study::survey::Survey;
 use stickslip::study::trial::Variant;
 use stickslip::study::{Plan, Study, Watch, precision_figure};
+use stickslip::teach::Lesson;
 
 /// Where nobody says how long a target is to run.
 const SECONDS: f64 = 1.0;
@@ -315,7 +318,7 @@ fn typed(session: &Session, line: &str) -> Result<Action, String> {
         tree: Some(session.tree()),
         ..Context::default()
     };
-    command::parse(line, &context)
+    action::parse(line, &context).map_err(|e| e.to_string())
 }
 
 #[test]
@@ -415,7 +418,7 @@ fn map_logs() {
 
 #[test]
 fn lines() {
-    let corpus: Vec<String> = command::ACTIONS
+    let corpus: Vec<String> = action::ACTIONS
         .iter()
         .flat_map(|entry| {
             [
@@ -438,7 +441,7 @@ fn lines() {
             let scene = Scene::open("osc-two6", &[("history.increment".into(), "0.2".into())]);
             (Session::new(scene.unwrap()), 0)
         });
-        let _ = command::complete(&line, &Context::default());
+        let _ = action::complete(&line, &Context::default());
         let action = match typed(session, &line) {
             Ok(action) => action,
             Err(message) => return Took::Refused(message),
@@ -467,7 +470,7 @@ fn lines() {
             }
             std::thread::sleep(Duration::from_micros(200));
         }
-        session.wait_for_looks();
+        session.wait_for_background();
         assert!(!session.frames().is_empty() && session.cursor() < session.frames().len());
         *steps += 1;
         let (old, long) = (*steps > 300, session.frames().len() > 2000);

@@ -5,17 +5,17 @@ use crate::common::run;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::contact::record::ContactRecord;
-use stickslip::debug::command::Command;
-use stickslip::debug::diagnosis::{Cause, Diagnosis, cycling, words};
-use stickslip::debug::session::Session;
+use stickslip::explain::diagnosis::{Cause, Diagnosis, cycling, words};
 use stickslip::interface::census::census;
 use stickslip::interface::minor_history::Cycle;
 use stickslip::interface::problem::{Answer, Assumed, InterfaceProblem, Trials};
 use stickslip::model::Mode;
 use stickslip::model::{Friction, InitialState, Settings, Strategy, Touch};
+use stickslip::record::command::Command;
 use stickslip::scene::Scene;
 use stickslip::scene::condensed::{Contact, Matrix, Problem};
 use stickslip::scene::spec::History;
+use stickslip::session::Session;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::stepper::Stepper;
 
@@ -457,8 +457,12 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     // The same in the debugger, from before the cycle, where nothing of it is known yet.
     let mut session = Session::new(scene);
     session.submit(Command::Census(vec![])).unwrap();
-    session.wait_for_looks();
-    let finding = session.looks().finding(session.place()).flatten().unwrap();
+    session.wait_for_background();
+    let finding = session
+        .background()
+        .examination(session.place())
+        .flatten()
+        .unwrap();
     assert!(finding.cycles, "{:?}", finding.lines);
     assert!(
         finding.lines[0].contains("c1, c2, c3, c4 and c5"),
@@ -467,8 +471,12 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     );
     // And of chosen nodes, none of which is in the ring.
     session.submit(Command::Census(vec![10, 11])).unwrap();
-    session.wait_for_looks();
-    let finding = session.looks().finding(session.place()).flatten().unwrap();
+    session.wait_for_background();
+    let finding = session
+        .background()
+        .examination(session.place())
+        .flatten()
+        .unwrap();
     let census = finding.census.as_ref().unwrap();
     assert_eq!((census.tried, census.answers.len()), (4, 1));
     assert_eq!(census.answers[0].answer.letters(), "+F");

@@ -3,19 +3,19 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
-use stickslip::debug::branches::Verdict;
-use stickslip::debug::command::{Command, Unit};
-use stickslip::debug::journal::{Journal, Record};
-use stickslip::debug::remedies::End;
-use stickslip::debug::session::Session;
-use stickslip::debug::story::story;
+use stickslip::explain::remedies::End;
+use stickslip::history::verdicts::Verdict;
 use stickslip::model::Mode;
+use stickslip::record::command::{Command, Unit};
+use stickslip::record::journal::{Journal, Record};
+use stickslip::record::story::story;
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use stickslip::step::event::Outcome;
 use stickslip::step::intervene::Intervention;
 use stickslip::step::state::Status;
 use stickslip::tui::theme::Theme;
-use stickslip::tui::{Debugger, draw, keys};
+use stickslip::tui::{Debugger, keys, screen};
 
 fn session(scene: &str) -> Session {
     Session::new(Scene::open(scene, &[]).unwrap())
@@ -65,10 +65,10 @@ fn what_pushed_a_node_adds_up_to_what_changed() {
         solve(&mut session, Command::Goto { step });
         for slave in 0..2 {
             session.look(slave);
-            session.wait_for_looks();
+            session.wait_for_background();
             session.look(slave);
-            session.wait_for_looks();
-            let pushes = session.looks().pushes(session.place(), slave).unwrap();
+            session.wait_for_background();
+            let pushes = session.background().pushes(session.place(), slave).unwrap();
             let sum: f64 = pushes.unwrap().iter().map(|p| p.influence.f_n).sum();
             let of = |step: usize| session.frames()[step].event.as_ref().unwrap().nodes[slave].f_n;
             let change = of(step) - of(step - 1);
@@ -89,8 +89,8 @@ fn the_first_minor_iteration_of_a_major_has_nothing_before_it() {
     solve(&mut session, Command::Goto { step: 1 });
     assert_eq!(session.minor_before(), None);
     session.look(0);
-    session.wait_for_looks();
-    assert!(session.looks().pushes(session.place(), 0).is_none());
+    session.wait_for_background();
+    assert!(session.background().pushes(session.place(), 0).is_none());
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn the_timeline_marks_the_cursor_and_forced_modes_without_colour_too() {
         debugger.type_keys("c d Enter s t");
         let area = Rect::new(0, 0, 80, 24);
         let mut buffer = Buffer::empty(area);
-        draw::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
+        screen::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
         let row = |y: u16| -> String { (0..80).map(|x| buffer[(x, y)].symbol()).collect() };
         let y = (0..24).find(|&y| row(y).contains("FFXFXSSss")).unwrap();
         let x = (0..80)
@@ -217,7 +217,7 @@ fn majors_and_increments_are_ruled_off() {
 fn remedies_are_measured_and_the_chosen_one_is_done_again_in_a_branch_of_its_own() {
     let mut debugger = debugger("osc-inclined-cantilever", "c r");
     let session = debugger.session.as_ref().unwrap();
-    let tried = session.looks().tried().unwrap().clone();
+    let tried = session.background().tried().unwrap().clone();
     let ends = |label: &str| {
         let mut trials = tried.trials.iter();
         let found = trials.find(|trial| trial.label.starts_with(label));
@@ -263,9 +263,9 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
     let mut session = session("osc-two6");
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
-    session.wait_for_looks();
+    session.wait_for_background();
     let (_, step) = session.place();
-    let trials = session.looks().tried().unwrap().trials.clone();
+    let trials = session.background().tried().unwrap().trials.clone();
     let mut good = 0;
     for trial in trials.into_iter().filter(|t| t.end == End::Converged) {
         solve(&mut session, Command::Goto { step });
@@ -290,13 +290,13 @@ fn keys_are_answered_while_remedies_are_tried() {
         debugger.key(&keys::press(name).unwrap());
     };
     press(&mut debugger, "r");
-    assert!(debugger.session.as_ref().unwrap().looks().is_trying());
+    assert!(debugger.session.as_ref().unwrap().background().is_trying());
     assert!(!debugger.is_busy());
     press(&mut debugger, "S");
     assert_eq!(debugger.session.as_ref().unwrap().cursor(), 1);
     press(&mut debugger, "Ctrl-c");
     debugger.settle();
-    assert!(!debugger.session.as_ref().unwrap().looks().is_trying());
+    assert!(!debugger.session.as_ref().unwrap().background().is_trying());
     press(&mut debugger, "Enter");
     assert!(
         debugger.app.message.text.contains("tried"),
@@ -341,14 +341,14 @@ fn a_branch_that_was_left_at_its_tip_keeps_it_when_memory_is_short() {
     let mut session = Session::with_budget(scene, 20_000);
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
-    session.wait_for_looks();
-    let trial = session.looks().tried().unwrap().trials[0].clone();
+    session.wait_for_background();
+    let trial = session.background().tried().unwrap().trials[0].clone();
     let (label, steps) = (trial.label, trial.steps);
     solve(&mut session, Command::Follow { label, steps });
     solve(&mut session, RUN);
     assert!(finished(&session));
     session
-        .submit(Command::Branch(stickslip::debug::command::To::Previous))
+        .submit(Command::Branch(stickslip::record::command::To::Previous))
         .unwrap();
     assert!(session.frame().is_whole());
     assert_eq!(session.cursor(), 2);
@@ -362,16 +362,20 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
-    session.wait_for_looks();
-    for trial in session.looks().tried().unwrap().trials.clone() {
+    session.wait_for_background();
+    for trial in session.background().tried().unwrap().trials.clone() {
         solve(&mut session, Command::Goto { step: 6 });
         let (label, steps) = (trial.label, trial.steps);
         solve(&mut session, Command::Follow { label, steps });
     }
     solve(&mut session, Command::Goto { step: 6 });
     solve(&mut session, Command::Census(vec![]));
-    session.wait_for_looks();
-    let finding = session.looks().finding(session.place()).flatten().unwrap();
+    session.wait_for_background();
+    let finding = session
+        .background()
+        .examination(session.place())
+        .flatten()
+        .unwrap();
     let starts = finding.starts(0).unwrap();
     solve(&mut session, Command::Assume(starts));
     solve(&mut session, RUN);

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Stdio;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use stickslip::debug::journal::{Journal, JournalError};
+use stickslip::record::journal::{Journal, JournalError};
 use stickslip::scene::{Scene, builtin};
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{self, App};

@@ -1,0 +1,192 @@
+//! What a key or a typed line can mean: a command for the session, or something that concerns the terminal alone.
+
+use crate::record::command::Command;
+use crate::study::Vary;
+
+/// What a key or a typed line means.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    Session(Command),
+    Ui(Ui),
+}
+
+/// Which work-precision chart is wanted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ChartOf {
+    /// That of this scene.
+    Scene,
+    /// This scene over the product of these settings.
+    Settings(Vec<Vary>),
+    /// A table that was written before.
+    File(String),
+}
+
+/// What concerns the terminal alone.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ui {
+    /// The last motion once more.
+    Repeat,
+    /// Stop a run; never the program.
+    Interrupt,
+    /// Move the selection, scroll or pan, whatever the pane with the focus does with it.
+    Move(Step),
+    /// Select a slave node, by slave number.
+    Select(usize),
+    NextPane,
+    PreviousPane,
+    /// Give the pane with the focus the whole screen, or take it back.
+    Zoom,
+    /// Zoom the decision.
+    Explain,
+    /// Show a page, or zoom it and back.
+    Page(Page),
+    /// Start from this consistent state of the census (from 0).
+    StartFrom(usize),
+    /// Take this remedy of the list (from 0).
+    Apply(usize),
+    /// Show a work-precision chart.
+    Chart(ChartOf),
+    /// The shape larger, smaller, and all of it.
+    Enlarge,
+    Shrink,
+    Fit,
+    /// Sort the slave nodes: like this, or in the next way.
+    Sort(Option<Sort>),
+    /// Sort them the other way round.
+    SortBackward,
+    /// Which slave nodes the table shows: these, or the next kind.
+    Filter(Option<Filter>),
+    /// Which monitor the curve shows: this one, or the next.
+    Monitor(Option<usize>),
+    /// Begin a lesson, by file or built-in name.
+    Lesson(String),
+    /// On with the lesson.
+    On,
+    /// An answer to the lesson's question, or a prediction.
+    Answer(String),
+    /// Free mode: whose decisions hide until predicted; none switches it on or off.
+    Predict(Option<Whose>),
+    /// Ask for what an action still needs.
+    Ask(Question),
+    CommandLine,
+    /// Load another scene, by file or built-in name.
+    Open(String),
+    Help,
+    Redraw,
+    Suspend,
+    /// Leave whatever is open: a count, a prompt, a zoomed pane.
+    Cancel,
+    Quit,
+}
+
+/// A step inside a pane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    Up,
+    Down,
+    Left,
+    Right,
+    PageUp,
+    PageDown,
+    First,
+    Last,
+}
+
+/// A pane that has a key of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Page {
+    Timeline,
+    Diagnosis,
+    Branches,
+    Remedies,
+}
+
+/// How the table sorts the slave nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sort {
+    /// As the scene lists them.
+    Scene,
+    /// Closest to switching first.
+    Margin,
+    /// Deepest penetration first.
+    Gap,
+}
+
+impl Sort {
+    pub const ALL: [Sort; 3] = [Sort::Scene, Sort::Margin, Sort::Gap];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Sort::Scene => "scene",
+            Sort::Margin => "margin",
+            Sort::Gap => "gap",
+        }
+    }
+}
+
+/// Which slave nodes the table shows; the selected one is always there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Filter {
+    All,
+    /// Those that touch, or whose mode changes.
+    Active,
+    /// Those on the surface that the selected one is on.
+    Surface,
+}
+
+impl Filter {
+    pub const ALL: [Filter; 3] = [Filter::All, Filter::Active, Filter::Surface];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Filter::All => "all",
+            Filter::Active => "active",
+            Filter::Surface => "surface",
+        }
+    }
+}
+
+/// Whose decisions hide, in free mode, until they are predicted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whose {
+    /// Any one node's, the selected one's say, for all.
+    Selected,
+    /// Those of every node whose mode changes.
+    Changed,
+    /// Nobody's.
+    Off,
+}
+
+impl Whose {
+    pub const ALL: [Whose; 3] = [Whose::Selected, Whose::Changed, Whose::Off];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Whose::Selected => "selected",
+            Whose::Changed => "changed",
+            Whose::Off => "off",
+        }
+    }
+}
+
+/// What an action can ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Question {
+    /// The mode to force the selected node into.
+    Mode,
+    /// The increment's new size.
+    Increment,
+    /// Which node to select.
+    Node,
+    /// Which scene to open.
+    Scene,
+    /// Where to break.
+    Break,
+    /// Which lesson to begin.
+    Lesson,
+    /// The answer to the lesson's question, or the next mode of the selected node.
+    Answer,
+}

@@ -1,0 +1,24 @@
+//! Actions: what can be done by name, by key, or by a typed line.
+//!
+//! An action is either a [`Command`](crate::record::command::Command) for the session or a [`Ui`] action of the terminal
+//! around it. A key press and a typed line both end in [`Entry::act`], so whatever has a key has a name and the other way
+//! round. An action that lacks an argument it needs asks for it ([`Ui::Ask`]).
+//!
+//! - [`meaning`]: what an action can be; [`table`]: all of them by name; [`context`]: what their arguments are read against.
+//! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as; [`misread`]: why it means nothing.
+
+pub mod arguments;
+pub mod complete;
+pub mod context;
+pub mod meaning;
+pub mod misread;
+pub mod table;
+#[cfg(test)]
+mod tests;
+
+pub use arguments::{increment, mode, parse};
+pub use complete::complete;
+pub use context::{Context, exact};
+pub use meaning::{Action, ChartOf, Filter, Page, Question, Sort, Step, Ui, Whose};
+pub use misread::Misread;
+pub use table::{ACTIONS, Entry, Group, by_key, by_name, markdown};

@@ -1,0 +1,106 @@
+//! What all subcommands need: exit codes, errors, the scene that is named, and how the user is told.
+
+use crate::outside::files::FileError;
+use crate::outside::shown;
+use crate::record::journal::JournalError;
+use crate::record::snapshot::SnapshotError;
+use crate::scene::{Scene, SceneError};
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// How the program ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exit {
+    /// Converged, equal, or sound.
+    Good = 0,
+    /// Snapshots differ.
+    Differ = 1,
+    /// Bad input or usage.
+    Bad = 2,
+    /// The solve did not converge.
+    Unconverged = 3,
+    /// Stopped from outside: Ctrl-C, or a reader that closed the pipe.
+    Interrupted = 130,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> ExitCode {
+        ExitCode::from(exit as u8)
+    }
+}
+
+/// Why a subcommand could not do its work; all of these are bad input or usage.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
+    #[error("{}{}", .0, how_to_overwrite(.0))]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    #[error("{0}")]
+    Usage(String),
+    #[error("standard output: {0}")]
+    Output(io::Error),
+}
+
+fn how_to_overwrite(error: &FileError) -> &'static str {
+    match error {
+        FileError::Exists(_) => " (--force does it)",
+        FileError::Failed { .. } => "",
+    }
+}
+
+/// A scene, and what is changed in it.
+#[derive(Debug, clap::Args)]
+pub struct SceneArgs {
+    /// A scene file, or the name of a built-in scene
+    pub scene: String,
+    #[command(flatten)]
+    pub set: SetArgs,
+}
+
+impl SceneArgs {
+    /// Opens it.
+    pub fn open(&self) -> Result<Scene, SceneError> {
+        Scene::open(&self.scene, &self.set.set)
+    }
+}
+
+/// Changes to a scene.
+#[derive(Debug, clap::Args)]
+pub struct SetArgs {
+    /// Changes a value of the scene, by a path as `check --paths` lists it; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
+    pub set: Vec<(String, String)>,
+}
+
+/// What is no assignment.
+#[derive(Debug, thiserror::Error)]
+#[error("it must be PATH=VALUE, as friction.angle=20")]
+struct NoAssignment;
+
+fn assignment(text: &str) -> Result<(String, String), NoAssignment> {
+    match text.split_once('=') {
+        Some((path, value)) => Ok((path.to_owned(), value.to_owned())),
+        None => Err(NoAssignment),
+    }
+}
+
+/// A message to the user. Unlike `eprintln`, it survives a standard error that nobody reads.
+pub fn tell(message: &str) {
+    let _ = writeln!(io::stderr(), "{}", shown::text(message));
+}
+
+/// Data to standard output. A reader that has seen enough is no fault.
+pub fn say(text: &str) -> Result<(), Error> {
+    let text = shown::text(text);
+    let mut out = io::stdout().lock();
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    match written {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
+        _ => Ok(()),
+    }
+}

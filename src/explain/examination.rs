@@ -1,0 +1,192 @@
+//! What is known of the frozen problem that is solved next from a state: the diagnosis of the cycle that it runs into, or
+//! else the census of its consistent states.
+
+use super::core::cycle;
+use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
+use super::names;
+use super::smaller::smaller;
+use crate::interface::census::{Census, MOST, census};
+use crate::interface::minor_history::Cycle;
+use crate::interface::problem::InterfaceProblem;
+use crate::model::Model;
+use crate::step::event::{Failure, Outcome};
+use crate::step::intervene::Start;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
+
+/// What is said where there is no small problem.
+pub const NOT_CONDENSED: &str =
+    "The bodies cannot be condensed to the interface here, so there is no small problem to study.";
+
+/// Why it cannot be told whether the minor iterations cycle.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Untold {
+    #[error("{NOT_CONDENSED}")]
+    NotCondensed,
+    #[error("{0}")]
+    TooMany(String),
+}
+
+/// What is known of the frozen problem at a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Examination {
+    /// In words, most important first.
+    pub lines: Vec<String>,
+    /// Whether the minor iterations cycle from here.
+    pub cycles: bool,
+    /// The problem that the census was held over.
+    pub problem: Option<InterfaceProblem>,
+    pub census: Option<Census>,
+}
+
+impl Examination {
+    /// The starts that lead to a consistent state of the census; none where there is no such state.
+    pub fn starts(&self, number: usize) -> Option<Vec<Start>> {
+        let started = started(self.problem.as_ref()?, self.census.as_ref()?, number)?;
+        let start = |node: &crate::interface::problem::ProblemNode| Start {
+            slave: node.slave,
+            mode: node.state.mode,
+            t_max: node.state.t_max,
+        };
+        Some(started.nodes.iter().map(start).collect())
+    }
+}
+
+fn nothing(why: &str) -> Examination {
+    Examination {
+        lines: vec![why.into()],
+        cycles: false,
+        problem: None,
+        census: None,
+    }
+}
+
+/// Diagnosis or census at a state.
+pub fn examine(stepper: &mut Stepper, state: &State) -> Examination {
+    if state.status == Status::Finished {
+        return nothing("The history is done; nothing is solved next from here.");
+    }
+    stepper.restore(state);
+    let Some(problem) = stepper.interface_problem() else {
+        return nothing(NOT_CONDENSED);
+    };
+    let round = match going_round(stepper, state, &problem) {
+        Err(why) => return nothing(&why.to_string()),
+        Ok(round) => round,
+    };
+    let model = stepper.model();
+    if let Some((problem, _)) = round
+        && let Some(diagnosis) = Diagnosis::of(&problem)
+    {
+        let mut lines = diagnosis::words(model, &problem, &diagnosis);
+        if diagnosis.cause == Cause::NoAnswer {
+            lines.extend(smaller(stepper, state).map(|found| found.words()));
+        }
+        return Examination {
+            lines,
+            cycles: true,
+            problem: Some(diagnosis.problem),
+            census: diagnosis.census,
+        };
+    }
+    let undecided = diagnosis::undecided(&problem);
+    if undecided.len() > MOST {
+        return nothing(&format!(
+            "The minor iterations do not cycle from here. A census is held over at most {MOST} slave nodes, and {} can touch.",
+            undecided.len()
+        ));
+    }
+    let Some(studied) = problem.reduced(&undecided) else {
+        return nothing("The frozen interface problem is singular here.");
+    };
+    counted(
+        model,
+        &studied,
+        "The minor iterations do not cycle from here.",
+    )
+}
+
+/// Census of these slave nodes at a state, all others going on with what they do.
+pub fn examine_nodes(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> Examination {
+    if state.status == Status::Finished {
+        return nothing("The history is done; nothing is solved next from here.");
+    }
+    stepper.restore(state);
+    let Some(problem) = stepper.interface_problem() else {
+        return nothing(NOT_CONDENSED);
+    };
+    let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
+    let places: Vec<usize> = (0..problem.nodes.len()).filter(wanted).collect();
+    let Some(studied) = problem.reduced(&places) else {
+        return nothing("With what all other nodes do, the frozen interface problem is singular.");
+    };
+    let model = stepper.model();
+    let names = slaves.iter().map(|&slave| names::slave(model, slave));
+    let names = names.collect::<Vec<_>>().join(", ");
+    let head = format!("Of {names}, all other nodes going on with what they do:");
+    counted(model, &studied, &head)
+}
+
+/// What a census finds.
+fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Examination {
+    let census = match census(studied) {
+        Err(why) => return nothing(&why),
+        Ok(census) => census,
+    };
+    let name = |place: usize| names::slave(model, studied.nodes[place].slave);
+    let mut lines = vec![head.to_owned()];
+    lines.extend(diagnosis::census_words(&census, &name));
+    Examination {
+        lines,
+        cycles: false,
+        census: Some(census),
+        problem: Some(studied.clone()),
+    }
+}
+
+/// The problem that goes round in a cycle from a state that the stepper stands at, and the cycle by slave number; none
+/// where there is no cycle. A large problem is stepped on to its cycle, so that only those nodes are looked at that take
+/// part.
+///
+/// # Errors
+/// Why that cannot be told.
+pub fn going_round(
+    stepper: &mut Stepper,
+    state: &State,
+    problem: &InterfaceProblem,
+) -> Result<Option<(InterfaceProblem, Cycle)>, Untold> {
+    let by_slave = |cycle: Cycle| Cycle {
+        members: cycle
+            .members
+            .into_iter()
+            .map(|(place, modes)| (problem.nodes[place].slave, modes))
+            .collect(),
+        ..cycle
+    };
+    if problem.nodes.len() <= MOST_NODES {
+        return Ok(cycle(problem).map(|cycle| (problem.clone(), by_slave(cycle))));
+    }
+    let known = match &state.status {
+        Status::Failed(Failure::Cycle(cycle)) => Some(cycle.clone()),
+        _ => step_to_cycle(stepper),
+    };
+    let Some(cycle) = known else {
+        return Ok(None);
+    };
+    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    match cycling(problem, &cycle) {
+        Some(problem) => Ok(Some((problem, cycle))),
+        None => Err(Untold::TooMany(too_many(&cycle))),
+    }
+}
+
+fn step_to_cycle(stepper: &mut Stepper) -> Option<Cycle> {
+    while let Some(event) = stepper.step() {
+        match &event.outcome {
+            Outcome::Minor => {}
+            Outcome::Failed(Failure::Cycle(cycle)) => return Some(cycle.clone()),
+            _ => return None,
+        }
+    }
+    None
+}

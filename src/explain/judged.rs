@@ -1,0 +1,49 @@
+//! What the judge found, in words: the law, the node, the amount.
+
+use crate::contact::judge::{Finding, Law, Numbers};
+use crate::explain::names::slave;
+use crate::model::Model;
+
+/// What a finding says, as a part of a sentence.
+pub fn finding(model: &Model, finding: &Finding) -> String {
+    let Numbers {
+        gap,
+        f_n,
+        f_t,
+        limit,
+        slip,
+    } = finding.numbers;
+    let node = finding.slave.map_or("a node", |s| slave(model, s));
+    let told = match finding.law {
+        Law::Penetration => format!("{node} is inside its surface by {:.3e}", -gap),
+        Law::Gap if finding.amount.is_infinite() => {
+            format!("{node} bears a force and has no surface to touch")
+        }
+        Law::Gap => format!(
+            "{node} bears a force, and its surface is {:.3e} away",
+            gap.abs()
+        ),
+        Law::Tension => format!("the surface pulls {node}: F_n {f_n:.6e}"),
+        Law::Cone => format!(
+            "at {node} F_t {f_t:.6e} is more than friction can give (limit {limit:.6e}), or more than \
+             the sides of its corner can"
+        ),
+        Law::Slip if f_t * slip > 0.0 => format!(
+            "friction drives the slip of {node} instead of opposing it: it slipped by {slip:.6e} along t, and F_t is {f_t:.6e}"
+        ),
+        Law::Slip => format!(
+            "{node} slipped by {slip:.6e} along t, and friction is not at its limit against that: F_t is \
+             {f_t:.6e}, the limit {limit:.6e}"
+        ),
+        Law::Touch => format!(
+            "friction drives {node} wherever it touched: its foot went {slip:.6e} along t since the last increment, when it was \
+             open, and F_t is {f_t:.6e}"
+        ),
+        Law::Work => format!(
+            "friction gave work at {node}: it slipped by {slip:.6e} along t, and F_t is {f_t:.6e} at the end"
+        ),
+        Law::Balance => format!("the forces on {node} are not in balance"),
+        Law::Moments => "loads and reactions are not in balance".into(),
+    };
+    format!("{told} ({}: {:.1e})", finding.law.name(), finding.amount)
+}

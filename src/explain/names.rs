@@ -1,0 +1,99 @@
+//! The words for things: slave nodes, modes, rules, places of the iteration, and Table 2 as it is printed.
+
+use crate::contact::table2::Rule;
+use crate::model::{Mode, Model};
+use crate::step::event::Position;
+
+/// Name of a slave node.
+pub fn slave(model: &Model, slave: usize) -> &str {
+    model
+        .contacts
+        .get(slave)
+        .map_or("?", |s| model.nodes[s.node].name.as_str())
+}
+
+/// A mode's word.
+pub fn mode(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Free => "free",
+        Mode::Sliding => "sliding",
+        Mode::Fixed => "fixed",
+    }
+}
+
+/// Modes in the order of Table 2's rows and columns.
+pub const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
+
+/// Table 2: what sends a node from the mode of the row to that of the column, in two lines.
+pub const TABLE_2: [[[&str; 2]; 3]; 3] = [
+    [
+        ["F_n > 0", "|F_t| < |T_max|"],
+        ["F_n > 0", "|F_t| > |T_max|"],
+        ["F_n ≤ 0", ""],
+    ],
+    [
+        ["F_n > 0", "T_max·slip < 0"],
+        ["F_n > 0", "T_max·slip > 0"],
+        ["F_n ≤ 0", ""],
+    ],
+    [["g < 0, rough", ""], ["g < 0, smooth", ""], ["g > 0", ""]],
+];
+
+/// Newton's table, whose columns are Table 2's; it does not ask which mode a node has.
+const NEWTON: [[&str; 2]; 3] = [
+    ["F_n > k g", "|F_t+k s| ≤ lim"],
+    ["F_n > k g", "|F_t+k s| > lim"],
+    ["F_n ≤ k g", ""],
+];
+
+/// What sends a node from mode to mode, by the rule's strategy; empty where all nodes are looked at together.
+pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
+    match rule {
+        Rule::NewtonOpens | Rule::NewtonSticks | Rule::NewtonSlides => [NEWTON; 3],
+        Rule::Pivots | Rule::Found => [[["", ""]; 3]; 3],
+        Rule::FreeEnters => {
+            let mut table = TABLE_2;
+            table[2] = [["", ""], ["g < 0", ""], ["g > 0", ""]];
+            table
+        }
+        _ => TABLE_2,
+    }
+}
+
+/// A rule's name: the row of Table 2, and what it does.
+pub fn rule(rule: Rule) -> &'static str {
+    match rule {
+        Rule::FixedStays => "fixed-stays",
+        Rule::FixedSlides => "fixed-slides",
+        Rule::FixedDragged => "fixed-dragged",
+        Rule::FixedOpens => "fixed-opens",
+        Rule::SlidingSticks => "sliding-sticks",
+        Rule::SlidingStays => "sliding-stays",
+        Rule::SlidingOpens => "sliding-opens",
+        Rule::FreeSticks => "free-sticks",
+        Rule::FreeSlides => "free-slides",
+        Rule::FreeStays => "free-stays",
+        Rule::OffSurface => "off-surface",
+        Rule::Held => "held",
+        Rule::FreeEnters => "free-enters",
+        Rule::Waits => "waits",
+        Rule::NewtonOpens => "newton-opens",
+        Rule::NewtonSticks => "newton-sticks",
+        Rule::NewtonSlides => "newton-slides",
+        Rule::Pivots => "pivots",
+        Rule::Found => "found",
+    }
+}
+
+/// Where a minor iteration was.
+pub fn position(at: Position) -> String {
+    let again = if at.attempt > 1 {
+        format!(" (attempt {})", at.attempt)
+    } else {
+        String::new()
+    };
+    format!(
+        "increment {}{again}, major {}, minor {}",
+        at.increment, at.major, at.minor
+    )
+}

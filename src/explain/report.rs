@@ -1,0 +1,555 @@
+//! What happened, in words: the sentences that the command line and the debugger share.
+
+use crate::contact::table2::{Decision, Rule, Tested};
+use crate::explain::judged;
+use crate::explain::names::{mode, position, slave};
+use crate::interface::census;
+use crate::interface::method::NotFound;
+use crate::interface::minor_history::Cycle;
+use crate::linear::norms::Norms;
+use crate::linear::singular::{Motion, RigidMotion, Singular};
+use crate::model::{Mode, Model};
+use crate::step::event::{Event, Failure, Outcome, Position};
+use crate::step::intervene::Intervention;
+use crate::step::major_history::{MajorCycle, Stop};
+
+/// Why Table 2 decided as it did; `friction` says whether there is any.
+pub fn reason(decision: &Decision, friction: bool) -> String {
+    let text = match decision.rule {
+        Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
+        Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
+        Rule::FixedDragged => {
+            "Fixed → sliding: its supports drag it along, and nothing could stick it there."
+        }
+        Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
+        Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
+        Rule::SlidingStays if !friction => {
+            "Stays sliding: there is no friction that could hold it."
+        }
+        Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
+        Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
+        Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
+        Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
+        Rule::FreeStays => "Stays free: the gap is open.",
+        Rule::FreeEnters => {
+            "Free → sliding: the node has gone into the surface, and the strategy lets it slide against its travel."
+        }
+        Rule::Waits => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!(
+                "Waits {next}: one change at a time, and another node comes first; {wanted} is wanted (◁)."
+            );
+        }
+        Rule::NewtonOpens => "Newton: free, since F_n does not exceed k·g.",
+        Rule::NewtonSticks => "Newton: fixed, since force and slip keep within the friction.",
+        Rule::NewtonSlides if !friction => {
+            "Newton: slides; there is no friction that could hold it."
+        }
+        Rule::NewtonSlides => "Newton: slides, since force and slip exceed the friction.",
+        Rule::Pivots => {
+            let here = format!(
+                "Lemke: {} in this basis of the problem relaxed by z.",
+                mode(decision.next)
+            );
+            let first = match decision.tests[1].map(|test| test.tested) {
+                Some(Tested::Gap) => " Its gap was the first to close.",
+                Some(Tested::NormalForce) => " Its F_n was the first to vanish.",
+                Some(Tested::ShearForce) => " It was the first to come to its friction limit.",
+                Some(Tested::Slip) => " Its slip was the first to come to an end.",
+                _ => "",
+            };
+            return here + first;
+        }
+        Rule::Found => {
+            return format!(
+                "Found {} in a consistent state; checked next.",
+                mode(decision.next)
+            );
+        }
+        Rule::OffSurface => {
+            "Free: the projection lies past an end of every surface, so there is nothing to touch."
+        }
+        Rule::Held if decision.wanted == decision.next => {
+            return format!(
+                "You hold it {}; Table 2 wants the same.",
+                mode(decision.next)
+            );
+        }
+        Rule::Held => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!("You hold it {next}; Table 2 (◁) wanted {wanted}. M releases it.");
+        }
+    };
+    text.into()
+}
+
+/// What a minor iteration led to.
+pub fn outcome(model: &Model, event: &Event) -> String {
+    let at = position(event.position);
+    match &event.outcome {
+        Outcome::Minor if together(event, Rule::Found) => {
+            format!("{at}: a consistent state is found; it is checked next")
+        }
+        Outcome::Minor if together(event, Rule::Pivots) => format!("{at}: {}", pivot(model, event)),
+        Outcome::Minor => match changes(model, event).as_str() {
+            "" => format!("{at}: modes settled, T_max still moves"),
+            changes => format!("{at}: {changes}"),
+        },
+        Outcome::Damped {
+            cycle: c,
+            target: aim,
+        } => format!(
+            "{at}: {}; damped: aims at load {aim} first",
+            cycle(model, c)
+        ),
+        Outcome::Climbed { why, to } => format!(
+            "{at}: {}; goes on with strategy {}",
+            describe_failure(model, why),
+            to.name()
+        ),
+        Outcome::Cut { why, size } => format!(
+            "{at}: {}; the increment is cut to {size}",
+            describe_failure(model, why)
+        ),
+        Outcome::Leaps { why, size } => format!(
+            "{at}: {}; nothing is near: the increment is taken whole, {size}",
+            describe_failure(model, why)
+        ),
+        Outcome::Major { after, settled } => {
+            let how = if *settled {
+                "minors settled"
+            } else {
+                "minors cut off unsettled"
+            };
+            format!(
+                "{at}: {how}; residual {:.3e}, wanted {:.1e}",
+                after.relative.max(after.interface),
+                after.limit
+            )
+        }
+        Outcome::Refused { why, .. } => format!(
+            "{at}: refused: {}; goes on, and from here on net slip counts",
+            judged::finding(model, why)
+        ),
+        Outcome::Increment { after, last, .. } => {
+            let end = if *last { "; the history is done" } else { "" };
+            let left = accuracy(after).map_or(String::new(), |left| format!("; {left}"));
+            format!(
+                "{at}: load {} accepted{}{left}{end}",
+                event.load_factor,
+                reservations(model, event)
+            )
+        }
+        Outcome::Failed(failure) => format!("{at}: {}", describe_failure(model, failure)),
+    }
+}
+
+/// Whether all nodes were looked at together, by this rule.
+fn together(event: &Event, rule: Rule) -> bool {
+    event.nodes.iter().any(|node| node.decision.rule == rule)
+}
+
+/// A step of Lemke's: what reached its bound, and what is left to go.
+fn pivot(model: &Model, event: &Event) -> String {
+    let tests = |s: usize| event.nodes[s].decision.tests;
+    let mut nodes = 0..event.nodes.len();
+    let what = nodes.find_map(|s| {
+        let what = match tests(s)[1]?.tested {
+            Tested::Gap => "the gap closed",
+            Tested::NormalForce => "F_n vanished",
+            Tested::ShearForce => "the friction limit was reached",
+            Tested::Slip => "the slip ended",
+            _ => return None,
+        };
+        Some(format!("at {} {what}", slave(model, s)))
+    });
+    let cover = (0..event.nodes.len()).find_map(|s| Some(tests(s)[0]?.value));
+    let left = cover.map_or(String::new(), |z| format!("relaxed by z = {z:.3e}"));
+    match what {
+        Some(what) => format!("a pivot: {what}; {left}"),
+        None => format!("a pivot; {left}"),
+    }
+}
+
+/// What an accepted increment was accepted in spite of; empty where there is nothing.
+pub fn reservations(model: &Model, event: &Event) -> String {
+    let Outcome::Increment {
+        unsettled,
+        marked,
+        jumped,
+        ..
+    } = &event.outcome
+    else {
+        return String::new();
+    };
+    let mut text = match unsettled {
+        0 => String::new(),
+        1 => ", although one loop was cut off unsettled".into(),
+        n => format!(", although {n} loops were cut off unsettled"),
+    };
+    let defied: Vec<&str> = (0..event.nodes.len())
+        .filter(|&s| event.nodes[s].decision.wanted != event.nodes[s].decision.next)
+        .map(|s| slave(model, s))
+        .collect();
+    if !defied.is_empty() {
+        text += &format!(
+            ", although Table 2 rejects the mode held at {}",
+            defied.join(", ")
+        );
+    }
+    if let Some(found) = marked {
+        text += &format!(", although {}", judged::finding(model, found));
+    }
+    if *jumped {
+        text += ", jumped: another branch from here";
+    }
+    text
+}
+
+fn changes(model: &Model, event: &Event) -> String {
+    let changed = |s: &usize| event.nodes[*s].decision.changes();
+    let all: Vec<usize> = (0..event.nodes.len()).filter(changed).collect();
+    let told = |&s: &usize| {
+        let d = &event.nodes[s].decision;
+        format!("{} {} > {}", slave(model, s), mode(d.before), mode(d.next))
+    };
+    match all.len() {
+        0..=3 => all.iter().map(told).collect::<Vec<_>>().join(", "),
+        n => format!(
+            "{} and {} more",
+            all[..2].iter().map(told).collect::<Vec<_>>().join(", "),
+            n - 2
+        ),
+    }
+}
+
+/// What the user did.
+pub fn intervention(model: &Model, intervention: &Intervention) -> String {
+    match intervention {
+        Intervention::Force {
+            slave: s,
+            mode: m,
+            hold: false,
+        } => {
+            format!(
+                "{} is {} in the next minor iteration",
+                slave(model, *s),
+                mode(*m)
+            )
+        }
+        Intervention::Force {
+            slave: s,
+            mode: m,
+            hold: true,
+        } => {
+            format!("{} is held {} until released", slave(model, *s), mode(*m))
+        }
+        Intervention::Assume(starts) => {
+            let told: Vec<String> = starts
+                .iter()
+                .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
+                .collect();
+            format!("the next minor iteration starts with {}", told.join(", "))
+        }
+        Intervention::Release { slave: s } => format!("{} obeys Table 2 again", slave(model, *s)),
+        Intervention::Increment(increment) => {
+            format!("the increment starts again with size {increment}")
+        }
+        Intervention::Friction(f) => format!(
+            "friction angle {} degrees, cohesion {}",
+            f.angle, f.cohesion
+        ),
+        Intervention::Settings(_) => "settings changed".into(),
+    }
+}
+
+/// Where and why a run ended, up to which load it is sound, and what to try. `at` and `load` are those of the minor
+/// iteration that failed, `accepted` is the load factor of the last equilibrium.
+pub fn failure(model: &Model, at: Position, load: f64, accepted: f64, failure: &Failure) -> String {
+    let again = match at.attempt {
+        0 | 1 => String::new(),
+        n => format!(" in attempt {n}"),
+    };
+    let sound = match at.increment {
+        0 | 1 => format!("no equilibrium was accepted beyond the start, load {accepted}"),
+        n => format!(
+            "the last equilibrium is that of increment {}, load {accepted}",
+            n - 1
+        ),
+    };
+    format!(
+        "increment {} (load {load}){again}, major {}, minor {}: {}; {sound}; try {}",
+        at.increment,
+        at.major,
+        at.minor,
+        describe_failure(model, failure),
+        advice(failure)
+    )
+}
+
+/// What to try after a failure.
+pub fn advice(failure: &Failure) -> &'static str {
+    match failure {
+        Failure::Cycle(_) => {
+            "settings.strategy=ladder, or the debugger, to force one of the nodes to its third mode, or another history.increment"
+        }
+        Failure::NoAnswer { .. } => {
+            "other loads or friction, or a prescribed displacement instead of a load"
+        }
+        Failure::LadderEnded { .. } => {
+            "a smaller history.least, another history.increment, or the debugger, to see where it stands"
+        }
+        Failure::NotFound(_) => "settings.strategy=ladder, or a smaller history.increment",
+        Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
+        Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
+        Failure::MajorCycle(_) => "a smaller history.increment; at a corner, a rounded one",
+        Failure::Singular(Singular::Rigid { .. }) => {
+            "a support against that motion, or slave nodes that start sliding or fixed"
+        }
+        Failure::Singular(Singular::Unexplained) => {
+            "a smaller history.increment; past a limit point, prescribe a displacement instead of the load"
+        }
+        Failure::Diverged { .. } => "a smaller history.increment",
+        Failure::Refused(_) => {
+            "a smaller history.increment or history.least (settings.strategy=ladder cuts by itself), or another mesh of the surface"
+        }
+        Failure::Leapt { .. } => {
+            "history.jumps=cut, to go on on the other branch, or a prescribed displacement instead of the load"
+        }
+        Failure::RoundOff { .. } => {
+            "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid"
+        }
+        Failure::OverConstrained { .. } => {
+            "to move the node out of the surface, to free its support, or to turn the surface (reverse)"
+        }
+    }
+}
+
+/// Why an increment failed.
+pub fn describe_failure(model: &Model, failure: &Failure) -> String {
+    match failure {
+        Failure::Cycle(c) => cycle(model, c),
+        Failure::MinorLimit { limit, changing } => {
+            let nodes = changing.iter().map(|&s| slave(model, s).to_owned());
+            format!(
+                "the minor iterations did not settle within {limit}; still changing: {}",
+                some(nodes.collect(), ", ")
+            )
+        }
+        Failure::MajorLimit {
+            limit,
+            relative,
+            interface,
+        } => format!(
+            "no equilibrium within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
+        ),
+        Failure::MajorCycle(round) => major_cycle(model, round),
+        Failure::NoAnswer { first, tried } => {
+            let none =
+                format!("no consistent state at this increment: all {tried} assignments were tried");
+            match first {
+                None => none,
+                Some(first) => format!("{none} (table2: {})", describe_failure(model, first)),
+            }
+        }
+        Failure::LadderEnded { first, last } => format!(
+            "no strategy of the ladder found a consistent state (table2: {}; at last: {})",
+            describe_failure(model, first),
+            describe_failure(model, last)
+        ),
+        Failure::NotFound(why) => not_found(*why),
+        Failure::Singular(Singular::Rigid { motions }) => {
+            let motions = motions.iter().map(motion).collect();
+            format!("nothing holds a rigid motion: {}", some(motions, "; "))
+        }
+        Failure::Singular(Singular::Unexplained) => {
+            "the equations are singular, though every body is held: a limit point, or constraints that repeat each other".into()
+        }
+        Failure::Diverged { relative } => {
+            format!("diverged: displacements beyond all bounds, relative residual {relative:.3e}")
+        }
+        Failure::Refused(found) => {
+            format!("refused, since {}", judged::finding(model, found))
+        }
+        Failure::Leapt { motion, predicted } => format!(
+            "a jump to another branch: it moves by {motion:.3e}, where its tangent and the increments before predict {predicted:.1e}"
+        ),
+        Failure::RoundOff { noise } => format!(
+            "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
+            Norms::LOUDEST
+        ),
+        Failure::OverConstrained { slave: s, gap } => format!(
+            "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
+            slave(model, *s),
+            -gap
+        ),
+    }
+}
+
+/// Why pivoting, or the census, found nothing.
+fn not_found(why: NotFound) -> String {
+    match why {
+        NotFound::Ray => {
+            "pivoting ended on a ray from every start, so it found no consistent state".into()
+        }
+        NotFound::NoStart => {
+            "pivoting has no start: the equations of every one that it knows are singular".into()
+        }
+        NotFound::TooMany { nodes } => format!(
+            "{nodes} nodes can touch, too many to try what each does: a census is held over at most {}",
+            census::MOST
+        ),
+        NotFound::Loose => {
+            "no census can be held: the equations of the nodes that cannot touch are singular".into()
+        }
+        NotFound::NotCondensed => {
+            "the bodies cannot be condensed to the interface, so pivoting and census have nothing to work on".into()
+        }
+        NotFound::Unconfirmed { states } => format!(
+            "{states} state{} found consistent, and no minor iteration that checked {} agreed",
+            if states == 1 { " was" } else { "s were" },
+            if states == 1 { "it" } else { "one" }
+        ),
+    }
+}
+
+/// What accuracy round-off leaves; none where it leaves enough.
+pub fn accuracy(norms: &Norms) -> Option<String> {
+    (norms.noise > Norms::AUDIBLE).then(|| {
+        format!(
+            "forces are known to about {:.0e} of the loads: that is the round-off of the stiffest ones",
+            norms.noise
+        )
+    })
+}
+
+fn motion(rigid: &RigidMotion) -> String {
+    let body = &rigid.body;
+    match rigid.motion {
+        Motion::Translation([x, y]) => {
+            format!(
+                "body {body} can move along ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+        Motion::Rotation([x, y]) => {
+            format!(
+                "body {body} can turn about ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+    }
+}
+
+/// Four decimals without trailing zeros: for a place that a person is to find.
+fn rounded(x: f64) -> f64 {
+    let rounded = (x * 1e4).round() / 1e4;
+    // Neither a minus before a zero, nor infinity in place of what is only large.
+    match rounded.is_finite() {
+        true => rounded + 0.0,
+        false => x,
+    }
+}
+
+/// The first few of many.
+fn some(mut all: Vec<String>, between: &str) -> String {
+    const MOST: usize = 6;
+    let more = all.len().saturating_sub(MOST);
+    all.truncate(MOST);
+    let shown = all.join(between);
+    match more {
+        0 => shown,
+        n => format!("{shown} and {n} more"),
+    }
+}
+
+/// Modes one after the other; long stays are counted.
+fn pattern(modes: &[Mode]) -> String {
+    let stays = modes.chunk_by(|a, b| a == b).map(|stay| {
+        let word = mode(stay[0]);
+        match stay.len() {
+            1 => word.to_string(),
+            2 => format!("{word} > {word}"),
+            n => format!("{word} ({n} times)"),
+        }
+    });
+    stays.collect::<Vec<_>>().join(" > ")
+}
+
+/// A cycle of major iterations.
+pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
+    let member = |(s, stops): &(usize, Vec<Stop>)| {
+        let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
+        let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();
+        let moves = elements.iter().any(|e| *e != elements[0]);
+        let switches = modes.iter().any(|m| *m != modes[0]);
+        let stop = |stop: &Stop| match (moves, switches) {
+            (true, false) => place(model, stop.element),
+            (false, true) => mode(stop.mode).to_string(),
+            _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
+        };
+        let words: Vec<String> = stops.iter().map(stop).collect();
+        match (moves, switches) {
+            (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
+            _ => format!("{} {} > …", slave(model, *s), words.join(" > ")),
+        }
+    };
+    format!(
+        "the major iterations {}-cycle since major {}: {}",
+        round.period,
+        round.start,
+        some(round.members.iter().map(member).collect(), "; ")
+    )
+}
+
+/// A master element's name: its surface, and its number from 1.
+fn place(model: &Model, element: Option<(usize, usize)>) -> String {
+    match element {
+        Some((surface, element)) => {
+            let name = model.surfaces.get(surface).map_or("?", |s| s.name.as_str());
+            format!("{name} element {}", element + 1)
+        }
+        None => "no surface".into(),
+    }
+}
+
+/// Most nodes of a cycle that are named though their modes stay.
+const MOST_FOLLOWING: usize = 3;
+
+/// A cycle of modes.
+pub fn cycle(model: &Model, cycle: &Cycle) -> String {
+    let member = |(s, modes): &(usize, Vec<Mode>)| {
+        let name = slave(model, *s);
+        match modes.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|m| m == first) => {
+                format!("{name} stays {} while its T_max repeats", mode(*first))
+            }
+            modes => format!("{name} {} > …", pattern(modes)),
+        }
+    };
+    // Those whose modes change come first: the T_max of many others may follow.
+    let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
+    let (changing, following): (Vec<_>, Vec<_>) =
+        cycle.members.iter().partition(|(_, modes)| changes(modes));
+    let mut told = Vec::new();
+    if !changing.is_empty() {
+        told.push(some(changing.into_iter().map(member).collect(), "; "));
+    }
+    match following.len() {
+        0 => {}
+        n if n > MOST_FOLLOWING => {
+            told.push(format!(
+                "{n} nodes keep their modes while their T_max repeats"
+            ));
+        }
+        _ => told.extend(following.into_iter().map(member)),
+    }
+    format!(
+        "the modes {}-cycle since minor {}: {}",
+        cycle.period,
+        cycle.start,
+        told.join("; ")
+    )
+}

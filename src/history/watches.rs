@@ -1,0 +1,98 @@
+//! Watches: named quantities of the state that is looked at.
+
+use crate::explain::names;
+use crate::history::frame::Frame;
+use crate::model::Model;
+use serde::{Deserialize, Serialize};
+
+/// A number of the last minor iteration. Forces and lengths as [`crate::contact::record::ContactRecord`] has them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename = "Quantity")]
+pub enum WatchQuantity {
+    Gap,
+    NormalForce,
+    TangentialForce,
+    BoundUpdate,
+    Slip,
+    Margin,
+    /// Relative residual before the present major iteration.
+    Residual,
+    /// Violation of the interface conditions before it.
+    Interface,
+}
+
+impl WatchQuantity {
+    pub const ALL: [WatchQuantity; 8] = [
+        WatchQuantity::Gap,
+        WatchQuantity::NormalForce,
+        WatchQuantity::TangentialForce,
+        WatchQuantity::BoundUpdate,
+        WatchQuantity::Slip,
+        WatchQuantity::Margin,
+        WatchQuantity::Residual,
+        WatchQuantity::Interface,
+    ];
+
+    /// The word for it, as tables call it.
+    pub fn word(self) -> &'static str {
+        match self {
+            WatchQuantity::Gap => "gap",
+            WatchQuantity::NormalForce => "f_n",
+            WatchQuantity::TangentialForce => "f_t",
+            WatchQuantity::BoundUpdate => "t_max",
+            WatchQuantity::Slip => "slip",
+            WatchQuantity::Margin => "margin",
+            WatchQuantity::Residual => "residual",
+            WatchQuantity::Interface => "interface",
+        }
+    }
+
+    /// Whether it is a slave node's.
+    pub fn is_nodal(self) -> bool {
+        !matches!(self, WatchQuantity::Residual | WatchQuantity::Interface)
+    }
+}
+
+/// A watch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Watch {
+    /// What the user calls it.
+    pub name: String,
+    pub quantity: WatchQuantity,
+    /// Slave number, where the quantity is a node's.
+    pub slave: usize,
+}
+
+impl Watch {
+    /// A watch with the name that it has where the user gives none: `gap beam.5`.
+    pub fn new(model: &Model, quantity: WatchQuantity, slave: usize) -> Watch {
+        let name = match quantity.is_nodal() {
+            true => format!("{} {}", quantity.word(), names::slave(model, slave)),
+            false => quantity.word().into(),
+        };
+        Watch {
+            name,
+            quantity,
+            slave,
+        }
+    }
+
+    /// Its value at a whole frame; none where nothing was solved for it.
+    pub fn value(&self, frame: &Frame) -> Option<f64> {
+        let event = frame.event.as_deref()?;
+        match self.quantity {
+            WatchQuantity::Residual => return Some(event.before.relative),
+            WatchQuantity::Interface => return Some(event.before.interface),
+            _ => {}
+        }
+        let found = event.nodes.get(self.slave)?;
+        Some(match self.quantity {
+            WatchQuantity::Gap => found.gap,
+            WatchQuantity::NormalForce => found.f_n,
+            WatchQuantity::TangentialForce => found.f_t,
+            WatchQuantity::BoundUpdate => found.t_max,
+            WatchQuantity::Slip => found.slip,
+            _ => found.decision.margin(),
+        })
+    }
+}

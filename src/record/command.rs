@@ -1,0 +1,142 @@
+//! What the debugger can be told: the commands that a session carries out, and that journals hold.
+
+use crate::history::breakpoints::Condition;
+use crate::history::strip::PointKind;
+use crate::history::watches::Watch;
+use crate::model::Mode;
+use crate::step::intervene::{Intervention, Start};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// What the debugger can be told to do to the solver.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Command {
+    /// Forward by `count` of `unit`.
+    Forward { unit: Unit, count: u32 },
+    /// Back by `count` of `unit`; exact.
+    Back { unit: Unit, count: u32 },
+    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
+    Force {
+        slave: usize,
+        mode: Mode,
+        hold: bool,
+    },
+    /// Give a slave node back to Table 2.
+    Release { slave: usize },
+    /// Change the increment size and start the present increment again.
+    Increment(f64),
+    /// Change a scalar that may change during a run: `friction.angle`, `friction.cohesion`, `settings.*`.
+    Set { path: String, value: String },
+    /// Start several slave nodes at once from a state that is known.
+    Assume(Vec<Start>),
+    /// Take these steps in a new branch of this name: minor iterations (none) and interventions.
+    Follow {
+        label: String,
+        steps: Vec<Option<Intervention>>,
+    },
+    /// Find out why the minor iterations cycle from the shown state, or which states are consistent; of these slave
+    /// nodes (by slave number), where there are any, all others going on with what they do.
+    Census(Vec<usize>),
+    /// Try every remedy from the shown state.
+    Remedies,
+    /// Go to a point of the current branch's line, by its place; the start is 0.
+    Goto { step: usize },
+    /// Go to the tip of another branch.
+    Branch(To),
+    /// Call the current branch so.
+    Rename(String),
+    /// List the branches.
+    Branches,
+    /// Compare the current branch with another: this one, or the one that it left.
+    Compare(Option<String>),
+    /// Set a breakpoint.
+    Break(Condition),
+    /// List the breakpoints.
+    Breakpoints,
+    /// Delete a breakpoint by its number, or all.
+    Delete(Option<u32>),
+    /// Switch a breakpoint by its number, or all, on or off.
+    Enable { id: Option<u32>, on: bool },
+    /// Watch a number.
+    Watch(Watch),
+    /// End a watch, by its name.
+    Unwatch(String),
+    /// Write the core of the cycle that the shown state runs into, or its whole frozen interface problem, as a scene of
+    /// its own. `overwrite` only when asked.
+    Export {
+        what: Exported,
+        file: PathBuf,
+        overwrite: bool,
+    },
+    /// Write a snapshot of the shown state. `overwrite` only when asked.
+    Snapshot {
+        file: Option<PathBuf>,
+        overwrite: bool,
+    },
+    /// Begin a journal in a new file, with all that was done; none tells where it is.
+    Journal(Option<PathBuf>),
+}
+
+/// What can be written as a scene of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Exported {
+    Core,
+    Whole,
+}
+
+/// Which branch.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum To {
+    Next,
+    Previous,
+    Named(String),
+}
+
+/// How far a motion goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Unit {
+    Minor,
+    /// To the end of the present major iteration.
+    Major,
+    /// To the end of the present increment.
+    Increment,
+    /// To the end of the history, a failure, or (back) the start.
+    Run,
+}
+
+impl Command {
+    /// Whether it changes nothing, and is in no journal.
+    pub fn is_look(&self) -> bool {
+        matches!(
+            self,
+            Command::Branches
+                | Command::Census(_)
+                | Command::Remedies
+                | Command::Export { .. }
+                | Command::Compare(_)
+                | Command::Breakpoints
+                | Command::Snapshot { .. }
+                | Command::Journal(_)
+        )
+    }
+
+    /// Whether it only goes along a branch.
+    pub fn is_motion(&self) -> bool {
+        matches!(
+            self,
+            Command::Forward { .. } | Command::Back { .. } | Command::Goto { .. }
+        )
+    }
+}
+
+impl Unit {
+    /// Whether a point of this kind ends a motion by this unit.
+    pub fn ends(self, kind: PointKind) -> bool {
+        match self {
+            Unit::Minor => kind.is_solved(),
+            Unit::Major => kind.ends_major(),
+            Unit::Increment => kind.is_accepted() || kind.is_failure(),
+            Unit::Run => kind.is_last() || kind.is_failure(),
+        }
+    }
+}

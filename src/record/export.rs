@@ -1,0 +1,579 @@
+//! A frozen interface problem written out as a scene of its own: a condensed scene
+//! ([`crate::scene::condensed`]) whose minor iterations are those of the problem.
+//!
+//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`InterfaceResponse`]); S* moves by
+//! v + p relative to S, with what is prescribed, p. In the scene the slave node moves by u = −(v + p) over a floor at
+//! rest, under F = F₀ + ΔF. Without the springs,
+//!
+//! ```text
+//! K (u − free) = load + F      K = −(1 + R/k)⁻¹ R      load = −(1 + R/k)⁻¹ start − F₀      free = −p
+//! u = free + W F               W = −(R⁻¹ + 1/k)        free = R⁻¹ start − W F₀ − p
+//! ```
+//!
+//! The first exists unless something is rigid, the second unless something is loose; where both do, the first is
+//! written. No file leaves here that has not been read back and stepped beside the problem ([`compared`]).
+
+use crate::contact::record::{ContactRecord, Forced};
+use crate::explain::core::Core;
+use crate::explain::names;
+use crate::explain::report;
+use crate::interface::minor_history::Cycle;
+use crate::interface::problem::{InterfaceProblem, ProblemNode, Trials};
+use crate::interface::response::InterfaceResponse;
+use crate::linalg::DenseFactors;
+use crate::model::InitialState;
+use crate::model::{Mode, Model, Settings};
+use crate::scene::condensed::{Contact, Matrix, Problem, at_once};
+use crate::scene::{Scene, SceneError, limits};
+use crate::step::event::Outcome;
+use crate::step::event::{Failure, Position};
+use crate::step::stepper::Stepper;
+use crate::strategy::method;
+use std::sync::Arc;
+
+/// From this size on of the inverse (relative to the springs) that makes one of the two matrices, too many digits are
+/// lost in taking the springs out.
+const SINGULAR: f64 = 1e9;
+/// Most minor iterations for which a file is stepped beside its problem.
+const COMPARED: u32 = 200;
+/// Forces and lengths of the two may differ by this, relatively: what taking the springs out may cost.
+const CLOSE: f64 = 1e-6;
+/// Width of a comment's lines.
+const WIDTH: usize = 110;
+
+/// Why a problem is not written as a scene.
+#[derive(Debug, thiserror::Error)]
+pub enum NoExport {
+    #[error("no slave node is over a surface, so there is no interface problem")]
+    NoInterface,
+    #[error("the problem of the nodes over a surface is singular")]
+    Singular,
+    #[error(
+        "no unknown moves {0} along the surface or across it: the support carries what acts there, and no matrix says so"
+    )]
+    Carried(String),
+    #[error(
+        "the matrix of {nodes} nodes takes {mebibytes} MiB, and a scene file can have {}; a core is smaller",
+        limits::FILE_BYTES >> 20
+    )]
+    Large { nodes: usize, mebibytes: usize },
+    #[error("the problem cannot be written as a matrix: {0}")]
+    NoMatrix(String),
+    #[error("the core cycles with period {period}, and what would be written has {found}")]
+    OtherCycle { period: u32, found: String },
+    #[error(transparent)]
+    Parted(#[from] Parted),
+}
+
+/// Where a file and the problem that it was made of part.
+#[derive(Debug, thiserror::Error)]
+pub enum Parted {
+    #[error(transparent)]
+    Unsound(#[from] Box<SceneError>),
+    #[error("no memory")]
+    Memory,
+    #[error("it is done before minor iteration {0}")]
+    Done(u32),
+    #[error("minor iteration {0} is singular, and there it is not")]
+    Singular(u32),
+    #[error("minor iteration {0} cannot be solved")]
+    Unsolved(u32),
+    #[error("they part in minor iteration {minor}, by {by:.1e}")]
+    Apart { minor: u32, by: f64 },
+}
+
+/// Where a problem was frozen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Origin {
+    /// Name of the scene, and what was changed in it: `PATH=VALUE`, or an intervention in words.
+    pub scene: String,
+    pub changes: Vec<String>,
+    /// The minor iteration after which it was, or before the first.
+    pub at: Position,
+    /// Load factor that it aims at.
+    pub load: f64,
+}
+
+impl Origin {
+    /// A scene as it stands, with what was set from outside.
+    pub fn of(scene: &Scene, at: Position, load: f64) -> Self {
+        Origin {
+            scene: scene.name.clone(),
+            changes: scene.overrides().map(|(p, v)| format!("{p}={v}")).collect(),
+            at,
+            load,
+        }
+    }
+
+    fn words(&self) -> String {
+        let with = match self.changes.as_slice() {
+            [] => String::new(),
+            changes => format!(" with {}", changes.join(", ")),
+        };
+        let (scene, at, load) = (&self.scene, names::position(self.at), self.load);
+        format!("From: {scene}{with}; {at}, load {load}.")
+    }
+}
+
+/// The file of a core; `cycle` is that of the whole scene.
+///
+/// # Errors
+/// Why there is none.
+pub fn core(
+    model: &Model,
+    origin: &Origin,
+    cycle: &Cycle,
+    core: &Core,
+) -> Result<String, NoExport> {
+    let of_core = Cycle {
+        members: core
+            .cycle
+            .members
+            .iter()
+            .map(|(place, modes)| (core.problem.nodes[*place].slave, modes.clone()))
+            .collect(),
+        ..core.cycle.clone()
+    };
+    let named = |slave: usize| names::slave(model, slave);
+    let names: Vec<&str> = core
+        .problem
+        .nodes
+        .iter()
+        .map(|node| named(node.slave))
+        .collect();
+    let head = [
+        "The core of a cycle: the fewest nodes that still cycle when all others go on for ever with what they do.".to_owned(),
+        origin.words(),
+        format!("There {}.", report::cycle(model, cycle)),
+        format!("Here {}.", report::cycle(model, &of_core)),
+    ];
+    let title = format!(
+        "Core of {}: {}, period {}",
+        origin.scene,
+        names.join(", "),
+        core.cycle.period
+    );
+    let text = text(model, &core.on_cycle(), title, head.into())?;
+    match cycle_of(&text)? {
+        Some(found) if same_cycle(&found, &core.cycle) => Ok(text),
+        other => {
+            let found = other.map_or("none".to_owned(), |c| format!("one of period {}", c.period));
+            Err(NoExport::OtherCycle {
+                period: core.cycle.period,
+                found,
+            })
+        }
+    }
+}
+
+/// The nodes of a problem that a file can have: those over a surface, and with something that moves.
+pub fn writable(problem: &InterfaceProblem) -> Vec<usize> {
+    let can = |place: &usize| problem.nodes[*place].moves() != [false; 2];
+    (0..problem.nodes.len()).filter(can).collect()
+}
+
+/// The file of a whole frozen problem, its nodes as they stand, less those that no file can have ([`writable`]): these
+/// neither push nor are pushed.
+///
+/// # Errors
+/// Why there is none.
+pub fn whole(
+    model: &Model,
+    origin: &Origin,
+    problem: &InterfaceProblem,
+) -> Result<String, NoExport> {
+    let here = writable(problem);
+    if here.is_empty() {
+        return Err(NoExport::NoInterface);
+    }
+    let mut head = vec![
+        "The frozen interface problem of a major iteration: what its minor iterations know of the bodies.".to_owned(),
+        origin.words(),
+    ];
+    let gone = (0..problem.nodes.len()).filter(|place| !here.contains(place));
+    let gone: Vec<&str> = gone
+        .map(|place| names::slave(model, problem.nodes[place].slave))
+        .collect();
+    if !gone.is_empty() {
+        head.push(format!(
+            "Left out, since past the ends of all surfaces, or held like what they lie on: {}.",
+            gone.join(", ")
+        ));
+    }
+    let problem = problem.reduced(&here).ok_or(NoExport::Singular)?;
+    let title = format!(
+        "Interface of {}: {}",
+        origin.scene,
+        names::position(origin.at)
+    );
+    text(model, &problem, title, head)
+}
+
+/// The file: stiffness where that exists and steps as the problem does, else compliance.
+fn text(
+    model: &Model,
+    problem: &InterfaceProblem,
+    title: String,
+    mut head: Vec<String>,
+) -> Result<String, NoExport> {
+    let carried: Vec<&str> = problem
+        .nodes
+        .iter()
+<<<<<<< main:src/debug/export.rs
+        .filter(|node| node.moves() != [true; 2])
+        .map(|node| report::slave(model, node.slave))
+=======
+        .filter(|node| node.site.moves != [true; 2])
+        .map(|node| names::slave(model, node.slave))
+>>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:src/record/export.rs
+        .collect();
+    if !carried.is_empty() {
+        return Err(NoExport::Carried(carried.join(", ")));
+    }
+    let count = problem.nodes.len();
+    let mut problem = problem.clone();
+    for node in &mut problem.nodes {
+        node.state.forced = Forced::No;
+    }
+    let problem = &problem;
+    let ids = ids(model, problem);
+    let renamed: Vec<String> = ids
+        .iter()
+        .zip(&problem.nodes)
+        .filter_map(|(id, node)| {
+            let name = names::slave(model, node.slave);
+            (id != name).then(|| format!("{id} is {name}"))
+        })
+        .collect();
+    if !renamed.is_empty() {
+        head.push(format!("Nodes: {}.", renamed.join(", ")));
+    }
+    let comments: Vec<String> = head.iter().flat_map(|line| wrapped(line)).collect();
+    let mut refused = Vec::new();
+    for (form, made) in [
+        ("stiffness", stiffness(problem)),
+        ("compliance", compliance(problem)),
+    ] {
+        let Some((matrix, free, loads)) = made else {
+            let why = if form == "stiffness" {
+                "some motion is held rigidly"
+            } else {
+                "some motion is resisted by nothing"
+            };
+            refused.push(format!("no {form}: {why}"));
+            continue;
+        };
+        let written = Problem {
+            title: shortened(&title),
+            about: String::new(),
+            contacts: (0..count)
+                .map(|place| contact(problem, place, &ids[place], loads[place]))
+                .collect(),
+            matrix,
+            free,
+            spacing: Some(spacing(problem)),
+            history: at_once(),
+            settings: settings(&problem.settings),
+        };
+        let text = written.text(&comments);
+        if text.len() > limits::FILE_BYTES {
+            return Err(NoExport::Large {
+                nodes: count,
+                mebibytes: text.len() >> 20,
+            });
+        }
+        match compared(problem, &text) {
+            Ok(_) => return Ok(text),
+            Err(why) => refused.push(format!("its {form} does not step as it does: {why}")),
+        }
+    }
+    Err(NoExport::NoMatrix(refused.join("; ")))
+}
+
+/// A contact as it stands.
+fn contact(problem: &InterfaceProblem, place: usize, id: &str, load: [f64; 2]) -> Contact {
+    let ProblemNode {
+        kinematics,
+        friction,
+        state,
+        ..
+    } = problem.nodes[place];
+    let touches = state.mode != Mode::Free;
+    let limit = match state.mode {
+        // Where T_max follows F_n in the solve, only its sign is looked at.
+        Mode::Sliding if state.t_max == 0.0 => state.sign * f64::EPSILON * problem.force,
+        Mode::Sliding => state.t_max,
+        _ => 0.0,
+    };
+    Contact {
+        id: id.to_owned(),
+        gap: kinematics.map_or(f64::INFINITY, |k| k.gap),
+        friction,
+        load,
+        start: state.mode,
+        state: InitialState {
+            f_n: if touches { state.f_n } else { 0.0 },
+            f_t: if touches { state.f_t } else { 0.0 },
+            t_max: limit,
+            slip: state.slipped(&problem.settings),
+            ratio: if touches { state.ratio } else { 0.0 },
+        },
+    }
+}
+
+/// What the minor iterations look at of the settings; a cycle stops, and what concerns the bodies is left out.
+fn settings(of: &Settings) -> Settings {
+    Settings {
+        strategy: of.strategy,
+        touch: of.touch,
+        t_max: of.t_max,
+        slip: of.slip,
+        sticking: of.sticking,
+        ties: of.ties,
+        minors: of.minors,
+        tolerance: of.tolerance,
+        ..Settings::default()
+    }
+}
+
+/// The scene's diagonal is the length that tolerances are parts of, in the file too.
+fn spacing(problem: &InterfaceProblem) -> f64 {
+    match problem.nodes.len() {
+        1 => problem.length / 2.0,
+        count => problem.length / (count - 1) as f64,
+    }
+}
+
+type Parts = (Matrix, Vec<f64>, Vec<[f64; 2]>);
+
+/// K, free and loads; none where something is rigid.
+fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
+    let InterfaceResponse {
+        stiffness: k,
+        start,
+        response,
+    } = &problem.relation;
+    let n = start.len();
+    let mut matrix: Vec<f64> = response.iter().map(|r| r / k).collect();
+    (0..n).for_each(|i| matrix[i * n + i] += 1.0);
+    let solved = solved(&matrix, start.iter().chain(response).copied().collect())?;
+    let (c, k_columns) = solved.split_at(n);
+    // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing is taken out.
+    let largest = k_columns.iter().fold(0.0_f64, |m, x| m.max(x.abs())) / k;
+    if largest > SINGULAR {
+        return None;
+    }
+    let free = problem
+        .nodes
+        .iter()
+        .flat_map(|node| node.prescribed)
+        .map(|p| -p);
+    let load = |(place, node): (usize, &ProblemNode)| {
+        [
+            -c[2 * place] - node.state.f_n,
+            -c[2 * place + 1] - node.state.f_t,
+        ]
+    };
+    let loads = problem.nodes.iter().enumerate().map(load).collect();
+    Some((
+        Matrix::Stiffness(rows(n, |i, j| -k_columns[j * n + i])),
+        free.collect(),
+        loads,
+    ))
+}
+
+/// W, free and no loads; none where something is loose.
+fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
+    let InterfaceResponse {
+        stiffness: k,
+        start,
+        response,
+    } = &problem.relation;
+    let n = start.len();
+    let mut right = start.clone();
+    right.extend((0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }));
+    let solved = solved(response, right)?;
+    let (still, inverse) = solved.split_at(n);
+    let largest = inverse.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * problem.spring;
+    if largest > SINGULAR {
+        return None;
+    }
+    let w = rows(n, |i, j| {
+        -inverse[j * n + i] - if i == j { 1.0 / k } else { 0.0 }
+    });
+    let acting: Vec<f64> = problem
+        .nodes
+        .iter()
+        .flat_map(|node| [node.state.f_n, node.state.f_t])
+        .collect();
+    let prescribed = problem.nodes.iter().flat_map(|node| node.prescribed);
+    let free = w
+        .iter()
+        .zip(still)
+        .zip(prescribed)
+        .map(|((row, still), p)| {
+            let answer: f64 = row.iter().zip(&acting).map(|(w, f)| w * f).sum();
+            still - answer - p
+        });
+    let free = free.collect();
+    Some((
+        Matrix::Compliance(w),
+        free,
+        vec![[0.0; 2]; problem.nodes.len()],
+    ))
+}
+
+/// X of A X = B, all column by column.
+fn solved(a: &[f64], mut b: Vec<f64>) -> Option<Vec<f64>> {
+    let n = a.len().isqrt();
+    let mut dense = DenseFactors::new(n, b.len() / n).ok()?;
+    dense.factor(a);
+    dense.solve(&mut b).ok()?;
+    Some(b)
+}
+
+fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    (0..n)
+        .map(|i| (0..n).map(|j| entry(i, j)).collect())
+        .collect()
+}
+
+/// Ids for the nodes: their names, with - for what no id may have in it, each once.
+fn ids(model: &Model, problem: &InterfaceProblem) -> Vec<String> {
+    let plain = |c: char| {
+        if c.is_alphanumeric() || c == '_' {
+            c
+        } else {
+            '-'
+        }
+    };
+    let mut ids: Vec<String> = Vec::new();
+    for node in &problem.nodes {
+        let name: String = names::slave(model, node.slave)
+            .chars()
+            .map(plain)
+            .take(limits::NAME - 6)
+            .collect();
+        let taken = |id: &str| id == "floor" || ids.iter().any(|other| other == id);
+        let again = (2..).map(|k| format!("{name}-{k}"));
+        let free = std::iter::once(name.clone())
+            .chain(again)
+            .find(|id| !taken(id));
+        ids.push(free.unwrap_or_default());
+    }
+    ids
+}
+
+fn shortened(title: &str) -> String {
+    let plain = title.chars().filter(|c| !c.is_control());
+    if title.chars().count() <= limits::TITLE {
+        return plain.collect();
+    }
+    plain.take(limits::TITLE - 1).chain(['…']).collect()
+}
+
+/// A comment in lines of [`WIDTH`], broken at blanks.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        let line = &mut lines[last];
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(format!("  {word}"));
+        } else {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines
+}
+
+/// Steps a file beside the problem that it was made of, minor iteration by minor iteration, until the minors settle,
+/// cycle or fail. Returns the largest difference of a force or a length, relative to the problem's sizes of either.
+///
+/// # Errors
+/// Where the two part.
+pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
+    let scene = Scene::from_text("what would be written", text, &[]).map_err(Box::new)?;
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut trials = Trials::new(problem).ok_or(Parted::Memory)?;
+    let mut nodes = problem.states();
+    let mut worst = 0.0_f64;
+    for minor in 1..=COMPARED {
+        let wanted = trials.minor(&mut nodes, method(problem.settings.strategy));
+        let Some(event) = stepper.step() else {
+            return Err(Parted::Done(minor));
+        };
+        let failed = matches!(event.outcome, Outcome::Failed(_));
+        let Some((records, settled)) = wanted else {
+            let singular = matches!(event.outcome, Outcome::Failed(Failure::Singular(_)));
+            return if singular {
+                Ok(worst)
+            } else {
+                Err(Parted::Singular(minor))
+            };
+        };
+        if event.nodes.len() != records.len() {
+            return Err(Parted::Unsolved(minor));
+        }
+        for (found, wanted) in event.nodes.iter().zip(&records) {
+            let modes = |r: &ContactRecord| (r.decision.before, r.decision.next);
+            worst = worst.max(difference(problem, found, wanted));
+            if modes(found) != modes(wanted) || worst > CLOSE {
+                return Err(Parted::Apart { minor, by: worst });
+            }
+        }
+        if settled || failed {
+            break;
+        }
+    }
+    Ok(worst)
+}
+
+fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) -> f64 {
+    let off = |a: f64, b: f64, size: f64| {
+        if a == b {
+            0.0
+        } else {
+            (a - b).abs() / size.max(a.abs()).max(b.abs())
+        }
+    };
+    [
+        off(a.f_n, b.f_n, problem.force),
+        off(a.f_t, b.f_t, problem.force),
+        off(a.gap, b.gap, problem.length),
+        off(a.slip, b.slip, problem.length),
+    ]
+    .into_iter()
+    .fold(0.0, f64::max)
+}
+
+/// The cycle that a scene's first minor iterations close; none where they end otherwise.
+fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
+    let scene = Scene::from_text("what would be written", text, &[]).map_err(Box::new)?;
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    while let Some(event) = stepper.step() {
+        match &event.outcome {
+            Outcome::Minor => {}
+            Outcome::Failed(Failure::Cycle(cycle)) => return Ok(Some(cycle.clone())),
+            _ => return Ok(None),
+        }
+    }
+    Ok(None)
+}
+
+/// Same period, members and patterns, wherever in the round each begins.
+fn same_cycle(a: &Cycle, b: &Cycle) -> bool {
+    let period = a.period as usize;
+    let turned = |by: usize| {
+        a.members
+            .iter()
+            .zip(&b.members)
+            .all(|((i, ours), (j, theirs))| {
+                i == j && (0..period).all(|k| ours[(k + by) % period] == theirs[k])
+            })
+    };
+    a.period == b.period && a.members.len() == b.members.len() && (0..period).any(turned)
+}

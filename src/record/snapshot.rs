@@ -1,0 +1,363 @@
+//! Recorded states: a RON file that stands alone, can be computed again, and can be compared.
+//!
+//! A snapshot holds the scene, what the user did and after how many minor iterations, and the state that this led to.
+//! Computing it again means to start the scene and to do the same; nothing of the recorded state goes into that.
+//! Floats are written so that they read back to the same bits, NaN and the infinities included.
+
+use crate::contact::record::Forced;
+use crate::contact::table2::Rule;
+use crate::linear::norms::Norms;
+use crate::model::{Mode, Model};
+use crate::outside::files::{self, FileError};
+use crate::outside::input::{self, RECORD_BYTES, Unreadable};
+use crate::scene::{Scene, SceneError, Spec, read};
+use crate::step::event::{Event, Outcome, Position};
+use crate::step::intervene::Intervention;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The format that this program writes, and the only one that it reads.
+pub const FORMAT: u32 = 1;
+/// Bytes that tell a snapshot from a scene.
+const READ_TO_TELL: u64 = 4096;
+
+/// A recorded state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Snapshot {
+    /// Version of this format.
+    pub format: u32,
+    /// What the scene was called.
+    pub name: String,
+    /// The whole scene, with what was set from outside.
+    pub scene: Spec,
+    /// What the user did, in order.
+    pub interventions: Vec<Applied>,
+    /// Number of minor iterations done.
+    pub steps: u64,
+    /// The last minor iteration; the first to come where none was done.
+    pub position: Position,
+    /// What there is then.
+    pub state: Recorded,
+}
+
+/// An intervention and the number of minor iterations that had been done before it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Applied {
+    pub step: u64,
+    pub intervention: Intervention,
+}
+
+/// The state after a minor iteration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recorded {
+    /// Load factor at the end of the last minor iteration's increment.
+    pub load_factor: f64,
+    pub status: Status,
+    /// Residual at the start of the last major iteration.
+    pub before: Option<Norms>,
+    /// Residual at its end, if it has ended.
+    pub after: Option<Norms>,
+    pub slaves: Vec<SlaveRecord>,
+    pub displacements: Vec<Displacement>,
+    /// Shear forces of shear-rigid beams, body by body.
+    pub shear: Vec<f64>,
+}
+
+/// A slave node, as the last minor iteration found it. Forces are on the slave node, compression positive.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlaveRecord {
+    pub node: String,
+    /// Mode of the last minor iteration.
+    pub mode: Mode,
+    /// Mode of the next one.
+    pub next: Mode,
+    /// The cell of Table 2 that fired, by the name that traces give it; none where nothing was solved.
+    #[serde(with = "rule_name")]
+    pub rule: Option<Rule>,
+    /// Gap, negative where the node penetrates; none where nothing was solved.
+    pub gap: Option<f64>,
+    pub f_n: f64,
+    pub f_t: f64,
+    pub t_max: f64,
+    pub slip: f64,
+    pub forced: Forced,
+}
+
+/// A rule by its name: RON has no bare words with hyphens.
+mod rule_name {
+    use crate::contact::table2::Rule;
+    use crate::explain::names;
+    use serde::de::IntoDeserializer;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(rule: &Option<Rule>, to: S) -> Result<S::Ok, S::Error> {
+        rule.map(names::rule).serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Rule>, D::Error> {
+        let name = Option::<String>::deserialize(from)?;
+        name.map(|name| Rule::deserialize(name.as_str().into_deserializer()))
+            .transpose()
+    }
+}
+
+/// Displacement of a node at the start of the major iteration to come.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Displacement {
+    pub node: String,
+    pub x: f64,
+    pub y: f64,
+    /// Only beam nodes turn.
+    pub rotation: Option<f64>,
+}
+
+/// Why a snapshot cannot be written, read or computed again.
+#[derive(Debug, thiserror::Error)]
+pub enum SnapshotError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("{}", why.of(file))]
+    Unreadable { file: String, why: Unreadable },
+    #[error("{file}:{line}:{column}: {message}")]
+    Syntax {
+        file: String,
+        line: usize,
+        column: usize,
+        message: String,
+    },
+    #[error(
+        "{file}: the snapshot has format {found}, and this program knows only format {FORMAT}; read it with the version that wrote it"
+    )]
+    Format { file: String, found: u32 },
+    #[error("the snapshot cannot be written as text: {0}")]
+    Unwritable(ron::Error),
+    #[error("the snapshot's scene is unsound: {0}")]
+    Scene(#[from] SceneError),
+    #[error("it cannot be computed again: {0}")]
+    Replay(String),
+}
+
+impl Snapshot {
+    /// Records a state. `applied` is what the user did so far, `steps` the number of minor iterations done, and
+    /// `event` the last of them.
+    pub fn take(
+        scene: &Scene,
+        applied: &[Applied],
+        steps: u64,
+        state: &State,
+        event: Option<&Event>,
+    ) -> Snapshot {
+        Snapshot {
+            format: FORMAT,
+            name: scene.name.clone(),
+            scene: scene.spec.clone(),
+            interventions: applied.to_vec(),
+            steps,
+            position: event.map_or(state.next, |e| e.position),
+            state: Recorded::of(&scene.model, state, event),
+        }
+    }
+
+    /// The snapshot as text.
+    ///
+    /// # Errors
+    /// If it cannot be put into RON, which no snapshot is known to do.
+    pub fn to_text(&self) -> Result<String, SnapshotError> {
+        let layout = ron::ser::PrettyConfig::new()
+            .new_line("\n")
+            // Lists of slaves and nodes are tables: one row, one line.
+            .depth_limit(3);
+        let text = read::options()
+            .to_string_pretty(self, layout)
+            .map_err(SnapshotError::Unwritable)?;
+        Ok(text + "\n")
+    }
+
+    /// Writes the snapshot to a file, whole or not at all.
+    ///
+    /// # Errors
+    /// If the file exists and `overwrite` is not set, or cannot be written.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<(), SnapshotError> {
+        Ok(files::write(path, &self.to_text()?, overwrite)?)
+    }
+
+    /// Reads a snapshot from a file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is damaged, or has a format that this program does not know.
+    pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
+        let file = path.display().to_string();
+        let text = input::text(path, RECORD_BYTES, "no snapshot has").map_err(|why| {
+            let file = file.clone();
+            SnapshotError::Unreadable { file, why }
+        })?;
+        Snapshot::from_text(&file, &text)
+    }
+
+    /// Whether a file begins as a snapshot does, and as no scene: with its format.
+    pub fn is_one(path: &Path) -> bool {
+        let start = input::start(path, READ_TO_TELL).unwrap_or_default();
+        let text = String::from_utf8_lossy(&start);
+        let first = text.trim_start_matches([input::MARK, '(', ' ', '\t', '\r', '\n']);
+        first.starts_with("format")
+    }
+
+    /// Reads a snapshot from a text; `file` is what messages call it.
+    ///
+    /// # Errors
+    /// If the text is damaged, or has a format that this program does not know.
+    pub fn from_text(file: &str, text: &str) -> Result<Snapshot, SnapshotError> {
+        /// What any format has.
+        #[derive(Deserialize)]
+        struct Header {
+            format: u32,
+        }
+        let text = text.strip_prefix(input::MARK).unwrap_or(text);
+        read::shallow(file, text, "snapshot").map_err(|deep| {
+            let (line, column) = deep.at.unwrap_or((1, 1));
+            SnapshotError::Syntax {
+                file: file.to_owned(),
+                line,
+                column,
+                message: deep.message,
+            }
+        })?;
+        if let Ok(header) = read::options().from_str::<Header>(text)
+            && header.format != FORMAT
+        {
+            return Err(SnapshotError::Format {
+                file: file.to_owned(),
+                found: header.format,
+            });
+        }
+        read::options()
+            .from_str(text)
+            .map_err(|e| SnapshotError::Syntax {
+                file: file.to_owned(),
+                line: e.span.start.line,
+                column: e.span.start.col,
+                message: read::plainly(&e.code),
+            })
+    }
+
+    /// Computes the snapshot again, from the start of its scene.
+    ///
+    /// # Errors
+    /// If the scene is unsound, or the run does not come that far.
+    pub fn replay(&self) -> Result<Snapshot, SnapshotError> {
+        let scene = Scene::from_spec(&self.name, self.scene.clone())?;
+        let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+        let mut applied = self.interventions.iter().peekable();
+        for done in 0..=self.steps {
+            while let Some(next) = applied.next_if(|a| a.step == done) {
+                stepper
+                    .intervene(&next.intervention)
+                    .map_err(|e| SnapshotError::Replay(format!("after step {done}: {e}")))?;
+            }
+            if done < self.steps && stepper.step().is_none() {
+                return Err(SnapshotError::Replay(format!(
+                    "the history ends after {done} minor iterations, and the snapshot was taken after {}",
+                    self.steps
+                )));
+            }
+        }
+        if applied.peek().is_some() {
+            return Err(SnapshotError::Replay(
+                "its interventions are not in order, or lie beyond its last step".into(),
+            ));
+        }
+        let event = (self.steps > 0).then(|| stepper.event());
+        Ok(Snapshot::take(
+            &scene,
+            &self.interventions,
+            self.steps,
+            stepper.state(),
+            event,
+        ))
+    }
+}
+
+impl Recorded {
+    fn of(model: &Model, state: &State, event: Option<&Event>) -> Recorded {
+        let slaves = (0..model.contacts.len())
+            .map(|s| SlaveRecord::of(model, state, event, s))
+            .collect();
+        let displacements = (0..model.nodes.len())
+            .map(|n| displacement(model, &state.u, n))
+            .collect();
+        let dofs = &model.dofs;
+        let nodal: usize = dofs.count.iter().map(|&count| usize::from(count)).sum();
+        Recorded {
+            load_factor: event.map_or(state.start.load_factor, |e| e.load_factor),
+            status: state.status.clone(),
+            before: event.map(|e| e.before),
+            after: event.and_then(|e| after(&e.outcome)),
+            slaves,
+            displacements,
+            shear: state.u[nodal..].to_vec(),
+        }
+    }
+}
+
+fn after(outcome: &Outcome) -> Option<Norms> {
+    match outcome {
+        Outcome::Major { after, .. }
+        | Outcome::Refused { after, .. }
+        | Outcome::Increment { after, .. } => Some(*after),
+        _ => None,
+    }
+}
+
+impl SlaveRecord {
+    fn of(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
+        let now = &state.nodes[slave];
+        let node = model.nodes[model.contacts[slave].node].name.clone();
+        // A minor iteration that could not be solved has no records.
+        match event.and_then(|e| e.nodes.get(slave)) {
+            Some(found) => SlaveRecord {
+                node,
+                mode: found.decision.before,
+                next: now.mode,
+                rule: Some(found.decision.rule),
+                gap: Some(found.gap),
+                f_n: found.f_n,
+                f_t: found.f_t,
+                t_max: found.t_max,
+                slip: found.slip,
+                forced: now.forced,
+            },
+            None => SlaveRecord {
+                node,
+                mode: now.mode,
+                next: now.mode,
+                rule: None,
+                gap: None,
+                f_n: now.f_n,
+                f_t: now.f_t,
+                t_max: now.t_max,
+                slip: now.slip,
+                forced: now.forced,
+            },
+        }
+    }
+}
+
+fn displacement(model: &Model, u: &[f64], node: usize) -> Displacement {
+    let first = model.dofs.first[node];
+    let count = usize::from(model.dofs.count[node]);
+    let at = |k: usize| (k < count).then(|| u[first + k]);
+    Displacement {
+        node: model.nodes[node].name.clone(),
+        x: at(0).unwrap_or(0.0),
+        y: at(1).unwrap_or(0.0),
+        rotation: at(2),
+    }
+}

@@ -1,0 +1,359 @@
+//! Looking closer without disturbing: what needs solves of its own, made on a thread of its own beside the session's.
+//!
+//! - **Pushes**: what the changes of all nodes since the minor iteration before did to one node ([`influences`]). The
+//!   thread goes over both iterations again and takes the frozen interface problem between them.
+//! - **Findings**: the diagnosis of the cycle that the shown state runs into, or else the census of the frozen problem
+//!   that is solved next from it.
+//! - **Exports**: the frozen problem, or the core of its cycle, written as a scene of its own ([`export`]).
+//! - **Remedies**: trials of every way out ([`remedies`]).
+//!
+//! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
+
+use crate::explain::core::core;
+use crate::explain::diagnosis::too_many;
+use crate::explain::examination::{
+    Examination, NOT_CONDENSED, Untold, examine, examine_nodes, going_round,
+};
+use crate::explain::influence::{Push, Way, pushes};
+use crate::explain::remedies::{self, Trial};
+use crate::model::Model;
+use crate::outside::files::{self, FileError};
+use crate::record::command::Exported;
+use crate::record::export::{self, NoExport, Origin};
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::thread;
+
+/// Most entries that are kept of pushes, and of examinations.
+const KEPT: usize = 512;
+/// A place: branch, and step on its line.
+pub type LinePlace = (usize, usize);
+
+/// The remedies that were tried from a place, as far as they are.
+#[derive(Debug, Clone)]
+pub struct Tried {
+    pub place: LinePlace,
+    /// How many there are to try; none until that is known.
+    pub all: Option<usize>,
+    /// The one that is being tried now.
+    pub now: String,
+    /// Done, in the order of [`remedies::sort`].
+    pub trials: Vec<Trial>,
+    /// Whether it was stopped before all were tried.
+    pub stopped: bool,
+}
+
+/// A scene to be written of the problem that is frozen at a state.
+pub struct Export {
+    pub what: Exported,
+    pub file: PathBuf,
+    pub overwrite: bool,
+    pub origin: Origin,
+    pub state: Box<State>,
+}
+
+/// Why no scene was written.
+#[derive(Debug, thiserror::Error)]
+pub enum NotWritten {
+    #[error("the history is done; nothing is solved next from here")]
+    Finished,
+    #[error("{NOT_CONDENSED}")]
+    NotCondensed,
+    #[error("the minor iterations do not cycle from here, so there is no core")]
+    NoCycle,
+    #[error("{0}")]
+    TooMany(String),
+    #[error(transparent)]
+    Untold(#[from] Untold),
+    #[error(transparent)]
+    NoExport(#[from] NoExport),
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+enum Ask {
+    Pushes(LinePlace, usize, Way),
+    Examination(LinePlace, Box<State>, Vec<usize>),
+    Remedies(Box<State>),
+    Export(Export),
+}
+
+enum Told {
+    Pushes(LinePlace, usize, Option<Vec<Push>>),
+    Examination(LinePlace, Vec<usize>, Box<Examination>),
+    Trying { all: usize, now: String },
+    Tried(Box<Trial>),
+    Done { stopped: bool },
+    Exported(Result<String, NotWritten>),
+}
+
+/// The thread, and what it found.
+#[derive(Debug)]
+pub struct Background {
+    asks: Sender<Ask>,
+    told: Receiver<Told>,
+    stop: Arc<AtomicBool>,
+    /// Asked and not yet answered.
+    waiting: usize,
+    pushes: HashMap<(LinePlace, usize), Option<Vec<Push>>>,
+    /// By place: the nodes that were asked for, and what was found.
+    examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
+    exported: Option<Result<String, NotWritten>>,
+    tried: Option<Tried>,
+    trying: bool,
+}
+
+impl Background {
+    /// Starts the idle thread.
+    pub fn new(model: Arc<Model>) -> Background {
+        let (asks, orders) = channel::<Ask>();
+        let (news, told) = channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let flag = stop.clone();
+        thread::spawn(move || {
+            let mut stepper = None;
+            while let Ok(ask) = orders.recv() {
+                let stepper = stepper.get_or_insert_with(|| Stepper::new(model.clone()));
+                if answer(stepper, ask, &news, &flag).is_none() {
+                    return;
+                }
+            }
+        });
+        Background {
+            asks,
+            told,
+            stop,
+            waiting: 0,
+            pushes: HashMap::new(),
+            examinations: HashMap::new(),
+            exported: None,
+            tried: None,
+            trying: false,
+        }
+    }
+
+    /// Whether something is asked and not yet answered.
+    pub fn is_busy(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// What pushed a slave node at a place: none while it is not known; an inner none where it cannot be told.
+    pub fn pushes(&self, place: LinePlace, slave: usize) -> Option<Option<&[Push]>> {
+        let found = self.pushes.get(&(place, slave))?;
+        Some(found.as_deref())
+    }
+
+    /// What is known of the problem at a place; an inner none while it is being found out.
+    pub fn examination(&self, place: LinePlace) -> Option<Option<&Examination>> {
+        Some(self.examinations.get(&place)?.1.as_ref())
+    }
+
+    /// The remedies that were tried last.
+    pub fn tried(&self) -> Option<&Tried> {
+        self.tried.as_ref()
+    }
+
+    /// Whether remedies are being tried.
+    pub fn is_trying(&self) -> bool {
+        self.trying
+    }
+
+    /// Asks what pushed a node. One question at a time: while another waits, this one may be asked again later.
+    pub(super) fn ask_pushes(&mut self, place: LinePlace, slave: usize, way: impl FnOnce() -> Way) {
+        if self.waiting == 0 && !self.pushes.contains_key(&(place, slave)) {
+            self.send(Ask::Pushes(place, slave, way()));
+        }
+    }
+
+    /// Asks for the finding at a place, with the state there: of these nodes, or (none) of what matters.
+    pub(super) fn ask_examination(&mut self, place: LinePlace, state: &State, nodes: &[usize]) {
+        let known = self.examinations.get(&place);
+        if known.is_none_or(|(asked, _)| asked != nodes) {
+            if self.examinations.len() >= KEPT {
+                self.examinations.clear();
+            }
+            self.examinations.insert(place, (nodes.to_vec(), None));
+            let state = Box::new(state.clone());
+            self.send(Ask::Examination(place, state, nodes.to_vec()));
+        }
+    }
+
+    /// Has a scene written.
+    pub(super) fn ask_export(&mut self, export: Export) {
+        self.send(Ask::Export(export));
+    }
+
+    /// What came of the scene that was written last; once.
+    pub(super) fn exported(&mut self) -> Option<Result<String, NotWritten>> {
+        self.exported.take()
+    }
+
+    /// Tries all remedies from the state at a place.
+    pub(super) fn ask_remedies(&mut self, place: LinePlace, state: &State) {
+        self.stop.store(false, Ordering::Relaxed);
+        self.tried = Some(Tried {
+            place,
+            all: None,
+            now: String::new(),
+            trials: Vec::new(),
+            stopped: false,
+        });
+        self.trying = true;
+        self.send(Ask::Remedies(Box::new(state.clone())));
+    }
+
+    /// Stops trying remedies after the present minor iteration.
+    pub fn interrupt(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    fn send(&mut self, ask: Ask) {
+        // A failing send means that the thread is gone; nothing is waited for then.
+        if self.asks.send(ask).is_ok() {
+            self.waiting += 1;
+        }
+    }
+
+    /// Gathers what was found since the last call, never blocking. Returns whether there was anything.
+    pub fn gather(&mut self) -> bool {
+        let mut any = false;
+        loop {
+            match self.told.try_recv() {
+                Ok(told) => self.take(told),
+                Err(TryRecvError::Empty) => return any,
+                Err(TryRecvError::Disconnected) => {
+                    any |= self.waiting > 0;
+                    (self.waiting, self.trying) = (0, false);
+                    return any;
+                }
+            }
+            any = true;
+        }
+    }
+
+    /// Blocks until all that was asked is answered.
+    pub fn wait(&mut self) {
+        while self.waiting > 0 {
+            match self.told.recv() {
+                Ok(told) => self.take(told),
+                Err(_) => (self.waiting, self.trying) = (0, false),
+            }
+        }
+    }
+
+    fn take(&mut self, told: Told) {
+        match told {
+            Told::Pushes(place, slave, found) => {
+                if self.pushes.len() >= KEPT {
+                    self.pushes.clear();
+                }
+                self.pushes.insert((place, slave), found);
+                self.waiting -= 1;
+            }
+            Told::Examination(place, nodes, found) => {
+                // Something else may have been asked for in the meantime.
+                if let Some(kept) = self.examinations.get_mut(&place)
+                    && kept.0 == nodes
+                {
+                    kept.1 = Some(*found);
+                }
+                self.waiting -= 1;
+            }
+            Told::Exported(result) => {
+                self.exported = Some(result);
+                self.waiting -= 1;
+            }
+            Told::Trying { all, now } => {
+                if let Some(tried) = &mut self.tried {
+                    (tried.all, tried.now) = (Some(all), now);
+                }
+            }
+            Told::Tried(trial) => {
+                if let Some(tried) = &mut self.tried {
+                    tried.trials.push(*trial);
+                    remedies::sort(&mut tried.trials);
+                }
+            }
+            Told::Done { stopped } => {
+                if let Some(tried) = &mut self.tried {
+                    tried.stopped = stopped;
+                }
+                self.trying = false;
+                self.waiting -= 1;
+            }
+        }
+    }
+}
+
+impl Drop for Background {
+    fn drop(&mut self) {
+        self.interrupt();
+    }
+}
+
+/// Answers on the thread; none if nobody listens any more.
+fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
+    match ask {
+        Ask::Pushes(place, slave, way) => {
+            let found = pushes(stepper, slave, &way);
+            news.send(Told::Pushes(place, slave, found)).ok()
+        }
+        Ask::Examination(place, state, nodes) => {
+            let found = Box::new(match nodes.as_slice() {
+                [] => examine(stepper, &state),
+                some => examine_nodes(stepper, &state, some),
+            });
+            news.send(Told::Examination(place, nodes, found)).ok()
+        }
+        Ask::Export(ask) => {
+            let done = write(stepper, &ask).map(|()| format!("wrote {}", ask.file.display()));
+            news.send(Told::Exported(done)).ok()
+        }
+        Ask::Remedies(state) => {
+            let all = remedies::all(stepper, &state);
+            let mut stopped = false;
+            for remedy in &all {
+                let now = remedy.label.clone();
+                news.send(Told::Trying {
+                    all: all.len(),
+                    now,
+                })
+                .ok()?;
+                match remedies::attempt(stepper, &state, remedy, &|| stop.load(Ordering::Relaxed)) {
+                    Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
+                    None => {
+                        stopped = true;
+                        break;
+                    }
+                }
+            }
+            news.send(Told::Done { stopped }).ok()
+        }
+    }
+}
+
+/// Writes a core, or a whole problem, as a scene.
+fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
+    if ask.state.status == Status::Finished {
+        return Err(NotWritten::Finished);
+    }
+    stepper.restore(&ask.state);
+    let problem = stepper
+        .interface_problem()
+        .ok_or(NotWritten::NotCondensed)?;
+    let text = match ask.what {
+        Exported::Whole => export::whole(stepper.model(), &ask.origin, &problem)?,
+        Exported::Core => {
+            let (problem, cycle) =
+                going_round(stepper, &ask.state, &problem)?.ok_or(NotWritten::NoCycle)?;
+            let core = core(&problem).ok_or_else(|| NotWritten::TooMany(too_many(&cycle)))?;
+            export::core(stepper.model(), &ask.origin, &cycle, &core)?
+        }
+    };
+    Ok(files::write(&ask.file, &text, ask.overwrite)?)
+}

@@ -1,0 +1,93 @@
+//! Interfering: interventions at the cursor, steps that are given, and settings.
+
+use super::machine::{Reply, Session, Task};
+use super::refusal::Refusal;
+use super::worker::Job;
+use crate::explain::report;
+use crate::history::branches;
+use crate::history::strip::PointKind;
+use crate::outside::shown;
+use crate::scene::{Scene, paths};
+use crate::step::intervene::Intervention;
+
+impl Session {
+    /// Changes something at the cursor; `setting` is the path and the value that it came from.
+    pub(super) fn intervene(
+        &mut self,
+        intervention: Intervention,
+        setting: Option<(&str, &str)>,
+    ) -> Result<Reply, Refusal> {
+        let mut state = self.frame().state.clone();
+        state
+            .intervene(self.model(), &intervention)
+            .map_err(Refusal::Intervention)?;
+        let mut told = report::intervention(self.model(), &intervention);
+        let label = branches::label(self.model(), &intervention, setting);
+        let before = self.strips()[self.cursor].kind;
+        let forks = self.tree.intervene(self.cursor, state, intervention);
+        self.cursor += 1;
+        let branch = &self.tree.branches()[self.tree.current()];
+        if forks {
+            self.tree.rename(label, false);
+            let name = branches::name(&self.tree, self.tree.current());
+            told += &format!(" (in the new branch {name})");
+        } else if !branch.named
+            && before == PointKind::Intervention
+            && branch.from < self.cursor
+            && branch.parent.is_some()
+        {
+            // What is done before anything is solved belongs to the same trial.
+            let label = format!("{}, {label}", branch.label);
+            self.tree.rename(label, false);
+        }
+        Ok(Reply(told))
+    }
+
+    /// Takes given steps from the cursor, in a branch of their own.
+    pub(super) fn follow(
+        &mut self,
+        label: String,
+        steps: Vec<Option<Intervention>>,
+    ) -> Result<Reply, Refusal> {
+        let (state, before) = (
+            self.frame().state.clone(),
+            self.strips()[self.cursor].clone(),
+        );
+        self.tree.fork(self.cursor);
+        self.tree.rename(shown::line(&label).into_owned(), false);
+        self.task = Some(Task::Run);
+        self.worker.start(Job::Follow {
+            state: Box::new(state),
+            before: Box::new(before),
+            steps,
+        });
+        let name = branches::name(&self.tree, self.tree.current());
+        Ok(Reply(format!("running in the new branch {name}")))
+    }
+
+    /// What `:set` means, on top of what was set before.
+    pub(super) fn setting(&self, path: &str, value: &str) -> Result<Intervention, Refusal> {
+        let controls = &self.frame().state.controls;
+        let mut spec = self.scene.spec.clone();
+        spec.settings = controls.settings;
+        spec.history.increment = controls.increment;
+        if let Some(friction) = controls.friction.first() {
+            spec.friction = *friction;
+        }
+        paths::set(&mut spec, path, value).map_err(Refusal::Setting)?;
+        let sound =
+            Scene::from_spec(&self.scene.name, spec).map_err(|e| Refusal::Setting(e.message))?;
+        if path.starts_with("settings.") {
+            Ok(Intervention::Settings(sound.model.settings))
+        } else if path.starts_with("friction.") {
+            Ok(Intervention::Friction(sound.spec.friction))
+        } else if path == "history.increment" {
+            Ok(Intervention::Increment(sound.spec.history.increment))
+        } else {
+            Err(Refusal::Unchangeable {
+                path: path.into(),
+                value: value.into(),
+            })
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Going through the history: forward, back, and to a step; over what is known already, and past its end.
+
+use super::machine::{Reply, Session, Task};
+use super::refusal::Refusal;
+use super::worker::Job;
+use crate::history::breakpoints::{self, Breakpoint};
+use crate::record::command::Unit;
+use crate::step::event::Event;
+use crate::step::state::{State, Status};
+use std::sync::Arc;
+
+impl Session {
+    /// Moves the cursor over what is known already, then solves on.
+    pub(super) fn forward(&mut self, unit: Unit, count: u32) -> Reply {
+        let mut left = count;
+        let (mut at, mut hits) = (self.cursor, Vec::new());
+        let strips = self.strips();
+        while left > 0 && hits.is_empty() && at + 1 < strips.len() {
+            at += 1;
+            left -= u32::from(unit.ends(strips[at].kind));
+            if strips[at].kind.is_failure() {
+                left = 0;
+            }
+            hits = breakpoints::hits(&self.breakpoints, &strips[at - 1], &strips[at]);
+        }
+        let finished = self.frames()[at].state.status == Status::Finished;
+        if left == 0 || !hits.is_empty() || finished {
+            return self.go_to(at, &hits);
+        }
+        self.cursor = at;
+        self.solve(unit, left, self.breakpoints.clone());
+        Reply("running; Ctrl-C interrupts".into())
+    }
+
+    /// Starts new minor iterations from the cursor, which is at the tip.
+    pub(super) fn solve(&mut self, unit: Unit, count: u32, breakpoints: Vec<Breakpoint>) {
+        self.task = Some(Task::Run);
+        self.worker.start(Job::Run {
+            state: Box::new(self.frame().state.clone()),
+            before: Box::new(self.strips()[self.cursor].clone()),
+            unit,
+            count,
+            breakpoints,
+        });
+    }
+
+    pub(super) fn back(&mut self, unit: Unit, count: u32) -> Result<Reply, Refusal> {
+        if self.cursor == 0 {
+            return Err(Refusal::Start);
+        }
+        let strips = self.strips();
+        let (mut at, mut hits) = (self.cursor, Vec::new());
+        for _ in 0..count {
+            if at == 0 {
+                // However much farther it was to go.
+                break;
+            }
+            let here = |k: usize| match k {
+                0 => Vec::new(),
+                k => breakpoints::hits(&self.breakpoints, &strips[k - 1], &strips[k]),
+            };
+            let stops = |k: &usize| match unit {
+                Unit::Minor => true,
+                Unit::Run => strips[*k].kind.is_failure() || !here(*k).is_empty(),
+                _ => unit.ends(strips[*k].kind),
+            };
+            at = (0..at).rev().find(stops).unwrap_or(0);
+            hits = if unit == Unit::Run {
+                here(at)
+            } else {
+                Vec::new()
+            };
+        }
+        Ok(self.go_to(at, &hits))
+    }
+
+    pub(super) fn jump(&mut self, step: usize) -> Result<Reply, Refusal> {
+        let last = self.frames().len() - 1;
+        if step > last {
+            return Err(Refusal::NoStep { step, last });
+        }
+        Ok(self.go_to(step, &[]))
+    }
+
+    /// Puts the cursor on a point of the line; a thinned one is computed first, from the nearest whole one before it.
+    pub(super) fn go_to(&mut self, target: usize, hits: &[u32]) -> Reply {
+        let from = self.tree.whole_before(target);
+        if from == target {
+            self.cursor = target;
+            return Reply(self.stops(hits) + &self.told());
+        }
+        let frames = &self.frames()[from..=target];
+        let job = Job::Again {
+            state: Box::new(frames[0].state.clone()),
+            event: frames[0].event.clone(),
+            steps: frames[1..]
+                .iter()
+                .map(|frame| frame.intervention.clone())
+                .collect(),
+        };
+        self.task = Some(Task::Again {
+            next: from + 1,
+            target,
+            sound: true,
+        });
+        self.worker.start(job);
+        Reply(format!(
+            "computing {} steps again; Ctrl-C interrupts",
+            target - from
+        ))
+    }
+
+    pub(super) fn refill(&mut self, state: State, event: Option<Arc<Event>>) {
+        if let Some(Task::Again { next, sound, .. }) = &mut self.task {
+            *sound &= self.tree.refill(*next, state, event);
+            self.tree.thin([*next, self.cursor]);
+            *next += 1;
+        }
+    }
+
+    /// Which breakpoints a run stopped at, as the beginning of a reply.
+    pub(super) fn stops(&self, hits: &[u32]) -> String {
+        let hit = self.breakpoints.iter().filter(|b| hits.contains(&b.id));
+        let told: Vec<String> = hit
+            .map(|b| breakpoints::describe(self.model(), b))
+            .collect();
+        match told.len() {
+            0 => String::new(),
+            1 => format!("breakpoint {}: ", told[0]),
+            _ => format!("breakpoints {}: ", told.join(", ")),
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What is asked beside the run, and answered in the background.
+
+use super::background::{Background, Export};
+use super::machine::{Reply, Session};
+use super::refusal::Refusal;
+use crate::explain::influence::Way;
+use crate::explain::report;
+use crate::history::strip::{PointKind, Strip};
+use crate::outside::files;
+use crate::record::command::Exported;
+use crate::record::export::Origin;
+use crate::step::state::Status;
+use std::path::PathBuf;
+
+impl Session {
+    /// What is found out beside the run.
+    pub fn background(&self) -> &Background {
+        &self.background
+    }
+
+    /// Gathers what was found out; whether there was anything new. Never blocks.
+    pub fn gather_background(&mut self) -> bool {
+        self.background.gather()
+    }
+
+    /// Blocks until all that was asked is found out.
+    pub fn wait_for_background(&mut self) {
+        self.background.wait();
+    }
+
+    /// The place of the cursor, by which [`Background`] keeps what it found.
+    pub fn place(&self) -> (usize, usize) {
+        (self.tree.current(), self.cursor)
+    }
+
+    /// Asks, where it is not known yet, what pushed a slave node in the shown minor iteration, and for the diagnosis
+    /// where that closed a cycle. Answers come with [`Session::gather_background`].
+    pub fn look(&mut self, slave: usize) {
+        if self.is_running() || slave >= self.model().contacts.len() {
+            return;
+        }
+        let place = self.place();
+        if self.strips()[self.cursor].kind == PointKind::Cycle
+            && self.background.examination(place).is_none()
+        {
+            self.census(&[]);
+        }
+        let Some(before) = self.minor_before() else {
+            return;
+        };
+        let (tree, cursor) = (&self.tree, self.cursor);
+        self.background.ask_pushes(place, slave, || {
+            let from = tree.whole_before(before - 1);
+            let frames = &tree.frames()[from..cursor];
+            let steps = frames[1..].iter().map(|frame| frame.intervention.clone());
+            Way {
+                state: Box::new(frames[0].state.clone()),
+                steps: steps.collect(),
+                before: before - from - 1,
+            }
+        });
+    }
+
+    /// The minor iteration before the shown one in the same frozen problem, as a step of the line.
+    pub fn minor_before(&self) -> Option<usize> {
+        let strips = self.strips();
+        let shown = &strips[self.cursor];
+        let before = (1..self.cursor)
+            .rev()
+            .find(|&at| strips[at].kind.is_solved())?;
+        let of = |strip: &Strip| {
+            let at = strip.position;
+            (at.increment, at.attempt, at.major)
+        };
+        let same = of(&strips[before]) == of(shown)
+            && matches!(
+                strips[before].kind,
+                PointKind::Minor | PointKind::Climbed | PointKind::Cycle | PointKind::Failed
+            );
+        (shown.kind.is_solved() && same).then_some(before)
+    }
+
+    /// Finds out why the minor iterations cycle from the shown state, or which states are consistent; of some nodes only,
+    /// where these are given.
+    pub(super) fn census(&mut self, nodes: &[usize]) -> Reply {
+        let place = self.place();
+        let state = &self.tree.frames()[self.cursor].state;
+        self.background.ask_examination(place, state, nodes);
+        Reply("the diagnosis (d) tells what is found".into())
+    }
+
+    /// Has the core or the whole interface problem of the shown state written; what came of it comes with
+    /// [`Session::exported`].
+    pub(super) fn export(
+        &mut self,
+        what: Exported,
+        file: PathBuf,
+        overwrite: bool,
+    ) -> Result<Reply, Refusal> {
+        // Sooner rather than later; it leaves nothing behind.
+        files::regular(&file)?;
+        drop(files::Output::create(&file, overwrite)?);
+        let frame = self.frame();
+        let at = match &frame.event {
+            Some(event) if matches!(frame.state.status, Status::Failed(_)) => event.position,
+            _ => frame.state.next,
+        };
+        let mut origin = Origin::of(&self.scene, at, frame.state.target);
+        let changed = self.record().1;
+        let words = changed
+            .iter()
+            .map(|a| report::intervention(self.model(), &a.intervention));
+        origin.changes.extend(words);
+        let told = format!("writing {}", file.display());
+        let state = Box::new(frame.state.clone());
+        self.background.ask_export(Export {
+            what,
+            file,
+            overwrite,
+            origin,
+            state,
+        });
+        Ok(Reply(told))
+    }
+
+    /// What came of the last file that [`Command::Export`] wrote; once.
+    pub fn exported(&mut self) -> Option<Result<Reply, Refusal>> {
+        Some(
+            self.background
+                .exported()?
+                .map(Reply)
+                .map_err(Refusal::from),
+        )
+    }
+
+    pub(super) fn remedies(&mut self) -> Reply {
+        if self.background.is_trying() {
+            return Reply("remedies are being tried; Ctrl-C stops that".into());
+        }
+        let place = self.place();
+        let state = &self.tree.frames()[self.cursor].state;
+        self.background.ask_remedies(place, state);
+        Reply("trying every remedy from here; Ctrl-C stops".into())
+    }
+}

@@ -1,0 +1,239 @@
+//! What the solver can be asked for by name: in a lesson's questions, and between braces in its texts.
+//!
+//! Of a slave node, `NAME NODE`: `gap`, `F_n`, `F_t`, `T_max`, `slip` (numbers of the minor iteration), `mode` (the one
+//! that it had), `next` (the one that it takes next), `reason` (why, in a sentence). Of the solve: `load`, `increment`
+//! (its size), `angle`, `tan` and `cohesion` (of the first slave node), `answers` (consistent states that the census
+//! finds), `minors` (minor iterations to the end of this increment) and `period` (of the cycle in which it ends).
+//! Besides, `right` is the right answer of the question before, and `key ACTION` the key that does an action.
+
+use super::look::Look;
+use super::refusal::Unknown;
+use crate::action::{self, Context};
+use crate::explain::names;
+use crate::explain::number::four;
+use crate::explain::report;
+
+/// Numbers smaller than this, relative to the scene's force or length, are rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// Something that the solver can tell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LessonQuantity {
+    /// Of a slave node, by slave number.
+    Of(Nodal, usize),
+    /// Of the solve.
+    Solve(Whole),
+    /// The right answer of the question.
+    Right,
+    /// A key.
+    Key(&'static str),
+}
+
+/// What a slave node has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nodal {
+    Gap,
+    Fn,
+    Ft,
+    TMax,
+    Slip,
+    Mode,
+    Next,
+    Reason,
+}
+
+/// What the solve has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whole {
+    Load,
+    Increment,
+    Angle,
+    Tan,
+    Cohesion,
+    Answers,
+    Minors,
+    Period,
+}
+
+const NODAL: [(&str, Nodal); 8] = [
+    ("gap", Nodal::Gap),
+    ("F_n", Nodal::Fn),
+    ("F_t", Nodal::Ft),
+    ("T_max", Nodal::TMax),
+    ("slip", Nodal::Slip),
+    ("mode", Nodal::Mode),
+    ("next", Nodal::Next),
+    ("reason", Nodal::Reason),
+];
+
+const WHOLE: [(&str, Whole); 8] = [
+    ("load", Whole::Load),
+    ("increment", Whole::Increment),
+    ("angle", Whole::Angle),
+    ("tan", Whole::Tan),
+    ("cohesion", Whole::Cohesion),
+    ("answers", Whole::Answers),
+    ("minors", Whole::Minors),
+    ("period", Whole::Period),
+];
+
+impl LessonQuantity {
+    /// Reads a quantity: `F_n beam.end`, `load`.
+    ///
+    /// # Errors
+    /// A message that says what is wrong and what would be right.
+    pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
+        let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
+        let rest = rest.trim();
+        if let Some((_, nodal)) = NODAL.iter().find(|(name, _)| *name == word) {
+            return match rest {
+                "" => Err(Unknown::WhichNode(word.into())),
+                node => Ok(LessonQuantity::Of(*nodal, action::exact(node, context)?)),
+            };
+        }
+        let whole = WHOLE.iter().find(|(name, _)| *name == word);
+        match (word, whole, rest) {
+            ("key", _, action) => {
+                let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
+                let key = entry.and_then(|entry| entry.keys.first());
+                let none = || Unknown::NoKey(action.into());
+                key.map(|key| LessonQuantity::Key(key)).ok_or_else(none)
+            }
+            ("right", _, "") => Ok(LessonQuantity::Right),
+            (_, Some((_, whole)), "") => Ok(LessonQuantity::Solve(*whole)),
+            (_, Some(_), _) => Err(Unknown::NotNodal(word.into())),
+            _ => Err(unknown(word)),
+        }
+    }
+
+    /// Its value, where it is a number.
+    ///
+    /// # Errors
+    /// A message where it is none, or where it is not known.
+    pub fn number(&self, look: &Look) -> Result<f64, Unknown> {
+        match self {
+            LessonQuantity::Of(nodal, slave) => {
+                let record = look.record(*slave)?;
+                match nodal {
+                    Nodal::Gap => Ok(record.gap),
+                    Nodal::Fn => Ok(record.f_n),
+                    Nodal::Ft => Ok(record.f_t),
+                    Nodal::TMax => Ok(record.t_max),
+                    Nodal::Slip => Ok(record.slip),
+                    Nodal::Mode | Nodal::Next | Nodal::Reason => Err(Unknown::NoNumber),
+                }
+            }
+            LessonQuantity::Solve(whole) => whole_number(*whole, look),
+            LessonQuantity::Right | LessonQuantity::Key(_) => Err(Unknown::NoNumber),
+        }
+    }
+
+    /// Whether it is a number at all.
+    pub fn is_number(&self) -> bool {
+        match self {
+            LessonQuantity::Of(nodal, _) => {
+                !matches!(nodal, Nodal::Mode | Nodal::Next | Nodal::Reason)
+            }
+            LessonQuantity::Solve(_) => true,
+            LessonQuantity::Right | LessonQuantity::Key(_) => false,
+        }
+    }
+
+    /// As it stands in a text; `right` is what stands for the right answer.
+    fn text(&self, look: &Look, right: &str) -> Result<String, Unknown> {
+        match self {
+            LessonQuantity::Right => Ok(right.into()),
+            LessonQuantity::Key(key) => Ok((*key).into()),
+            LessonQuantity::Of(Nodal::Mode, slave) => Ok(names::mode(look.before(*slave)).into()),
+            LessonQuantity::Of(Nodal::Next, slave) => Ok(names::mode(look.next(*slave)).into()),
+            LessonQuantity::Of(Nodal::Reason, slave) => {
+                let record = look.record(*slave)?;
+                Ok(report::reason(&record.decision, record.t_max != 0.0))
+            }
+            LessonQuantity::Of(nodal, _) => {
+                let size = match nodal {
+                    Nodal::Gap | Nodal::Slip => look.model.length,
+                    _ => look.event()?.before.scale,
+                };
+                let value = self.number(look)?;
+                // What only rounding keeps from zero would puzzle a reader.
+                let zero = value.abs() <= ROUNDING * size;
+                Ok(four(if zero { 0.0 } else { value }))
+            }
+            LessonQuantity::Solve(_) => self.number(look).map(four),
+        }
+    }
+}
+
+fn whole_number(whole: Whole, look: &Look) -> Result<f64, Unknown> {
+    let controls = &look.frame.state.controls;
+    let friction = || controls.friction.first().ok_or(Unknown::NoSlaves);
+    Ok(match whole {
+        Whole::Load => match &look.frame.event {
+            Some(event) => event.load_factor,
+            None => look.frame.state.load_factor,
+        },
+        Whole::Increment => controls.increment,
+        Whole::Angle => friction()?.angle,
+        Whole::Tan => friction()?.coefficient(),
+        Whole::Cohesion => friction()?.cohesion,
+        Whole::Answers => look.answers()? as f64,
+        Whole::Minors => f64::from(look.end()?.minors),
+        Whole::Period => match look.end()?.cycle {
+            Some(cycle) => f64::from(cycle.period),
+            None => return Err(Unknown::NoCycle),
+        },
+    })
+}
+
+fn unknown(word: &str) -> Unknown {
+    let nodal = NODAL.iter().map(|(name, _)| *name);
+    let whole = WHOLE.iter().map(|(name, _)| *name);
+    Unknown::NoQuantity {
+        word: word.into(),
+        known: nodal.chain(whole).chain(["right", "key"]).collect(),
+    }
+}
+
+/// A text with quantities in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Template(Vec<Piece>);
+
+#[derive(Debug, Clone, PartialEq)]
+enum Piece {
+    Words(String),
+    Value(LessonQuantity),
+}
+
+impl Template {
+    /// Reads a text; what stands between braces is a quantity. Line breaks become blanks, since the screen wraps.
+    ///
+    /// # Errors
+    /// A message about the first quantity that there is not.
+    pub fn read(text: &str, context: &Context) -> Result<Template, Unknown> {
+        let mut pieces = Vec::new();
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let text = words.join(" ");
+        let mut rest = text.as_str();
+        while let Some((words, after)) = rest.split_once('{') {
+            let (name, after) = after.split_once('}').ok_or(Unknown::Brace)?;
+            pieces.push(Piece::Words(words.into()));
+            pieces.push(Piece::Value(LessonQuantity::read(name.trim(), context)?));
+            rest = after;
+        }
+        pieces.push(Piece::Words(rest.into()));
+        Ok(Template(pieces))
+    }
+
+    /// The text with its values.
+    ///
+    /// # Errors
+    /// A message where one of them is not known.
+    pub fn fill(&self, look: &Look, right: &str) -> Result<String, Unknown> {
+        let piece = |piece: &Piece| match piece {
+            Piece::Words(words) => Ok(words.clone()),
+            Piece::Value(quantity) => quantity.text(look, right),
+        };
+        self.0.iter().map(piece).collect()
+    }
+}

@@ -1,0 +1,111 @@
+//! Lessons and free mode: what may be done, what is hidden, and what is answered.
+
+use crate::action::{Action, Whose};
+use crate::teach::refusal::NotNow;
+use crate::teach::{Guess, Tutor};
+use crate::tui::app::App;
+use crate::tui::view::View;
+
+impl App {
+    /// On with the lesson.
+    pub(super) fn go_on(&mut self, view: Option<&View>) {
+        let (Some(tutor), Some(view)) = (&mut self.lesson, view) else {
+            return self.complain("no lesson is being taken; L begins one");
+        };
+        match tutor.on(view.cursor, view.frame()) {
+            Ok(()) => self.say(""),
+            Err(message) => self.complain(message),
+        }
+    }
+
+    /// Answers the lesson's question, or predicts.
+    pub(super) fn answer(&mut self, word: &str, view: Option<&View>) {
+        let Some(view) = view else {
+            return self.complain("open a scene first");
+        };
+        let (cursor, frame, selected) = (view.cursor, view.frame(), self.selected);
+        let told = match (&mut self.lesson, &mut self.guess) {
+            (_, Some(guess)) => guess
+                .predict(view.model, cursor, frame, selected, word)
+                .map(|(_, text)| text),
+            (Some(tutor), None) => tutor
+                .answer(word, selected, cursor, frame)
+                .map(|()| String::new()),
+            (None, None) => {
+                return self.complain("nothing is asked; p hides decisions until you predict them");
+            }
+        };
+        match told {
+            Ok(text) => self.say(text),
+            Err(message) => self.complain(message),
+        }
+    }
+
+    /// Switches free mode.
+    pub(super) fn predict(&mut self, whose: Option<Whose>, view: Option<&View>) {
+        let Some(view) = view else {
+            return self.complain("open a scene first");
+        };
+        if self
+            .lesson
+            .as_ref()
+            .is_some_and(|tutor| tutor.step().is_some())
+        {
+            return self.complain("the lesson asks by itself");
+        }
+        let toggled = match self.guess {
+            Some(_) => Whose::Off,
+            None => Whose::Selected,
+        };
+        match (whose.unwrap_or(toggled), &self.guess) {
+            (Whose::Off, Some(guess)) => {
+                let told = format!("predicted: {} right, {} wrong", guess.right, guess.wrong);
+                self.guess = None;
+                self.say(told);
+            }
+            (Whose::Off, None) => self.complain("decisions are not hidden"),
+            (whose, _) => {
+                self.guess = Some(Guess::new(whose, view.cursor));
+                self.say("decisions hide until you predict them: step, then a and f, s or x");
+            }
+        }
+    }
+
+    /// Whether the lesson, or free mode, lets an action be done; true where the lesson wants it.
+    pub(super) fn permits(&mut self, action: &Action, view: Option<&View>) -> Result<bool, NotNow> {
+        let Some(view) = view else { return Ok(false) };
+        match (&mut self.lesson, &mut self.guess) {
+            (Some(tutor), None) => tutor.permits(action, view.cursor, view.frame()),
+            (_, Some(guess)) => {
+                guess.permits(action, view.cursor, view.frame())?;
+                Ok(false)
+            }
+            (None, None) => Ok(false),
+        }
+    }
+
+    /// Free mode, of the lesson or outside.
+    pub fn guessing(&self) -> Option<&Guess> {
+        let lesson = self.lesson.as_ref().and_then(Tutor::guess);
+        lesson.or(self.guess.as_ref())
+    }
+
+    /// Whether any decision of the shown frame must not be seen yet.
+    pub fn hides_any(&self, view: &View) -> bool {
+        let frame = view.frame();
+        view.event().is_some()
+            && (self.lesson.as_ref().is_some_and(Tutor::hides)
+                || self
+                    .guessing()
+                    .is_some_and(|guess| guess.is_open(view.cursor, frame)))
+    }
+
+    /// Whether the decision on this slave node must not be seen yet.
+    pub fn hides(&self, view: &View, slave: usize) -> bool {
+        view.record(slave).is_some()
+            && (self.lesson.as_ref().is_some_and(Tutor::hides)
+                || self
+                    .guessing()
+                    .is_some_and(|guess| guess.hides(view.cursor, view.frame(), slave)))
+    }
+}

@@ -1,0 +1,208 @@
+//! Panes and what is selected in them: the focus, steps inside a pane, and what is taken from a list.
+
+use crate::action::{Page, Step};
+use crate::history::verdicts::{self, summaries};
+use crate::record::command::{Command, To};
+use crate::tui::app::{App, Effect, PAGE};
+use crate::tui::layout::Pane;
+use crate::tui::view::View;
+
+impl App {
+    pub(super) fn turn(&mut self, places: usize) {
+        self.look_at(self.focus.turn(places));
+    }
+
+    /// Gives a pane the focus, and a place on the screen.
+    pub(super) fn look_at(&mut self, pane: Pane) {
+        self.focus = pane;
+        if pane != Pane::Nodes {
+            self.page = pane;
+        }
+        if pane.takes_turns() {
+            self.chart = pane;
+        }
+    }
+
+    /// Shows a monitor's curve, or the next one's.
+    pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
+        let monitors = view.map_or(&[][..], |view| &view.model.monitors);
+        let next = (self.monitor + 1) % monitors.len().max(1);
+        self.monitor = monitor.unwrap_or(next);
+        match monitors.get(self.monitor) {
+            Some(monitor) => self.say(format!("load over {}", monitor.name)),
+            None => self.complain("this scene has no monitors"),
+        }
+    }
+
+    /// Gives a pane the whole screen, or takes it back.
+    pub(super) fn show(&mut self, pane: Pane) {
+        self.zoomed = !(self.zoomed && self.focus == pane);
+        self.look_at(pane);
+    }
+
+    /// Shows a page of its own key; one that has nothing to show yet asks for it.
+    pub(super) fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
+        self.show(match page {
+            Page::Timeline => Pane::Timeline,
+            Page::Diagnosis => Pane::Diagnosis,
+            Page::Branches => Pane::Branches,
+            Page::Remedies => Pane::Remedies,
+        });
+        let view = view?;
+        match page {
+            Page::Diagnosis if view.examination().is_none() => {
+                (self.answer, self.scroll) = (0, 0);
+                self.submit(Command::Census(Vec::new()), Some(view))
+            }
+            Page::Branches => {
+                let all = summaries(view.tree?);
+                let order = verdicts::order(&all);
+                let current = order.iter().position(|&(branch, _)| all[branch].is_current);
+                self.branch = current.unwrap_or(0);
+                None
+            }
+            Page::Remedies => {
+                let background = view.background?;
+                let here = (view.tree?.current(), view.cursor);
+                let known = background.tried().is_some_and(|tried| tried.place == here);
+                if known || background.is_trying() || !self.zoomed {
+                    return None;
+                }
+                self.remedy = 0;
+                self.submit(Command::Remedies, Some(view))
+            }
+            _ => None,
+        }
+    }
+
+    /// Goes to the tip of the selected branch.
+    pub(super) fn go_to_branch(&mut self, view: Option<&View>) -> Option<Effect> {
+        let all = summaries(view?.tree?);
+        let (branch, _) = *verdicts::order(&all).get(self.branch)?;
+        let to = To::Named(format!("b{}", branch + 1));
+        self.submit(Command::Branch(to), view)
+    }
+
+    /// Starts from a consistent state of the census.
+    pub(super) fn start_from(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
+        let found = view?.examination().flatten();
+        match found.and_then(|found| found.starts(number)) {
+            Some(starts) => return self.submit(Command::Assume(starts), view),
+            None if found.is_none() => {
+                self.complain(
+                    "which states are consistent is not known here yet; :census finds out",
+                );
+            }
+            None => self.complain(format!("there is no consistent state {}", number + 1)),
+        }
+        None
+    }
+
+    /// Takes a remedy of the list, where it was tried.
+    pub(super) fn apply(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
+        let (background, here) = (view?.background?, (view?.tree?.current(), view?.cursor));
+        let Some(tried) = background.tried().filter(|tried| !tried.trials.is_empty()) else {
+            self.complain("no remedy is tried yet; r tries them all");
+            return None;
+        };
+        let Some(trial) = tried.trials.get(number) else {
+            self.complain(format!("there is no remedy {}", number + 1));
+            return None;
+        };
+        if background.is_trying() || tried.place != here {
+            let (branch, step) = tried.place;
+            self.complain(match background.is_trying() {
+                true => "remedies are still being tried; Ctrl-C stops that".into(),
+                false => format!(
+                    "these were tried from step {step} of b{}; go there, or r twice tries them from here",
+                    branch + 1
+                ),
+            });
+            return None;
+        }
+        self.zoomed = false;
+        let (label, steps) = (trial.label.clone(), trial.steps.clone());
+        self.submit(Command::Follow { label, steps }, view)
+    }
+
+    pub(super) fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {
+        if self.focus == Pane::Timeline
+            && let Some(to) = view.and_then(|view| along(step, count, view))
+        {
+            return self.submit(Command::Goto { step: to }, view);
+        }
+        let tried = view.and_then(|view| view.background?.tried());
+        let answers =
+            view.and_then(|view| Some(view.examination()??.census.as_ref()?.answers.len()));
+        let list = match self.focus {
+            Pane::Branches => {
+                let count = view.and_then(|view| Some(view.tree?.branches().len()));
+                Some((&mut self.branch, count))
+            }
+            Pane::Remedies => Some((&mut self.remedy, tried.map(|tried| tried.trials.len()))),
+            Pane::Diagnosis if matches!(step, Step::PageUp | Step::PageDown) => {
+                Some((&mut self.scroll, Some(usize::MAX)))
+            }
+            Pane::Diagnosis => Some((&mut self.answer, answers)),
+            _ => None,
+        };
+        if let Some((at, length)) = list {
+            let last = length.unwrap_or(0).saturating_sub(1);
+            *at = moved(*at, step, count, last);
+            return None;
+        }
+        let order = view.map_or(Vec::new(), |view| self.order(view));
+        let last = order.len().saturating_sub(1);
+        let here = order.iter().position(|slave| *slave == self.selected);
+        let row = |row: usize| order.get(row).copied().unwrap_or(0);
+        let to = |by: isize| {
+            let to = here
+                .unwrap_or(0)
+                .saturating_add_signed(by.saturating_mul(count));
+            row(to.min(last))
+        };
+        match (self.focus, step) {
+            (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
+            (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
+            (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),
+            (Pane::Shape, Step::Down) => self.camera = self.camera.panned(0.0, -1.0),
+            (_, Step::Up) => self.selected = to(-1),
+            (_, Step::Down) => self.selected = to(1),
+            (_, Step::PageUp) => self.selected = to(-PAGE),
+            (_, Step::PageDown) => self.selected = to(PAGE),
+            (_, Step::First) => self.selected = row(0),
+            (_, Step::Last) => self.selected = row(last),
+            (_, Step::Left | Step::Right) => {}
+        }
+        None
+    }
+}
+
+/// Where a step in a list of so many entries leads.
+fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
+    let by = match step {
+        Step::Up => -count,
+        Step::Down => count,
+        Step::PageUp => -PAGE,
+        Step::PageDown => PAGE,
+        Step::First => return 0,
+        Step::Last => return last,
+        Step::Left | Step::Right => 0,
+    };
+    at.saturating_add_signed(by).min(last)
+}
+
+/// Where a step along the timeline leads; none where it is no such step.
+fn along(step: Step, count: isize, view: &View) -> Option<usize> {
+    let last = view.frames.len().saturating_sub(1);
+    let by = match step {
+        Step::Left => -count,
+        Step::Right => count,
+        Step::PageUp => -PAGE,
+        Step::PageDown => PAGE,
+        Step::First => return Some(0),
+        Step::Last => return Some(last),
+        Step::Up | Step::Down => return None,
+    };
+    Some(view.cursor.saturating_add_signed(by).min(last))
+}

@@ -1,0 +1,73 @@
+//! Which slave nodes the table shows, and in which order.
+
+use crate::action::{Filter, Sort};
+use crate::contact::table2::{Rule, Tested};
+use crate::model::Mode;
+use crate::tui::app::App;
+use crate::tui::view::View;
+
+impl App {
+    /// The slave nodes that the table shows, in its order. The selected one is always among them.
+    pub fn order(&self, view: &View) -> Vec<usize> {
+        let count = view.model.contacts.len();
+        let selected = self.selected.min(count.saturating_sub(1));
+        let next = |slave: usize| match self.hides(view, slave) {
+            true => view.mode_before(slave),
+            false => view.mode(slave),
+        };
+        let wanted = |slave: usize| match self.filter {
+            Filter::All => true,
+            Filter::Active => next(slave) != Mode::Free || view.mode_before(slave) != next(slave),
+            Filter::Surface => surface(slave, view) == surface(selected, view),
+        };
+        let mut order: Vec<usize> = (0..count)
+            .filter(|&slave| slave == selected || wanted(slave))
+            .collect();
+        let key = |slave: usize| match self.sort {
+            Sort::Scene => Some(slave as f64),
+            Sort::Margin => margin(slave, view),
+            Sort::Gap => gap(slave, view),
+        };
+        // Nodes that have no such number are last whichever way the others are sorted.
+        let mut keyed: Vec<(Option<f64>, usize)> =
+            order.drain(..).map(|slave| (key(slave), slave)).collect();
+        keyed.sort_by(|(a, _), (b, _)| match (a, b) {
+            (Some(a), Some(b)) if self.backward => b.total_cmp(a),
+            (Some(a), Some(b)) => a.total_cmp(b),
+            _ => b.is_some().cmp(&a.is_some()),
+        });
+        order.extend(keyed.into_iter().map(|(_, slave)| slave));
+        order
+    }
+}
+
+/// The surface that a node is on, or the first that it may touch.
+fn surface(slave: usize, view: &View) -> Option<usize> {
+    let spot = view.frame().state.nodes.get(slave)?.spot;
+    let first = || view.model.contacts[slave].surfaces.first().copied();
+    spot.map(|spot| spot.surface).or_else(first)
+}
+
+/// How close a node is to switching: the least of its margins, forces over the scene's force and lengths over its
+/// length.
+fn margin(slave: usize, view: &View) -> Option<f64> {
+    let (event, record) = (view.event()?, view.record(slave)?);
+    let tests = record.decision.tests.iter().flatten();
+    let size = |tested| match tested {
+        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
+            event.before.scale
+        }
+        Tested::Slip | Tested::Gap => view.model.length,
+        Tested::Cover => 1.0,
+    };
+    tests
+        .map(|test| (test.margin / size(test.tested)).abs())
+        .filter(|margin| !margin.is_nan())
+        .min_by(f64::total_cmp)
+}
+
+fn gap(slave: usize, view: &View) -> Option<f64> {
+    let record = view.record(slave)?;
+    let known = record.decision.rule != Rule::OffSurface && !record.gap.is_nan();
+    known.then_some(record.gap)
+}

@@ -1,0 +1,201 @@
+//! The branches as a tree, each with its end and its cost, and the selected one beside the current one.
+
+use crate::explain::number;
+use crate::history::compare::{self, Sameness, Side};
+use crate::history::tree::Tree;
+use crate::history::verdicts::{Summary, Verdict};
+use crate::history::{branches, verdicts};
+use crate::tui::app::App;
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::theme;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::{Line, Span};
+
+/// Width of one side of the comparison.
+const SIDE: usize = 32;
+const NAME: usize = 12;
+
+/// Draws the tree and the comparison.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let focused = app.focus == Pane::Branches;
+    let Some(tree) = view.tree else {
+        paint::frame(buffer, area, "Branches", focused, theme);
+        return;
+    };
+    let all = verdicts::summaries(tree);
+    let at = app.branch.min(all.len().saturating_sub(1));
+    let title = format!("Branches  {}/{}", at + 1, all.len());
+    let inner = paint::frame(buffer, area, &title, focused, theme);
+    let order = verdicts::order(&all);
+    let width = usize::from(inner.width);
+    let compared = comparison(tree, &all, order.get(at).map_or(0, |o| o.0), app, view);
+    let room = usize::from(inner.height);
+    let rows = order.len().min(room.saturating_sub(compared.len()).max(3));
+    let top = at
+        .saturating_sub(rows / 2)
+        .min(order.len().saturating_sub(rows));
+    let mut lines: Vec<Line> = order
+        .iter()
+        .enumerate()
+        .skip(top)
+        .take(rows)
+        .map(|(row, &(number, depth))| line(tree, &all[number], depth, row == at, width, app))
+        .collect();
+    if all.len() == 1 {
+        let text = " An intervention before the tip starts another branch; nothing done is lost.";
+        lines.push(Line::styled(text, theme.faint));
+    }
+    lines.extend(compared);
+    paint::lines(buffer, inner, &lines);
+}
+
+fn line<'a>(
+    tree: &Tree,
+    branch: &Summary,
+    depth: usize,
+    selected: bool,
+    width: usize,
+    app: &App,
+) -> Line<'a> {
+    let theme = &app.theme;
+    let twig = match depth {
+        0 => String::new(),
+        depth => format!("{}└ ", "  ".repeat(depth - 1)),
+    };
+    let current = if branch.is_current { "●" } else { " " };
+    let (glyph, style) = glyph(&branch.verdict, app);
+    let verdict = verdicts::describe(tree, &branch.verdict);
+    let cost = format!(
+        "  load {}  {} minors, {} majors",
+        number::plain(branch.load_factor),
+        branch.whole.minors,
+        branch.whole.majors
+    );
+    let room = width.saturating_sub(cost.len() + 4);
+    let name = paint::cut(&format!("{twig}{}", branch.name), room * 3 / 5);
+    let pad = (room * 3 / 5).saturating_sub(name.chars().count());
+    let verdict = paint::cut(&verdict, (room - room * 3 / 5).saturating_sub(3));
+    let verdict_pad = (room - room * 3 / 5).saturating_sub(3 + verdict.chars().count());
+    Line::from(vec![
+        Span::styled(if selected { "▸" } else { " " }, theme.focus),
+        Span::styled(current.to_string(), theme.strong),
+        Span::raw(" "),
+        Span::styled(name, if selected { theme.selected } else { theme.text }),
+        Span::raw(" ".repeat(pad + 1)),
+        Span::styled(format!("{glyph} {verdict}"), style),
+        Span::raw(" ".repeat(verdict_pad)),
+        Span::styled(cost, theme.faint),
+    ])
+}
+
+fn glyph(verdict: &Verdict, app: &App) -> (&'static str, Style) {
+    let theme = &app.theme;
+    match verdict {
+        Verdict::Running => ("▸", theme.text),
+        Verdict::Accepted | Verdict::Same { .. } => ("✓", theme.good),
+        Verdict::Other { .. } => ("≠", theme.warning),
+        Verdict::Cycle | Verdict::SameCycle { .. } => ("↺", theme.bad),
+        Verdict::Diverged | Verdict::Failed => ("✗", theme.bad),
+    }
+}
+
+/// The selected branch beside the current one.
+fn comparison(
+    tree: &Tree,
+    all: &[Summary],
+    selected: usize,
+    app: &App,
+    view: &View,
+) -> Vec<Line<'static>> {
+    let theme = &app.theme;
+    let current = tree.current();
+    if all.len() < 2 {
+        return Vec::new();
+    }
+    if selected == current {
+        let text = " Select another branch to see it beside this one; Enter goes to it.";
+        return vec![Line::default(), Line::styled(text, theme.faint)];
+    }
+    let Some(found) = compare::compare(tree, selected, current) else {
+        return Vec::new();
+    };
+    let (sides, place) = match &found.common {
+        Some(common) => (
+            common,
+            format!("at load {}", number::plain(common[0].load_factor)),
+        ),
+        None => (&found.tips, "at their tips".into()),
+    };
+    let verdict = match (&found.common, found.sameness) {
+        (None, _) => "no place in common since they parted",
+        (_, Some(Sameness::Same)) => "the same state",
+        (_, Some(Sameness::Different)) => "different states",
+        (_, None) => "one is not kept; go there first",
+    };
+    let head = |side: &Side| {
+        let name = paint::cut(&branches::name(tree, side.branch), SIDE - 2);
+        Span::styled(format!("{name:<SIDE$}"), theme.heading)
+    };
+    let mut lines = vec![
+        Line::default(),
+        Line::styled(
+            format!(" Beside the current one, {place}: {verdict}"),
+            theme.strong,
+        ),
+        Line::from(vec![
+            Span::raw(" ".repeat(NAME + 2)),
+            head(&sides[0]),
+            head(&sides[1]),
+        ]),
+    ];
+    let row = |name: &str, style: Style, cells: [String; 2]| {
+        let name = format!(" {:<NAME$} ", paint::cut(name, NAME));
+        let [a, b] = cells.map(|cell| Span::raw(format!("{cell:<SIDE$}")));
+        Line::from(vec![Span::styled(name, style), a, b])
+    };
+    let of = |value: &dyn Fn(&Side) -> String| [value(&sides[0]), value(&sides[1])];
+    lines.push(row(
+        "cost",
+        theme.faint,
+        of(&|side| {
+            format!(
+                "{} minors, {} majors, {:.1} ms",
+                side.cost.minors,
+                side.cost.majors,
+                side.cost.seconds * 1e3
+            )
+        }),
+    ));
+    lines.push(row(
+        "residual",
+        theme.faint,
+        of(&|side| format!("{:.1e}", side.residual)),
+    ));
+    for slave in 0..view.model.contacts.len() {
+        let [a, b] = [&sides[0].nodes[slave], &sides[1].nodes[slave]];
+        let style = if a.next == b.next {
+            theme.text
+        } else {
+            theme.strong
+        };
+        let cell = |node: &compare::NodeSide| {
+            let numbers = match node.forces {
+                Some([f_n, f_t]) => number::cell(f_n, 12) + &number::cell(f_t, 12),
+                None => String::new(),
+            };
+            format!("{:<8}{numbers}", theme::word(node.next))
+        };
+        let name = format!(
+            "{}{}",
+            if a.next == b.next { "" } else { "*" },
+            view.slave(slave)
+        );
+        lines.push(row(&name, style, [cell(a), cell(b)]));
+    }
+    lines
+}

@@ -1,0 +1,156 @@
+//! The load factor over a monitor, at the end of every accepted increment up to the shown frame.
+
+use crate::explain::number;
+use crate::explain::number::{plain, short};
+use crate::history::frame;
+use crate::tui::app::App;
+use crate::tui::canvas::Canvas;
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::theme::Theme;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::Widget;
+
+/// Width of the labels at the axis, the axis included.
+const LABELS: u16 = 9;
+
+/// Draws the curve.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let monitors = &view.model.monitors;
+    let at = app.monitor.min(monitors.len().saturating_sub(1));
+    let title = match monitors.get(at) {
+        Some(monitor) if monitors.len() > 1 => {
+            format!("Load over {}  {}/{}", monitor.name, at + 1, monitors.len())
+        }
+        Some(monitor) => format!("Load over {}", monitor.name),
+        None => "Load".into(),
+    };
+    let title = paint::cut(&title, (area.width as usize).saturating_sub(4));
+    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Curve, theme);
+    let say = |buffer: &mut Buffer, text: &'static str| {
+        paint::lines(buffer, inner, &[Line::styled(text, theme.faint)]);
+    };
+    if monitors.is_empty() {
+        return say(buffer, " This scene has no monitors.");
+    }
+    let points = frame::curve(&view.frames[..=view.cursor], at);
+    let Some([value, load]) = points.last() else {
+        return say(buffer, " No increment is done yet.");
+    };
+    let caption = Line::from(vec![
+        Span::styled(" ● ", theme.strong),
+        Span::raw(short(*value)),
+        Span::styled("  at load ", theme.faint),
+        Span::raw(plain(*load)),
+    ]);
+    paint::lines(buffer, inner, &[caption]);
+    // A row for the caption above, a row for the numbers below.
+    if inner.height >= 5 && inner.width > LABELS + 8 {
+        let plot = Rect {
+            y: inner.y + 1,
+            height: inner.height - 1,
+            ..inner
+        };
+        // Going back leaves the scales as they are.
+        let known = frame::curve(view.frames, at);
+        chart(buffer, plot, &points, &known, theme);
+    }
+}
+
+/// The span of one coordinate, with zero in it; never empty, and small enough to subtract.
+fn span(points: &[[f64; 2]], axis: usize) -> [f64; 2] {
+    const MOST: f64 = 1e300;
+    let values = || {
+        let values = points.iter().map(|point| point[axis]);
+        values.filter(|x| x.abs() < MOST)
+    };
+    let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
+    match high - low {
+        size if size > 1e-300 => [low, high],
+        _ => [0.0, 1.0],
+    }
+}
+
+fn chart(buffer: &mut Buffer, area: Rect, points: &[[f64; 2]], known: &[[f64; 2]], theme: &Theme) {
+    let field = Rect {
+        x: area.x + LABELS,
+        width: area.width - LABELS - 1,
+        height: area.height - 1,
+        ..area
+    };
+    let (x, y) = (span(known, 0), span(known, 1));
+    let mut canvas = Canvas::new(field);
+    let [width, height] = canvas.size();
+    let part = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
+    let dot = |[value, load]: [f64; 2]| {
+        [
+            0.5 + part(value, x) * (width - 1.0),
+            height - 0.5 - part(load, y) * (height - 1.0),
+        ]
+    };
+    if x[0] < 0.0 && x[1] > 0.0 {
+        canvas.line(dot([0.0, y[0]]), dot([0.0, y[1]]), theme.faint);
+    }
+    if y[0] < 0.0 && y[1] > 0.0 {
+        canvas.line(dot([x[0], 0.0]), dot([x[1], 0.0]), theme.faint);
+    }
+    let dots: Vec<_> = points.iter().map(|point| dot(*point)).collect();
+    canvas.polyline(&dots, theme.text);
+    for dot in &dots {
+        canvas.dot(*dot, theme.text);
+    }
+    canvas.render(buffer);
+    let now = dots.last().and_then(|dot| canvas.cell(*dot));
+    if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
+        cell.set_symbol("●").set_style(theme.strong);
+    }
+    axes(buffer, area, field, x, y, theme);
+}
+
+/// The two axes, each with the numbers at its ends.
+fn axes(buffer: &mut Buffer, area: Rect, field: Rect, x: [f64; 2], y: [f64; 2], theme: &Theme) {
+    let label = |value: f64| match value {
+        0.0 => "0".into(),
+        _ => format!("{value:.1e}"),
+    };
+    for row in field.rows() {
+        let text = match row.y {
+            top if top == field.y => format!("{:>7} ┤", label(y[1])),
+            low if low + 1 == field.bottom() => format!("{:>7} ┤", label(y[0])),
+            _ => format!("{:>7} │", ""),
+        };
+        let place = Rect {
+            x: area.x,
+            width: LABELS,
+            ..row
+        };
+        Line::styled(text, theme.faint).render(place, buffer);
+    }
+    let below = Rect {
+        y: field.bottom(),
+        height: 1,
+        ..field
+    };
+    let (left, right) = (number::short(x[0]), number::short(x[1]));
+    let room = (field.width as usize).saturating_sub(left.len());
+    Line::styled(format!("{left}{right:>room$}"), theme.faint).render(below, buffer);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_span_holds_zero_and_is_never_empty() {
+        assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 0), [0.0, 3.0]);
+        assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 1), [-1.0, 0.5]);
+        for odd in [0.0, f64::NAN, f64::INFINITY, -1e308, 1e-320] {
+            assert_eq!(span(&[[odd, 0.0]], 0), [0.0, 1.0], "{odd}");
+        }
+        assert_eq!(span(&[], 0), [0.0, 1.0]);
+    }
+}

@@ -1,0 +1,502 @@
+//! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
+
+use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::table2::{Decision, Rule, Test, Tested};
+use crate::explain::influence::Push;
+use crate::explain::names::{self, MODES, TABLE_2};
+use crate::explain::number::{self, long};
+use crate::explain::report;
+use crate::model::Mode;
+use crate::model::Ties;
+use crate::tui::app::App;
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::theme::{self, Theme};
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use ratatui::text::{Line, Span};
+
+/// Width of the rows' headings.
+const LABEL: usize = 9;
+/// Width that the widest cell needs.
+const CELL: usize = 15;
+/// Lines of the table without rules: headings, and a second line in all rows but the last.
+const GRID: usize = 6;
+
+/// Draws the decision.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let count = view.model.contacts.len();
+    let slave = app.selected.min(count.saturating_sub(1));
+    let title = if count == 0 {
+        "Decision".into()
+    } else {
+        format!("Decision  {}", view.slave(slave))
+    };
+    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
+    let record = view.record(slave);
+    let decision = record.map(|record| record.decision);
+    let hidden = app.hides(view, slave);
+    let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
+        tests(&record.decision, inner.width as usize, theme)
+    });
+    let words = match (hidden, &app.lesson) {
+        (false, _) => words(record, slave, view),
+        (true, Some(_)) => "The numbers are in the table above. What does Table 2 say?".into(),
+        (true, None) => "What does Table 2 say? Predict it: a, then f, s or x.".into(),
+    };
+
+    // What must be there comes first; air is added where there is room.
+    let style = if !hidden && decision.is_some_and(|d| d.changes()) {
+        theme.strong
+    } else {
+        theme.text
+    };
+    let words: Vec<Line> = paint::wrap(&words, (inner.width as usize).saturating_sub(2))
+        .into_iter()
+        .map(|line| Line::styled(format!(" {line}"), style))
+        .collect();
+    let needed = GRID + tests.len() + words.len();
+    let spare = (inner.height as usize).saturating_sub(needed);
+    let air = |enough: bool| enough.then(Line::default);
+    let crowded = (inner.width as usize) < LABEL + 6 + 3 * CELL || inner.height < 9;
+    let mut all = match decision {
+        Some(decision) if crowded && !hidden => vec![fired(&decision, theme)],
+        Some(decision) if (inner.height as usize) < GRID => choices(decision.before, theme),
+        _ => grid(
+            decision.as_ref(),
+            hidden,
+            inner.width as usize,
+            spare >= 4,
+            theme,
+        ),
+    };
+    all.extend(air(spare >= 1));
+    all.extend(tests);
+    all.extend(air(spare >= 5 || (2..4).contains(&spare)));
+    all.extend(words);
+    let pushes = if hidden {
+        Vec::new()
+    } else {
+        pushes(slave, record, view, theme)
+    };
+    let room = (inner.height as usize).saturating_sub(all.len());
+    let zoomed = room > MEASURED + pushes.len();
+    if !zoomed && room > 1 && pushes.len() > 1 {
+        all.push(Line::default());
+        let least = usize::from(room < 4);
+        all.extend(pushes.iter().skip(least).cloned());
+    }
+    if let Some(record) = record
+        && zoomed
+    {
+        all.push(Line::default());
+        all.extend(measured(record, view, theme));
+        all.push(Line::default());
+        all.extend(pushes);
+    }
+    paint::lines(buffer, inner, &all);
+}
+
+/// Who pushed the node since the minor iteration before: a heading, and the changes that did most to what was tested.
+fn pushes(
+    slave: usize,
+    record: Option<&ContactRecord>,
+    view: &View,
+    theme: &Theme,
+) -> Vec<Line<'static>> {
+    const MOST: usize = 6;
+    let heading = |text: &str| Line::styled(format!(" {text}"), theme.heading);
+    let Some(record) = record else {
+        return Vec::new();
+    };
+    let Some(found) = view.pushes(slave) else {
+        return Vec::new();
+    };
+    let Some(found) = found else {
+        return vec![heading("Who pushed it cannot be told here")];
+    };
+    let tested = tested(&record.decision);
+    let of = |push: &Push| match tested {
+        Tested::Gap => push.influence.gap,
+        Tested::NormalForce | Tested::Pressure | Tested::Cover => push.influence.f_n,
+        Tested::ShearForce | Tested::Drag => push.influence.f_t,
+        Tested::Slip => push.influence.slip,
+    };
+    let symbol = match tested {
+        Tested::Gap => "Δg",
+        Tested::NormalForce | Tested::Pressure | Tested::Cover => "ΔF_n",
+        Tested::ShearForce | Tested::Drag => "ΔF_t",
+        Tested::Slip => "Δslip",
+    };
+    let mut found: Vec<&Push> = found.iter().filter(|push| of(push) != 0.0).collect();
+    found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
+    let together: f64 = found.iter().map(|push| of(push)).sum();
+    let mut lines = vec![heading("Who pushed it since the minor iteration before")];
+    for push in found.iter().take(MOST) {
+        let text = format!(" {}: {symbol} = {}", deed(push, view), signed(of(push)));
+        lines.push(Line::styled(text, theme.text));
+    }
+    if found.len() > MOST {
+        let text = format!(
+            " all {} together: {symbol} = {}",
+            found.len(),
+            signed(together)
+        );
+        lines.push(Line::styled(text, theme.faint));
+    }
+    lines
+}
+
+/// A number with its sign, four digits.
+fn signed(value: f64) -> String {
+    match value {
+        value if value < 0.0 => number::short(value),
+        value => format!("+{}", number::short(value)),
+    }
+}
+
+/// What a node did, in words.
+fn deed(push: &Push, view: &View) -> String {
+    let name = view.slave(push.slave);
+    match push.modes {
+        [a, b] if a == b => format!("the new T_max of {name}"),
+        [_, Mode::Free] => format!("opening {name}"),
+        [Mode::Free, _] => format!("closing {name}"),
+        [_, Mode::Sliding] => format!("letting {name} slide"),
+        [_, Mode::Fixed] => format!("sticking {name}"),
+    }
+}
+
+/// The number that decided: what fired, or else what was tested first.
+fn tested(decision: &Decision) -> Tested {
+    let tests = || decision.tests.iter().flatten();
+    let fired = tests().find(|test| test.margin < 0.0);
+    fired
+        .or(tests().next())
+        .map_or(Tested::Gap, |test| test.tested)
+}
+
+/// Lines that [`measured`] takes.
+const MEASURED: usize = 13;
+
+/// All that the minor iteration found at the node, with a word on each, for the screen that has room for it.
+fn measured(record: &ContactRecord, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+    let signed = |value: f64| {
+        if value < 0.0 {
+            long(value)
+        } else {
+            format!(" {}", long(value))
+        }
+    };
+    let pair = |[x, y]: [f64; 2]| format!(" ({}, {})", long(x), long(y));
+    let place = match record.spot {
+        None => " past the ends of every surface".into(),
+        Some(spot) => {
+            let surface = view
+                .model
+                .surfaces
+                .get(spot.surface)
+                .map_or("?", |surface| &surface.name);
+            format!(
+                " {surface}, element {}, ξ = {}",
+                spot.element + 1,
+                long(spot.xi)
+            )
+        }
+    };
+    let rows = [
+        (
+            "gap",
+            signed(record.gap),
+            "negative: penetration; on the geometry that this major iteration froze",
+        ),
+        (
+            "F_n",
+            signed(record.f_n),
+            "total normal force on the slave node; compression is positive",
+        ),
+        (
+            "F_t",
+            signed(record.f_t),
+            "total tangential force, along t (n turned anticlockwise)",
+        ),
+        (
+            "T_max",
+            signed(record.t_max),
+            "what friction can carry, with its sign: |F_n| tan φ + cohesion",
+        ),
+        (
+            "T_max used",
+            signed(record.t_max_used),
+            "the one that this minor iteration was solved with",
+        ),
+        (
+            "|F_t|/T_max",
+            format!(" {}", number::ratio(record.f_t, record.t_max)),
+            "how much of the friction is used",
+        ),
+        (
+            "slip",
+            signed(record.slip),
+            "u_tS* − u_tS, as the settings count it",
+        ),
+        (
+            "drift",
+            signed(record.drift),
+            "along the surface, from the point where it stuck or where the increment found it",
+        ),
+        ("S*", place, ""),
+        ("at", pair(record.foot), ""),
+        ("normal", pair(record.normal), ""),
+    ];
+    let heading = Line::styled(" What this minor iteration found", theme.heading);
+    let row = |(name, value, meaning): (&str, String, &'static str)| {
+        Line::from(vec![
+            Span::styled(format!("   {name:<13}"), theme.key),
+            Span::raw(format!("{value:<20}")),
+            Span::styled(meaning, theme.faint),
+        ])
+    };
+    [heading]
+        .into_iter()
+        .chain(rows.into_iter().map(row))
+        .collect()
+}
+
+/// Table 2 as lines, with the row of the mode before and, unless it is hidden, the cell that fired lit.
+fn grid(
+    decision: Option<&Decision>,
+    hidden: bool,
+    width: usize,
+    ruled: bool,
+    theme: &Theme,
+) -> Vec<Line<'static>> {
+    let table = decision.map_or(TABLE_2, |decision| names::table(decision.rule));
+    let cell = width.saturating_sub(LABEL + 6) / 3;
+    let bar = Span::styled("│ ", theme.faint);
+    let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
+    for mode in MODES {
+        let text = format!("→ {}", theme::word(mode));
+        head.extend([
+            bar.clone(),
+            Span::styled(format!("{text:<cell$}"), theme.heading),
+        ]);
+    }
+    let mut lines = vec![Line::from(head)];
+    for (row, mode) in MODES.iter().enumerate() {
+        if ruled {
+            let stroke = format!("┼{}", "─".repeat(cell + 1)).repeat(3);
+            let rule: String = ("─".repeat(LABEL) + &stroke)
+                .chars()
+                .chain(std::iter::repeat('─'))
+                .take(width)
+                .collect();
+            lines.push(Line::styled(rule, theme.faint));
+        }
+        let here = decision.is_some_and(|decision| decision.before == *mode);
+        let parts: &[usize] = if *mode == Mode::Free { &[0] } else { &[0, 1] };
+        for &part in parts {
+            let label = match (part, here) {
+                (0, true) => format!("▸{}", theme::word(*mode)),
+                (0, false) => format!(" {}", theme::word(*mode)),
+                _ => String::new(),
+            };
+            let style = if here {
+                theme.mode(*mode).add_modifier(Modifier::BOLD)
+            } else {
+                theme.faint
+            };
+            let mut spans = vec![Span::styled(format!("{label:<LABEL$}"), style)];
+            for (column, next) in MODES.iter().enumerate() {
+                let (mark, style) = match cell_look(decision, *mode, *next, theme) {
+                    _ if hidden && here => (" ", theme.text),
+                    look => look,
+                };
+                let mark = if part == 0 { mark } else { " " };
+                let text = table[row][column][part];
+                // The last column takes what the division left over.
+                let cell = if column == 2 {
+                    width.saturating_sub(LABEL + 6 + 2 * cell)
+                } else {
+                    cell
+                };
+                let room = cell.saturating_sub(1);
+                spans.extend([
+                    bar.clone(),
+                    Span::styled(format!("{text:<room$.room$}{mark}"), style),
+                ]);
+            }
+            lines.push(Line::from(spans));
+        }
+    }
+    lines
+}
+
+/// The cells that can fire, one a line, where there is no room for the table and the one that did is hidden.
+fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
+    let row = MODES.iter().position(|mode| *mode == before).unwrap_or(0);
+    let cell = |(column, next): (usize, &Mode)| {
+        let [first, second] = TABLE_2[row][column];
+        let comma = if second.is_empty() { "" } else { ", " };
+        let (before, next) = (names::mode(before), names::mode(*next));
+        Line::styled(
+            format!(" {before} → {next}:  {first}{comma}{second}"),
+            theme.text,
+        )
+    };
+    MODES.iter().enumerate().map(cell).collect()
+}
+
+/// The cell that fired, alone, where there is no room for the table.
+fn fired(decision: &Decision, theme: &Theme) -> Line<'static> {
+    let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
+    let [first, second] = names::table(decision.rule)[place(decision.before)][place(decision.next)];
+    let cell = match decision.rule {
+        Rule::OffSurface | Rule::Held | Rule::Waits | Rule::Pivots | Rule::Found => String::new(),
+        _ if second.is_empty() => format!(" {first} "),
+        _ => format!(" {first}, {second} "),
+    };
+    Line::from(vec![
+        Span::styled(
+            format!(
+                " {} → {}  ",
+                theme::word(decision.before),
+                theme::word(decision.next)
+            ),
+            theme.heading,
+        ),
+        Span::styled(cell, theme.lit(decision.next)),
+    ])
+}
+
+/// Mark and style of a cell: fired, wanted by Table 2 but overruled, in the row of the mode before, or none of these.
+fn cell_look(
+    decision: Option<&Decision>,
+    before: Mode,
+    next: Mode,
+    theme: &Theme,
+) -> (&'static str, Style) {
+    let Some(decision) = decision.filter(|decision| decision.before == before) else {
+        return (" ", theme.faint);
+    };
+    match decision.rule {
+        Rule::OffSurface => (" ", theme.text),
+        Rule::Held | Rule::Waits if decision.wanted == next => {
+            ("◁", theme.text.add_modifier(Modifier::UNDERLINED))
+        }
+        Rule::Held | Rule::Waits => (" ", theme.text),
+        _ if decision.next == next => ("◀", theme.lit(next)),
+        _ => (" ", theme.text),
+    }
+}
+
+/// The inequalities with their numbers: one line each where there is room, else two.
+fn tests(decision: &Decision, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    let mut lines = Vec::new();
+    for test in decision.tests.iter().flatten() {
+        let inequality = inequality(test);
+        let (margin, style) = margin(test, theme);
+        let style_left = if test.margin < 0.0 && !test.tie {
+            theme.strong
+        } else {
+            theme.text
+        };
+        let used = inequality.chars().count() + margin.chars().count();
+        if used < width {
+            lines.push(Line::from(vec![
+                Span::styled(inequality, style_left),
+                Span::raw(" ".repeat(width - used)),
+                Span::styled(margin, style),
+            ]));
+        } else {
+            lines.push(Line::styled(inequality, style_left));
+            lines.push(Line::styled(format!("{margin:>width$}"), style));
+        }
+    }
+    lines
+}
+
+/// An inequality as it stands, with ten digits on both sides.
+fn inequality(test: &Test) -> String {
+    let sign = match test.value.partial_cmp(&test.bound) {
+        _ if test.tie && test.value != test.bound => "≈",
+        Some(std::cmp::Ordering::Less) => "<",
+        Some(std::cmp::Ordering::Greater) => ">",
+        Some(std::cmp::Ordering::Equal) => "=",
+        None => "?",
+    };
+    let (name, bound) = match test.tested {
+        Tested::NormalForce => ("F_n", "0".into()),
+        Tested::ShearForce => ("|F_t|", format!("|T_max| {}", long(test.bound))),
+        Tested::Slip => ("slip·sgn T_max", "0".into()),
+        Tested::Gap => ("g", "0".into()),
+        Tested::Pressure => ("F_n − k·g", "0".into()),
+        Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
+        Tested::Cover => ("z", "0".into()),
+    };
+    format!(" {name} {} {sign} {bound}", long(test.value))
+}
+
+/// How far the inequality is from switching, and its unit.
+fn margin(test: &Test, theme: &Theme) -> (String, Style) {
+    let unit = match test.tested {
+        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => "force",
+        Tested::Slip | Tested::Gap => "length",
+        Tested::Cover => "(relative)",
+    };
+    match test.tie {
+        true => (
+            format!("a tie, by {} {unit} ", long(test.margin)),
+            theme.warning,
+        ),
+        false => (format!("margin {} {unit} ", long(test.margin)), theme.faint),
+    }
+}
+
+/// The verdict in words.
+fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
+    if view.model.contacts.is_empty() {
+        return "This scene has no slave nodes to decide on.".into();
+    }
+    let next = view.mode(slave);
+    let Some(record) = record else {
+        return format!(
+            "Nothing is decided yet; the node starts {}.",
+            theme::word(next)
+        );
+    };
+    let decision = &record.decision;
+    let mut text = report::reason(decision, record.t_max != 0.0);
+    let frictionless = decision.rule == Rule::SlidingStays && record.t_max == 0.0;
+    if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {
+        text += match view.frame().state.controls.settings.ties {
+            Ties::Keep => " A tie keeps the mode.",
+            Ties::Printed => " An exact tie, read as the table is printed.",
+        };
+    }
+    if view.t_max_moves(slave) {
+        text += &format!(" T_max still moves: {} was used.", long(record.t_max_used));
+    }
+    if record.carried.contains(&true) {
+        text += " A support carries a part of the force.";
+    }
+    match view.frame().state.nodes[slave].forced {
+        Forced::Once(mode) if next == mode && mode != decision.next => {
+            text += &format!(
+                " You force it to {} for the next minor iteration.",
+                theme::word(mode)
+            );
+        }
+        Forced::Held(mode) if record.forced != Forced::Held(mode) => {
+            text += &format!(" You hold it {} from here on.", theme::word(mode));
+        }
+        Forced::Held(_) if decision.rule != Rule::Held => {
+            text += " You hold it, and Table 2 agrees."
+        }
+        _ => {}
+    }
+    text
+}

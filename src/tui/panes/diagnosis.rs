@@ -1,0 +1,163 @@
+//! The diagnosis: why the minor iterations cycle from the shown state, or which states are consistent; the consistent
+//! ones side by side, one of them selected, to start from.
+
+use crate::explain::examination::Examination;
+use crate::explain::number;
+use crate::interface::census::Census;
+use crate::interface::problem::NodeAnswer;
+use crate::tui::app::App;
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+
+/// Width of a consistent state's column: a letter and three numbers.
+const CELL: usize = 34;
+const NAME: usize = 12;
+
+/// Draws the diagnosis.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let focused = app.focus == Pane::Diagnosis;
+    let width = usize::from(area.width.saturating_sub(2));
+    let height = usize::from(area.height.saturating_sub(2));
+    let mut title = "Diagnosis".to_string();
+    let found = match view.examination() {
+        None => Err(
+            " Nothing is found out yet: d (or :census) looks at the problem that is solved next from here.",
+        ),
+        Some(None) => Err(" Looking …"),
+        Some(Some(found)) => Ok(found),
+    };
+    let lines = match found {
+        Err(text) => paint::wrap(text, width)
+            .into_iter()
+            .map(|line| Line::styled(line, theme.faint))
+            .collect(),
+        Ok(found) => {
+            let answers = answers(found, width, app, view);
+            let mut lines = words(found, width, app);
+            // The list to choose from must be on the screen; what is said before it scrolls.
+            let room = height.saturating_sub(answers.len());
+            let top = app.scroll.min(lines.len().saturating_sub(room));
+            if room < lines.len() {
+                let end = top + room;
+                title += &format!("  lines {} to {end} of {} (PageDown)", top + 1, lines.len());
+            }
+            lines = lines.into_iter().skip(top).take(room).collect();
+            lines.extend(answers);
+            lines
+        }
+    };
+    let inner = paint::frame(buffer, area, &title, focused, theme);
+    paint::lines(buffer, inner, &lines);
+}
+
+fn words(found: &Examination, width: usize, app: &App) -> Vec<Line<'static>> {
+    let mut lines = Vec::new();
+    for (index, text) in found.lines.iter().enumerate() {
+        let style = match index {
+            0 if found.cycles => app.theme.strong,
+            _ => app.theme.text,
+        };
+        let indent = text.len() - text.trim_start().len() + 1;
+        for (part, line) in paint::wrap(text.trim_start(), width.saturating_sub(indent + 4))
+            .into_iter()
+            .enumerate()
+        {
+            let indent = if part == 0 { indent } else { indent + 3 };
+            lines.push(Line::styled(format!("{:indent$}{line}", ""), style));
+        }
+    }
+    lines
+}
+
+/// The consistent states side by side, as many as fit, the selected one among them.
+fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Line<'static>> {
+    let theme = &app.theme;
+    let (Some(census), Some(problem)) = (&found.census, &found.problem) else {
+        return Vec::new();
+    };
+    let count = census.answers.len();
+    if count == 0 {
+        return Vec::new();
+    }
+    let at = app.answer.min(count - 1);
+    let fit = (width.saturating_sub(NAME + 2) / CELL).clamp(1, count);
+    let first = (at + 1).saturating_sub(fit);
+    let shown = first..(first + fit).min(count);
+    let mut head = vec![Span::styled(
+        format!(" {:<NAME$} ", "consistent"),
+        theme.heading,
+    )];
+    for number in shown.clone() {
+        let style = if number == at {
+            theme.selected
+        } else {
+            theme.heading
+        };
+        let mark = if number == at { "▸" } else { " " };
+        let text = format!("{mark}{} ", number + 1);
+        let rest = format!(
+            "{:<width$}",
+            " F_n       F_t       gap/slip",
+            width = CELL - 3
+        );
+        head.extend([Span::styled(text, style), Span::styled(rest, theme.faint)]);
+    }
+    let mut lines = vec![Line::default(), Line::from(head)];
+    for (place, node) in problem.nodes.iter().enumerate() {
+        let differs = differs(census, place);
+        let name = paint::cut(view.slave(node.slave), NAME);
+        let mark = if differs { "*" } else { " " };
+        let style = if differs { theme.strong } else { theme.text };
+        let mut spans = vec![Span::styled(format!("{mark}{name:<NAME$} "), style)];
+        for number in shown.clone() {
+            let answer = &census.answers[number].answer.nodes[place];
+            spans.extend(cell(answer, app));
+        }
+        lines.push(Line::from(spans));
+    }
+    let more = if count > fit {
+        format!(" {count} in all;")
+    } else {
+        String::new()
+    };
+    let text = format!(
+        "{more} Up and Down choose, Enter starts from it (:start-from {})",
+        at + 1
+    );
+    lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));
+    lines
+}
+
+/// Whether the consistent states differ at a node.
+fn differs(census: &Census, place: usize) -> bool {
+    let mut all = census
+        .answers
+        .iter()
+        .map(|found| found.answer.nodes[place].assumed);
+    let first = all.next();
+    all.any(|assumed| Some(assumed) != first)
+}
+
+fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
+    let mode = answer.assumed.mode();
+    let letter = match answer.assumed {
+        crate::interface::problem::Assumed::Plus => "S+",
+        crate::interface::problem::Assumed::Minus => "S-",
+        crate::interface::problem::Assumed::Free => "F ",
+        crate::interface::problem::Assumed::Fixed => "X ",
+    };
+    let last = match mode {
+        crate::model::Mode::Free => answer.gap,
+        _ => answer.slip,
+    };
+    let numbers = [answer.f_n, answer.f_t, last].map(|value| number::cell(value, 10));
+    [
+        Span::styled(format!(" {letter}"), app.theme.lit(mode)),
+        Span::raw(format!(" {:<width$}", numbers.concat(), width = CELL - 4)),
+    ]
+}

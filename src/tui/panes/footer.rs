@@ -1,0 +1,152 @@
+//! The last two rows: what was said last, or what is being asked; and the keys that matter now, from the table.
+
+use crate::action::{ACTIONS, Entry, Group};
+use crate::tui::app::{App, Overlay, Tone};
+use crate::tui::layout::{Pane, Places};
+use crate::tui::paint;
+use crate::tui::view::{View, context};
+use ratatui::buffer::Buffer;
+use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
+
+/// Actions that the footer never leaves out, however narrow the screen.
+const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
+
+/// Most lines that a message takes.
+const MESSAGE: usize = 3;
+
+/// Draws message and keys.
+pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
+    let message = message(app, view, places.message.width as usize);
+    paint::lines(buffer, places.message, &message);
+    paint::lines(buffer, places.footer, &[keys(app, view, places)]);
+}
+
+/// Lines that the message needs.
+pub fn message_lines(app: &App, view: Option<&View>, width: u16) -> u16 {
+    message(app, view, width as usize).len().min(MESSAGE) as u16
+}
+
+fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
+    let theme = &app.theme;
+    if let Overlay::Line(line) = &app.overlay {
+        use crate::tui::commandline::Purpose;
+        let prompt = match line.purpose {
+            Purpose::Command => ":".into(),
+            Purpose::Node => "/".into(),
+            Purpose::Answer => "your answer: ".into(),
+            Purpose::Increment => app.question(view).unwrap_or_else(|| "increment: ".into()),
+        };
+        return vec![line.line(&prompt, width, theme)];
+    }
+    if let Some(question) = app.question(view) {
+        return vec![Line::styled(format!(" {question}"), theme.key)];
+    }
+    if let Some(count) = app.count {
+        return vec![Line::styled(format!(" {count} ×"), theme.key)];
+    }
+    if let (true, "", Some(tutor)) = (app.zoomed, app.message.text.as_str(), &app.lesson) {
+        return vec![Line::styled(format!(" ▶ {}", tutor.todo()), theme.key)];
+    }
+    let style = match app.message.tone {
+        Tone::Plain => theme.text,
+        Tone::Error => theme.bad,
+    };
+    paint::wrap(&app.message.text, width.saturating_sub(2))
+        .into_iter()
+        .map(|line| Line::styled(format!(" {line}"), style))
+        .collect()
+}
+
+fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
+    let room = places.footer.width as usize;
+    match &app.overlay {
+        Overlay::None => table_keys(app, places, room),
+        Overlay::Help { .. } => listed(&[("↑↓", "scroll"), ("Esc", "back")], app),
+        Overlay::Chart(_) => listed(
+            &[
+                ("←→", "run"),
+                ("x", "cost"),
+                ("Tab", "next chart"),
+                ("Esc", "back"),
+            ],
+            app,
+        ),
+        Overlay::Chooser { .. } => {
+            let leave = if view.is_some() { "back" } else { "quit" };
+            listed(
+                &[
+                    ("↑↓", "choose"),
+                    ("Enter", "open"),
+                    (":", "a file: open PATH"),
+                    ("L", "lessons"),
+                    ("q", leave),
+                ],
+                app,
+            )
+        }
+        Overlay::Mode => listed(
+            &[("f s x", "once"), ("F S X", "hold"), ("Esc", "leave it")],
+            app,
+        ),
+        Overlay::Answer => listed(&[("Esc", "look again first")], app),
+        Overlay::Line(line) => {
+            let scenes: Vec<String> = app.offers.iter().map(|offer| offer.name.clone()).collect();
+            line.hint(&context(view, app.selected, &scenes), &app.theme)
+        }
+    }
+}
+
+fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {
+    let spans = keys.iter().flat_map(|(key, label)| hint(key, label, app));
+    Line::from(spans.collect::<Vec<_>>())
+}
+
+fn hint(key: &str, label: &str, app: &App) -> [Span<'static>; 2] {
+    [
+        Span::styled(format!(" {key}"), app.theme.key),
+        Span::styled(format!(" {label} "), app.theme.faint),
+    ]
+}
+
+/// As many of the table's labelled actions as fit, in its order; those that must be there are counted first.
+fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
+    let teaches = app.lesson.is_some() || app.guess.is_some();
+    let labelled: Vec<(&Entry, String)> = ACTIONS
+        .iter()
+        .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
+        .map(|entry| (entry, label(entry, app, places)))
+        .collect();
+    let width = |entry: &Entry, label: &str| entry.keys[0].width() + label.width() + 3;
+    let needed = |entry: &Entry| ALWAYS.contains(&entry.name) || entry.group == Group::Learn;
+    let mut left = labelled
+        .iter()
+        .filter(|(entry, _)| needed(entry))
+        .fold(room, |left, (entry, label)| {
+            left.saturating_sub(width(entry, label))
+        });
+    let mut spans = Vec::new();
+    for (entry, label) in &labelled {
+        let width = width(entry, label);
+        if !needed(entry) {
+            if width > left {
+                continue;
+            }
+            left -= width;
+        }
+        spans.extend(hint(entry.keys[0], label, app));
+    }
+    Line::from(spans)
+}
+
+/// Label of an action; where Tab turns pages, it says which page this is.
+fn label(entry: &Entry, app: &App, places: &Places) -> String {
+    if entry.name == "pane" && places.paged {
+        let page = Pane::ALL
+            .iter()
+            .position(|pane| *pane == app.focus)
+            .map_or(1, |at| at + 1);
+        return format!("page {page}/{}", Pane::ALL.len());
+    }
+    entry.label.into()
+}

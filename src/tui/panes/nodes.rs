@@ -1,0 +1,373 @@
+//! The slave-node table: what the shown minor iteration found at every slave node.
+
+use crate::action::{Filter, Sort};
+use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::table2::Tested;
+use crate::explain::number;
+use crate::tui::app::App;
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::theme;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
+
+/// How wide the columns are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Columns {
+    name: usize,
+    /// Modes as words rather than letters.
+    words: bool,
+    /// Width of each number.
+    number: usize,
+    /// Width of the ratio.
+    ratio: usize,
+    /// How many of gap, F_n, F_t, T_max, ratio and slip are shown.
+    shown: usize,
+}
+
+/// Width of the three marks: selected, changed, forced.
+const MARKS: usize = 3;
+/// Width of `sliding → sliding`.
+const WORDS: usize = 17;
+/// Width of `s→x`.
+const LETTERS: usize = 3;
+
+impl Columns {
+    /// The widest arrangement that fits: first words turn into letters, then numbers lose digits, then columns go.
+    fn fit(width: usize, name: usize) -> Self {
+        let arrangements = [
+            (true, 13, 13),
+            (true, 12, 9),
+            (true, 11, 9),
+            (false, 11, 9),
+            (false, 10, 9),
+            (false, 9, 8),
+        ];
+        let last = Columns {
+            name,
+            words: false,
+            number: 9,
+            ratio: 8,
+            shown: 6,
+        };
+        let wide = arrangements
+            .map(|(words, number, ratio)| Columns {
+                words,
+                number,
+                ratio,
+                ..last
+            })
+            .into_iter()
+            .find(|columns| columns.width() <= width);
+        wide.unwrap_or_else(|| {
+            let fewer = (0..6).rev().map(|shown| Columns { shown, ..last });
+            fewer
+                .into_iter()
+                .find(|columns| columns.width() <= width)
+                .unwrap_or(Columns { shown: 0, ..last })
+        })
+    }
+
+    fn modes(&self) -> usize {
+        if self.words { WORDS } else { LETTERS }
+    }
+
+    fn width(&self) -> usize {
+        let ratio = if self.shown > 4 { self.ratio } else { 0 };
+        let numbers = self.shown - usize::from(self.shown > 4);
+        // The last number needs no gap after it.
+        MARKS + self.name + 1 + self.modes() + 1 + numbers * self.number + ratio
+            - usize::from(self.shown > 0)
+    }
+}
+
+/// Draws the table.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let count = view.model.contacts.len();
+    let selected = app.selected.min(count.saturating_sub(1));
+    let order = app.order(view);
+    let at = order.iter().position(|slave| *slave == selected);
+    let at = at.unwrap_or(0);
+    let title = title(at, order.len(), count, app);
+    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Nodes, &app.theme);
+    if count == 0 {
+        paint::lines(
+            buffer,
+            inner,
+            &[Line::styled(
+                " This scene has no slave nodes.",
+                app.theme.faint,
+            )],
+        );
+        return;
+    }
+    let longest = (0..count)
+        .map(|slave| view.slave(slave).width())
+        .max()
+        .unwrap_or(0);
+    let columns = Columns::fit(inner.width as usize, longest.clamp(4, 20));
+    let rows = (inner.height as usize).saturating_sub(1);
+    let top = first_row(at, rows, order.len());
+    let mut lines = vec![headings(&columns, app)];
+    lines.extend(
+        order
+            .iter()
+            .skip(top)
+            .take(rows)
+            .map(|&slave| row(slave, slave == selected, &columns, app, view)),
+    );
+    paint::lines(buffer, inner, &lines);
+}
+
+/// Heading: which node of how many shown, which those are, and how they are sorted.
+fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
+    if count < 2 {
+        return "Slave nodes".into();
+    }
+    let mut title = format!("Slave nodes  {}/{shown}", at + 1);
+    title += &match app.filter {
+        Filter::All => String::new(),
+        Filter::Active => format!(" active of {count}"),
+        Filter::Surface => format!(" on this surface of {count}"),
+    };
+    title += match app.sort {
+        Sort::Scene => "",
+        Sort::Margin => "  by margin",
+        Sort::Gap => "  by gap",
+    };
+    if app.backward {
+        title += "  backward";
+    }
+    title
+}
+
+/// First row shown, such that the selection stands in the middle where it can.
+fn first_row(selected: usize, rows: usize, count: usize) -> usize {
+    selected
+        .saturating_sub(rows / 2)
+        .min(count.saturating_sub(rows))
+}
+
+fn headings(columns: &Columns, app: &App) -> Line<'static> {
+    let modes = if columns.words {
+        "mode → next"
+    } else {
+        "m→n"
+    };
+    let ratio = if columns.ratio > 11 {
+        "|F_t|/T_max"
+    } else {
+        "ratio"
+    };
+    let names = [" gap", " F_n", " F_t", " T_max", ratio, " slip"];
+    let mut text = format!(
+        "{:MARKS$}{:<name$} {:<mode$} ",
+        "",
+        "node",
+        modes,
+        name = columns.name,
+        mode = columns.modes()
+    );
+    for (index, name) in names.iter().take(columns.shown).enumerate() {
+        let width = if index == 4 {
+            columns.ratio
+        } else {
+            columns.number
+        };
+        text += &format!("{name:<width$}");
+    }
+    Line::styled(text, app.theme.heading)
+}
+
+fn row<'a>(
+    slave: usize,
+    selected: bool,
+    columns: &Columns,
+    app: &App,
+    view: &View<'a>,
+) -> Line<'a> {
+    let theme = &app.theme;
+    let record = view.record(slave);
+    let hidden = app.hides(view, slave);
+    let changed = !hidden && view.mode_before(slave) != view.mode(slave);
+    let name_style = match (selected, changed) {
+        (true, _) => theme.selected,
+        (_, true) => theme.strong,
+        _ => theme.text,
+    };
+    let mut spans = vec![
+        Span::styled(if selected { "▸" } else { " " }, theme.focus),
+        Span::styled(
+            change_mark(changed, !hidden && view.t_max_moves(slave)),
+            theme.strong,
+        ),
+        Span::styled(forced_mark(view.forced(slave)), theme.warning),
+        Span::styled(fitted(view.slave(slave), columns.name), name_style),
+        Span::raw(" "),
+    ];
+    spans.extend(modes(slave, changed, columns, app, view));
+    spans.push(Span::raw(" "));
+    if let Some(record) = record {
+        spans.extend(numbers(record, columns, app));
+    }
+    Line::from(spans)
+}
+
+/// `*` where the mode changes, `~` where T_max has not settled.
+fn change_mark(changed: bool, t_max_moves: bool) -> &'static str {
+    match (changed, t_max_moves) {
+        (true, _) => "*",
+        (_, true) => "~",
+        _ => " ",
+    }
+}
+
+/// `◆` where the user holds the mode, `◇` where it is forced once.
+fn forced_mark(forced: Forced) -> &'static str {
+    match forced {
+        Forced::Held(_) => "◆",
+        Forced::Once(_) => "◇",
+        Forced::No => " ",
+    }
+}
+
+/// Mode before and next, as words or letters, padded to the column.
+fn modes(
+    slave: usize,
+    changed: bool,
+    columns: &Columns,
+    app: &App,
+    view: &View,
+) -> Vec<Span<'static>> {
+    let spell = if columns.words {
+        theme::word
+    } else {
+        theme::letter
+    };
+    let style = |mode| match changed {
+        true => app.theme.mode(mode).add_modifier(Modifier::BOLD),
+        false => app.theme.mode(mode),
+    };
+    let (before, next) = (view.mode_before(slave), view.mode(slave));
+    let arrow = if columns.words { " → " } else { "→" };
+    let hidden = app.hides(view, slave);
+    let (first, second) = (spell(before), if hidden { "?" } else { spell(next) });
+    let next_style = if hidden {
+        app.theme.strong
+    } else {
+        style(next)
+    };
+    let used = first.len() + arrow.chars().count() + second.len();
+    let arrow_style = if changed {
+        app.theme.strong
+    } else {
+        app.theme.faint
+    };
+    vec![
+        Span::styled(first, style(before)),
+        Span::styled(arrow, arrow_style),
+        Span::styled(second, next_style),
+        Span::raw(" ".repeat(columns.modes().saturating_sub(used))),
+    ]
+}
+
+fn numbers(record: &ContactRecord, columns: &Columns, app: &App) -> Vec<Span<'static>> {
+    let cell = |value| number::cell(value, columns.number);
+    let ratio = format!(
+        "{:<width$}",
+        number::ratio(record.f_t, record.t_max),
+        width = columns.ratio
+    );
+    let texts = [
+        cell(record.gap),
+        cell(record.f_n),
+        cell(record.f_t),
+        cell(record.t_max),
+        ratio,
+        cell(record.slip),
+    ];
+    let style = |index: usize| number_style(index, record, app);
+    texts
+        .into_iter()
+        .take(columns.shown)
+        .enumerate()
+        .map(|(index, text)| Span::styled(text, style(index)))
+        .collect()
+}
+
+/// Tested numbers stand out where the test is a tie.
+fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
+    let tested = match column {
+        0 => Tested::Gap,
+        1 => Tested::NormalForce,
+        2 | 4 => Tested::ShearForce,
+        5 => Tested::Slip,
+        _ => return app.theme.text,
+    };
+    match record
+        .decision
+        .tests
+        .iter()
+        .flatten()
+        .any(|test| test.tested == tested && test.tie)
+    {
+        true => app.theme.warning,
+        false => app.theme.text,
+    }
+}
+
+/// A name cut or padded to a width; what is cut off at the end shows as `…`.
+fn fitted(name: &str, width: usize) -> String {
+    match name.chars().count() {
+        count if count <= width => format!("{name:<width$}"),
+        _ => name
+            .chars()
+            .take(width.saturating_sub(1))
+            .chain(['…'])
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eighty_columns_keep_every_number() {
+        assert_eq!(
+            Columns::fit(78, 6),
+            Columns {
+                name: 6,
+                words: false,
+                number: 11,
+                ratio: 9,
+                shown: 6
+            }
+        );
+        assert_eq!(Columns::fit(118, 8).number, 13);
+        assert_eq!(Columns::fit(20, 8).shown, 0);
+        assert_eq!(Columns::fit(0, 20).shown, 0);
+    }
+
+    #[test]
+    fn the_selection_is_always_on_the_screen() {
+        for count in [1, 5, 300] {
+            for rows in [1, 4, 10] {
+                for selected in 0..count {
+                    let top = first_row(selected, rows, count);
+                    assert!(top <= selected && selected < top + rows);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_cut_to_the_column() {
+        assert_eq!(fitted("beam.5", 8), "beam.5  ");
+        assert_eq!(fitted("a-long-name", 6), "a-lon…");
+    }
+}

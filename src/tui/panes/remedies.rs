@@ -1,0 +1,131 @@
+//! The remedies that were tried: what each costs and what it leaves; one of them selected, to be taken.
+
+use crate::explain::remedies::{self, CLEAN, COLUMNS, End, Trial};
+use crate::tui::app::App;
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::{Line, Span};
+
+/// Columns by [`COLUMNS`], the most telling first: a narrow screen shows as many as fit.
+const ORDER: [usize; 10] = [0, 1, 3, 5, 6, 7, 9, 8, 4, 2];
+/// Least width of the remedies' names.
+const NAME: usize = 26;
+
+/// Draws the list.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let focused = app.focus == Pane::Remedies;
+    let tried = view.background.and_then(|background| background.tried());
+    let Some(tried) = tried else {
+        let inner = paint::frame(buffer, area, "Remedies", focused, theme);
+        let text = " r tries every remedy from the shown state, each in a trial of its own.";
+        paint::lines(buffer, inner, &[Line::styled(text, theme.faint)]);
+        return;
+    };
+    let title = format!(
+        "Remedies  tried from step {} of b{}",
+        tried.place.1,
+        tried.place.0 + 1
+    );
+    let inner = paint::frame(buffer, area, &title, focused, theme);
+    let trying = view
+        .background
+        .is_some_and(|background| background.is_trying());
+    let count = tried.trials.len();
+    let state = match (trying, tried.all) {
+        (true, Some(all)) => format!("{count} of {all} tried; now: {}", tried.now),
+        (true, None) => "holding a census …".into(),
+        (false, _) if tried.stopped => format!("stopped after {count}"),
+        (false, _) if count == 0 => "the history is done: there is nothing to remedy".into(),
+        (false, _) => {
+            let good = tried
+                .trials
+                .iter()
+                .filter(|t| t.end == End::Converged)
+                .count();
+            format!("{good} of {count} converge; Enter takes the selected one, in a new branch")
+        }
+    };
+    let width = usize::from(inner.width);
+    let rows: Vec<[String; 10]> = tried.trials.iter().map(remedies::row).collect();
+    let shown = shown(&rows, width);
+    let names = width.saturating_sub(3 + shown.iter().map(|(_, w)| w + 2).sum::<usize>());
+    let mut head = vec![Span::raw(format!("   {:<names$}", "remedy"))];
+    head.extend(
+        shown
+            .iter()
+            .map(|&(k, w)| Span::raw(format!("  {:>w$}", COLUMNS[k]))),
+    );
+    let mut lines = vec![
+        Line::styled(
+            format!(" {state}"),
+            if trying { theme.warning } else { theme.text },
+        ),
+        Line::from(head).style(theme.heading),
+    ];
+    let at = app.remedy.min(count.saturating_sub(1));
+    let room = usize::from(inner.height).saturating_sub(lines.len());
+    let top = (at + 1).saturating_sub(room);
+    for (number, (trial, row)) in tried
+        .trials
+        .iter()
+        .zip(&rows)
+        .enumerate()
+        .skip(top)
+        .take(room)
+    {
+        let (mark, style) = mark(trial, app);
+        let selected = number == at;
+        let name = paint::cut(&format!("{} {}", number + 1, trial.label), names);
+        let mut spans = vec![
+            Span::styled(if selected { "▸" } else { " " }, theme.focus),
+            Span::styled(mark, style),
+            Span::raw(" "),
+            Span::styled(
+                name.clone(),
+                if selected { theme.selected } else { theme.text },
+            ),
+            Span::raw(" ".repeat(names.saturating_sub(name.chars().count()))),
+        ];
+        spans.extend(shown.iter().map(|&(k, w)| {
+            let style = if k == 0 { style } else { theme.text };
+            Span::styled(format!("  {:>w$}", row[k]), style)
+        }));
+        lines.push(Line::from(spans));
+    }
+    paint::lines(buffer, inner, &lines);
+}
+
+/// Which columns fit, in the order of [`COLUMNS`], and how wide they are.
+fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
+    let wide = |k: usize| {
+        let cells = rows.iter().map(|row| row[k].chars().count());
+        cells.chain([COLUMNS[k].len()]).max().unwrap_or(0)
+    };
+    let mut room = width.saturating_sub(3 + NAME);
+    let mut shown = Vec::new();
+    for k in ORDER {
+        let wide = wide(k);
+        if wide + 2 <= room {
+            room -= wide + 2;
+            shown.push((k, wide));
+        }
+    }
+    shown.sort_unstable();
+    shown
+}
+
+/// Converged and clean, converged with something left, or not.
+fn mark(trial: &Trial, app: &App) -> (&'static str, Style) {
+    let theme = &app.theme;
+    match (&trial.end, &trial.left) {
+        (End::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => ("~", theme.warning),
+        (End::Converged, _) => ("✓", theme.good),
+        (End::Against(_), _) => ("~", theme.warning),
+        _ => ("✗", theme.bad),
+    }
+}

@@ -1,0 +1,494 @@
+//! The shape: bodies as they were (faint) and as they are, with their names where there are several, master surfaces
+//! with their outward side, contact forces, and the slave nodes by the letters of their modes. Of a solid, lines
+//! between its materials are drawn, and its elements where they are large enough to be told apart. Drawn at the start
+//! of the shown major iteration.
+
+use crate::contact::projection::tangent;
+use crate::explain::number;
+use crate::fem::lagrange;
+use crate::model::{BodyKind, Solid};
+use crate::tui::app::App;
+use crate::tui::camera::Camera;
+use crate::tui::canvas::{Canvas, Dot};
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::theme;
+use crate::tui::view::View;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::Rect;
+use ratatui::style::Modifier;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::Widget;
+use std::collections::HashMap;
+use unicode_width::UnicodeWidthStr;
+
+type Point = [f64; 2];
+
+/// Straight pieces that an element's curve is drawn with.
+const PIECES: usize = 12;
+/// Length of the longest force, and of a normal, as parts of what is seen.
+const FORCE: f64 = 0.25;
+const NORMAL: f64 = 0.04;
+/// Least diagonal of an element that is drawn, in dots.
+const ELEMENT: f64 = 12.0;
+/// Dots between two normals of an element.
+const SPACING: f64 = 16.0;
+
+/// Draws the shape.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let inner = paint::frame(buffer, area, "Shape", app.focus == Pane::Shape, theme);
+    if inner.is_empty() {
+        return;
+    }
+    let field = Rect {
+        height: inner.height.saturating_sub(1).max(1),
+        ..inner
+    };
+    let mut canvas = Canvas::new(field);
+    let window = Window::new(
+        &canvas,
+        &bounds(view),
+        &app.camera,
+        selected_place(app, view),
+    );
+    bodies(&mut canvas, &window, app, view);
+    surfaces(&mut canvas, &window, app, view);
+    let longest = forces(&mut canvas, &window, app, view);
+    canvas.render(buffer);
+    names(buffer, &canvas, &window, app, view);
+    slaves(buffer, &canvas, &window, app, view);
+    if inner.height > 1 {
+        caption(buffer, inner, longest, app);
+    }
+}
+
+/// A rectangle in the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bounds {
+    low: Point,
+    high: Point,
+}
+
+impl Bounds {
+    const NOTHING: Bounds = Bounds {
+        low: [f64::INFINITY; 2],
+        high: [f64::NEG_INFINITY; 2],
+    };
+
+    fn add(&mut self, point: Point) {
+        for (axis, x) in point.into_iter().enumerate().filter(|(_, x)| x.is_finite()) {
+            self.low[axis] = self.low[axis].min(x);
+            self.high[axis] = self.high[axis].max(x);
+        }
+    }
+
+    fn size(&self) -> Point {
+        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+    }
+
+    fn diagonal(&self) -> f64 {
+        let [x, y] = self.size();
+        x.hypot(y)
+    }
+}
+
+/// What is to be seen at zoom 1: the bodies as they were and as they are, and what of the surfaces is near. Rounded
+/// to coarse steps, so that the picture does not breathe while it is stepped through.
+fn bounds(view: &View) -> Bounds {
+    let mut bodies = Bounds::NOTHING;
+    for node in view.model.bodies.iter().flat_map(|body| &body.nodes) {
+        bodies.add(view.model.nodes[*node].at);
+        bodies.add(view.place(*node));
+    }
+    if bodies.diagonal() <= 0.0 || !bodies.diagonal().is_finite() {
+        view.model.nodes.iter().for_each(|node| bodies.add(node.at));
+    }
+    let reach = 0.2 * bodies.diagonal();
+    let mut all = bodies;
+    for node in view
+        .model
+        .surfaces
+        .iter()
+        .flat_map(|surface| surface.elements.iter().flatten())
+    {
+        let at = view.place(*node);
+        let clamped =
+            |axis: usize| at[axis].clamp(bodies.low[axis] - reach, bodies.high[axis] + reach);
+        if bodies.diagonal().is_finite() {
+            all.add([clamped(0), clamped(1)]);
+        }
+    }
+    let step = all.diagonal() / 16.0;
+    if !(step > 0.0 && step.is_finite()) {
+        return Bounds {
+            low: [-1.0, -1.0],
+            high: [1.0, 1.0],
+        };
+    }
+    // A power of two is a step that itself seldom changes.
+    let step = 2f64.powf(step.log2().ceil());
+    let down = |x: f64| (x / step).floor() * step;
+    let up = |x: f64| (x / step).ceil() * step;
+    Bounds {
+        low: all.low.map(down),
+        high: all.high.map(up),
+    }
+}
+
+/// The map from the scene to the dots: equal in both directions, y upwards.
+struct Window {
+    middle: Point,
+    /// Dots per unit of length.
+    scale: f64,
+    size: [f64; 2],
+    /// Length that the shorter side of the canvas shows.
+    extent: f64,
+}
+
+impl Window {
+    /// Enlarging goes towards a place, the selected node's; all of the shape stands in the middle.
+    fn new(canvas: &Canvas, bounds: &Bounds, camera: &Camera, towards: Option<Point>) -> Self {
+        let size = canvas.size();
+        let [width, height] = bounds.size().map(|side| side.max(1e-300));
+        let whole = (size[0] / width).min(size[1] / height) * 0.94;
+        let scale = whole * camera.zoom;
+        let middle = [0, 1].map(|axis| {
+            let middle = 0.5 * (bounds.low[axis] + bounds.high[axis]);
+            let towards = towards.map_or(middle, |place| place[axis]);
+            let part = (1.0 - 1.0 / camera.zoom).max(0.0);
+            middle + part * (towards - middle) + camera.pan[axis] * size[axis] / whole
+        });
+        Window {
+            middle,
+            scale,
+            size,
+            extent: size[0].min(size[1]) / scale,
+        }
+    }
+
+    /// Whether something at a place, so many dots large, can be on the canvas.
+    fn sees(&self, place: Point, size: f64) -> bool {
+        let dot = self.dot(place);
+        (0..2).all(|axis| dot[axis] > -size && dot[axis] < self.size[axis] + size)
+    }
+
+    fn dot(&self, point: Point) -> Dot {
+        let x = 0.5 * self.size[0] + (point[0] - self.middle[0]) * self.scale;
+        let y = 0.5 * self.size[1] - (point[1] - self.middle[1]) * self.scale;
+        [x, y]
+    }
+}
+
+/// Where the selected node is, if there is one and it is anywhere.
+fn selected_place(app: &App, view: &View) -> Option<Point> {
+    let slaves = &view.model.contacts;
+    let slave = slaves.get(app.selected.min(slaves.len().saturating_sub(1)))?;
+    Some(view.place(slave.node)).filter(|place| place.iter().all(|x| x.is_finite()))
+}
+
+/// The Lagrange curve through the nodes of an element.
+fn curve(nodes: &[Point]) -> Vec<Point> {
+    if nodes.len() < 2 || nodes.len() > lagrange::MAX_NODES {
+        return nodes.to_vec();
+    }
+    let pieces = if nodes.len() == 2 { 1 } else { PIECES };
+    (0..=pieces)
+        .map(|piece| {
+            let shape = lagrange::shape(nodes.len(), -1.0 + 2.0 * piece as f64 / pieces as f64);
+            [0, 1].map(|axis| {
+                nodes
+                    .iter()
+                    .zip(shape.n)
+                    .map(|(node, n)| n * node[axis])
+                    .sum()
+            })
+        })
+        .collect()
+}
+
+fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: ratatui::style::Style) {
+    let dots: Vec<Dot> = curve(nodes)
+        .into_iter()
+        .map(|point| window.dot(point))
+        .collect();
+    canvas.polyline(&dots, style);
+}
+
+fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
+    let elements = || view.model.bodies.iter().flat_map(|body| body.kind.lines());
+    for element in elements() {
+        let reference: Vec<Point> = element
+            .iter()
+            .map(|node| view.model.nodes[*node].at)
+            .collect();
+        draw_curve(canvas, window, &reference, app.theme.faint);
+    }
+    for body in &view.model.bodies {
+        if let BodyKind::Solid(solid) = &body.kind {
+            inside(canvas, window, solid, app, view);
+        }
+    }
+    for element in elements() {
+        let now: Vec<Point> = element.iter().map(|node| view.place(*node)).collect();
+        draw_curve(canvas, window, &now, app.theme.strong);
+    }
+}
+
+/// Lines between the elements of a solid, where there is room, and between its materials.
+fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: &View) {
+    let sides = |element: &[usize; 8]| {
+        let e = *element;
+        [0, 1, 2, 3].map(|k| [e[k], e[k + 4], e[(k + 1) % 4]])
+    };
+    for element in &solid.elements {
+        let (a, b) = (view.place(element[0]), view.place(element[2]));
+        let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
+        if size >= ELEMENT && window.sees(a, size) {
+            for side in sides(element) {
+                let now = side.map(|node| view.place(node));
+                draw_curve(canvas, window, &now, app.theme.faint);
+            }
+        }
+    }
+    if solid.materials.len() < 2 {
+        return;
+    }
+    let mut other = HashMap::new();
+    for (element, material) in solid.elements.iter().zip(&solid.material_of) {
+        for side in sides(element) {
+            // Neighbours share the node in the middle of their side.
+            match other.insert(side[1], material) {
+                Some(across) if across != material => {
+                    let now = side.map(|node| view.place(node));
+                    draw_curve(canvas, window, &now, app.theme.text);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Names of the bodies, where there are several and they have room: in the middle of a solid, beside a beam.
+fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
+    if view.model.bodies.len() < 2 {
+        return;
+    }
+    let area = canvas.area();
+    // Lines that stand back, as those between elements, give way to a name; outlines and forces do not.
+    let gives_way = |cell: &Cell| cell.symbol() == " " || cell.modifier.contains(Modifier::DIM);
+    for body in &view.model.bodies {
+        let name = paint::cut(&body.name, 12);
+        let wide = name.width() as u16;
+        let (at, aside) = match &body.kind {
+            BodyKind::Solid(_) | BodyKind::Linear(_) => {
+                (mean(&body.nodes, view), -i32::from(wide / 2))
+            }
+            BodyKind::Beam(_) => (view.place(body.nodes[body.nodes.len() / 2]), 2),
+        };
+        let Some((x, y)) = canvas.cell(window.dot(at)) else {
+            continue;
+        };
+        let left = i32::from(x) + aside;
+        if left < i32::from(area.x) || left + i32::from(wide) > i32::from(area.right()) {
+            continue;
+        }
+        let left = left as u16;
+        let blank = |row: u16| {
+            (area.top()..area.bottom()).contains(&row)
+                && (left..left + wide).all(|x| gives_way(&buffer[(x, row)]))
+        };
+        let rows = [y, y.saturating_sub(1), y + 1, y.saturating_sub(2), y + 2];
+        if let Some(row) = rows.into_iter().find(|row| blank(*row)) {
+            buffer.set_string(left, row, &name, app.theme.heading);
+        }
+    }
+}
+
+/// Mean of the places of nodes.
+fn mean(nodes: &[usize], view: &View) -> Point {
+    let sum = nodes
+        .iter()
+        .map(|node| view.place(*node))
+        .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
+    sum.map(|x| x / nodes.len() as f64)
+}
+
+/// Master surfaces, with a short line from the middle of each element to its outward side.
+fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
+    let style = app.theme.text;
+    let mut walked = SPACING;
+    for element in view
+        .model
+        .surfaces
+        .iter()
+        .flat_map(|surface| &surface.elements)
+    {
+        let nodes: Vec<Point> = element.iter().map(|node| view.place(*node)).collect();
+        draw_curve(canvas, window, &nodes, style);
+        // Short elements share a normal among several of them.
+        let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
+            continue;
+        };
+        walked += (last[0] - first[0]).hypot(last[1] - first[1]) * window.scale;
+        if walked < SPACING {
+            continue;
+        }
+        walked = 0.0;
+        for (from, to) in normals(&nodes, window) {
+            canvas.line(window.dot(from), window.dot(to), style);
+        }
+    }
+}
+
+/// Normals of an element, each from its foot to its tip, about evenly spread; the outward side is on the right of
+/// the walk.
+fn normals(nodes: &[Point], window: &Window) -> Vec<(Point, Point)> {
+    let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
+        return Vec::new();
+    };
+    let dots = (last[0] - first[0]).hypot(last[1] - first[1]) * window.scale;
+    let count = (dots / SPACING).clamp(1.0, 40.0) as usize;
+    let length = NORMAL * window.extent;
+    let normal = |index: usize| {
+        let xi = -1.0 + (2 * index + 1) as f64 / count as f64;
+        let shape = lagrange::shape(nodes.len(), xi);
+        let sum = |n: &[f64], axis: usize| {
+            nodes
+                .iter()
+                .zip(n)
+                .map(|(node, n)| n * node[axis])
+                .sum::<f64>()
+        };
+        let (foot, walk) = (
+            [0, 1].map(|axis| sum(&shape.n, axis)),
+            [0, 1].map(|axis| sum(&shape.d, axis)),
+        );
+        let size = walk[0].hypot(walk[1]);
+        let tip = [
+            foot[0] + length * walk[1] / size,
+            foot[1] - length * walk[0] / size,
+        ];
+        (size > 0.0).then_some((foot, tip))
+    };
+    match nodes.len() {
+        2..=lagrange::MAX_NODES => (0..count).filter_map(normal).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Contact forces on the slave nodes as lines that end at the node; returns the largest.
+fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
+    let Some(event) = view.event() else {
+        return 0.0;
+    };
+    let size = |f_n: f64, f_t: f64| f_n.hypot(f_t);
+    let largest = event
+        .nodes
+        .iter()
+        .map(|node| size(node.f_n, node.f_t))
+        .filter(|f| f.is_finite())
+        .fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    for (slave, node) in view.model.contacts.iter().zip(&event.nodes) {
+        let (n, t) = (node.normal, tangent(node.normal));
+        let scale = FORCE * window.extent / largest;
+        let tip = view.place(slave.node);
+        let tail = [0, 1].map(|axis| tip[axis] - scale * (node.f_n * n[axis] + node.f_t * t[axis]));
+        canvas.line(
+            window.dot(tail),
+            window.dot(tip),
+            app.theme.bad.remove_modifier(Modifier::REVERSED),
+        );
+    }
+    largest
+}
+
+/// Letters of the modes at the slave nodes; the selected one is reversed and named.
+fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
+    let theme = &app.theme;
+    let selected = app
+        .selected
+        .min(view.model.contacts.len().saturating_sub(1));
+    let others = (0..view.model.contacts.len()).filter(|slave| *slave != selected);
+    for slave in others.chain([selected]) {
+        let Some(node) = view.model.contacts.get(slave).map(|slave| slave.node) else {
+            return;
+        };
+        let Some((x, y)) = canvas.cell(window.dot(view.place(node))) else {
+            continue;
+        };
+        // What is hidden until it is predicted must not be read off here.
+        let mode = match app.hides(view, slave) {
+            true => view.mode_before(slave),
+            false => view.mode(slave),
+        };
+        let style = theme.mode(mode).add_modifier(Modifier::BOLD);
+        if let Some(cell) = buffer.cell_mut((x, y)) {
+            cell.set_symbol(theme::letter(mode)).set_style(style);
+            if slave == selected {
+                cell.set_style(style.add_modifier(Modifier::REVERSED));
+            }
+        }
+    }
+}
+
+fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, app: &App) {
+    let theme = &app.theme;
+    let mut spans = vec![Span::styled(" faint: unloaded", theme.faint)];
+    if longest > 0.0 {
+        spans.push(Span::styled(
+            format!("   longest force {}", number::short(longest)),
+            theme.faint,
+        ));
+    }
+    if app.camera != Camera::ALL {
+        spans.push(Span::styled(
+            format!("   ×{:.2}  0: all of it", app.camera.zoom),
+            theme.faint,
+        ));
+    }
+    Line::from(spans).render(
+        Rect {
+            y: inner.bottom() - 1,
+            height: 1,
+            ..inner
+        },
+        buffer,
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scale_is_equal_in_both_directions_and_y_points_up() {
+        let canvas = Canvas::new(Rect::new(0, 0, 50, 10));
+        let bounds = Bounds {
+            low: [0.0, 0.0],
+            high: [1.0, 1.0],
+        };
+        let window = Window::new(&canvas, &bounds, &Camera::ALL, None);
+        let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|p| window.dot(p));
+        assert!((b[0] - a[0] - (a[1] - c[1])).abs() < 1e-9);
+        assert!(c[1] < a[1]);
+    }
+
+    #[test]
+    fn the_normal_is_on_the_right_of_the_walk() {
+        let window = Window {
+            middle: [0.0; 2],
+            scale: 1.0,
+            size: [1.0; 2],
+            extent: 0.5 / NORMAL,
+        };
+        assert_eq!(
+            normals(&[[0.0, 0.0], [-2.0, 0.0]], &window),
+            [([-1.0, 0.0], [-1.0, 0.5])]
+        );
+        assert!(normals(&[[0.0, 0.0], [0.0, 0.0]], &window).is_empty());
+    }
+}

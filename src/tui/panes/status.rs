@@ -1,0 +1,240 @@
+//! The top of the screen: which scene, where the solver is, and what the last minor iteration led to.
+
+use crate::contact::record::Forced;
+use crate::explain::names;
+use crate::explain::number;
+use crate::explain::report;
+use crate::model::Model;
+use crate::model::Strategy;
+use crate::step::event::{Event, Outcome};
+use crate::step::state::Status;
+use crate::tui::app::App;
+use crate::tui::paint;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
+
+/// Draws the status.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
+    let Some(view) = view else {
+        let title = " a step-through debugger for contact iterations";
+        let line = Line::from(vec![
+            Span::styled(" stickslip ", app.theme.heading),
+            Span::styled(title, app.theme.faint),
+        ]);
+        paint::lines(buffer, area, &[line]);
+        return;
+    };
+    // The position is what a screen of one line must show.
+    let mut lines = vec![position(app, view, area.width as usize)];
+    if area.height > 2 {
+        lines.insert(0, scene(app, view, area.width as usize));
+    }
+    lines.extend(outcome(app, view, area.width));
+    paint::lines(buffer, area, &lines);
+}
+
+/// Most lines that the last iteration's outcome takes.
+const OUTCOME: usize = 3;
+
+/// Lines that the outcome needs.
+pub fn outcome_lines(app: &App, view: &View, width: u16) -> u16 {
+    outcome(app, view, width).len().min(OUTCOME) as u16
+}
+
+fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
+    const PROGRAM: &str = " stickslip ";
+    let name = paint::cut(view.name, width.saturating_sub(PROGRAM.width()));
+    let room = width.saturating_sub(PROGRAM.width() + name.width());
+    Line::from(vec![
+        Span::styled(PROGRAM, app.theme.faint),
+        Span::styled(name, app.theme.heading),
+        Span::styled(
+            paint::cut(&format!("  {}", view.model.title), room),
+            app.theme.faint,
+        ),
+    ])
+}
+
+/// Where the solver is: the minor iteration that is shown, or the first one to come. A narrow screen has it closer, and
+/// without the attempt where that is the first.
+fn position(app: &App, view: &View, width: usize) -> Line<'static> {
+    let (wide, closer) = (place(app, view, "   ", true), place(app, view, "  ", true));
+    let second = view.position().attempt > 1;
+    let mut line = [wide, closer]
+        .into_iter()
+        .find(|line| line.width() <= width)
+        .unwrap_or_else(|| place(app, view, " ", second));
+    if let Some((done, all)) = app.measuring {
+        let percent = 100 * done / all.max(1);
+        let chart = Span::styled(format!("   chart: {percent} %"), app.theme.warning);
+        if line.width() + chart.width() <= width {
+            line.push_span(chart);
+        }
+    }
+    if app.unkept {
+        // Whoever goes on without it must not forget that.
+        const LOST: [&str; 2] = ["   no journal (:journal FILE)", "  no journal"];
+        let fits = |words: &&&str| line.width() + words.width() <= width;
+        let words = LOST.iter().find(fits).unwrap_or(&LOST[1]);
+        while line.width() + words.width() > width && line.spans.pop().is_some() {}
+        line.push_span(Span::styled(*words, app.theme.bad));
+    }
+    line
+}
+
+fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
+    let at = view.position();
+    let load = match view.event() {
+        Some(event) => event.load_factor,
+        None => view.frame().state.load_factor,
+    };
+    let counts = [
+        ("increment", at.increment, true),
+        ("attempt", at.attempt, attempt),
+        ("major", at.major, true),
+        ("minor", at.minor, true),
+    ];
+    let mut spans = vec![Span::raw(" ")];
+    for (name, count, _) in counts.into_iter().filter(|(_, _, shown)| *shown) {
+        spans.push(Span::styled(format!("{name} "), app.theme.faint));
+        spans.push(Span::styled(format!("{count}{apart}"), app.theme.heading));
+    }
+    spans.push(Span::styled("load ", app.theme.faint));
+    spans.push(Span::styled(number::plain(load), app.theme.heading));
+    let (shown, last) = (view.cursor, view.frames.len() - 1);
+    if shown < last {
+        spans.push(Span::styled(
+            format!("{apart}{shown} of {last} steps"),
+            app.theme.warning,
+        ));
+    }
+    Line::from(spans)
+}
+
+/// What the shown minor iteration led to, and what the user has done to the solve.
+fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
+    let theme = &app.theme;
+    if view.running {
+        const SPINNER: [&str; 4] = ["◐", "◓", "◑", "◒"];
+        let turn = SPINNER[app.tick % SPINNER.len()];
+        let at = view
+            .frames
+            .last()
+            .map(|frame| frame.state.next)
+            .unwrap_or_default();
+        let text = format!(
+            " {turn} solving: increment {}, major {}, minor {}; {} steps so far; Ctrl-C stops",
+            at.increment,
+            at.major,
+            at.minor,
+            view.frames.len() - 1
+        );
+        return vec![Line::styled(text, theme.warning)];
+    }
+    let (text, style) = match (view.intervention(), view.event()) {
+        (Some(intervention), _) => (
+            format!("◇ {}", report::intervention(view.model, intervention)),
+            theme.strong,
+        ),
+        (None, None) => ("▸ at the start; nothing is solved yet".into(), theme.text),
+        (None, Some(_)) if app.hides_any(view) => {
+            ("? solved; what follows is yours to say".into(), theme.text)
+        }
+        (None, Some(event)) => sentence(event, view.model, app),
+    };
+    // Further lines stand under the words, not under the glyph.
+    let words = paint::wrap(&text, (width as usize).saturating_sub(4));
+    let indent = |index: usize| if index == 0 { " " } else { "   " };
+    let line =
+        |(index, words): (usize, String)| Line::styled(format!("{}{words}", indent(index)), style);
+    let mut lines: Vec<Line> = words.into_iter().enumerate().map(line).collect();
+    if let Some(text) = interventions(view) {
+        match lines.last_mut() {
+            Some(last) if last.width() + 3 + text.chars().count() <= width as usize => {
+                last.push_span(Span::styled(format!("   {text}"), theme.warning));
+            }
+            _ => lines.push(Line::styled(format!("   {text}"), theme.warning)),
+        }
+    }
+    lines
+}
+
+/// What follows from a minor iteration, in a sentence with a glyph before it.
+fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
+    let theme = &app.theme;
+    let (glyph, style) = match &event.outcome {
+        Outcome::Minor | Outcome::Major { settled: true, .. } => ("▸", theme.text),
+        Outcome::Damped { .. }
+        | Outcome::Climbed { .. }
+        | Outcome::Cut { .. }
+        | Outcome::Leaps { .. }
+        | Outcome::Refused { .. }
+        | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
+        Outcome::Increment {
+            unsettled: 0,
+            marked: None,
+            jumped: false,
+            ..
+        } => ("✓", theme.good),
+        Outcome::Increment { .. } => ("✓", theme.warning),
+        Outcome::Failed(_) => ("✗", theme.bad),
+    };
+    let told = report::outcome(model, event);
+    // The line above says where this is.
+    let place = format!("{}: ", names::position(event.position));
+    (
+        format!("{glyph} {}", told.strip_prefix(&place).unwrap_or(&told)),
+        style,
+    )
+}
+
+/// How the user stands behind the modes, if at all.
+fn interventions(view: &View) -> Option<String> {
+    let forced = (0..view.model.contacts.len()).map(|slave| view.forced(slave));
+    let (mut held, mut once) = (0, 0);
+    for forced in forced {
+        match forced {
+            Forced::Held(_) => held += 1,
+            Forced::Once(_) => once += 1,
+            Forced::No => {}
+        }
+    }
+    let controls = &view.frame().state.controls;
+    let increment = (controls.increment != view.model.increment).then(|| {
+        format!(
+            "increment {} (scene: {})",
+            number::plain(controls.increment),
+            number::plain(view.model.increment)
+        )
+    });
+    let settings = (controls.settings != view.model.settings).then(|| "settings changed".into());
+    let friction = view
+        .model
+        .contacts
+        .iter()
+        .zip(&controls.friction)
+        .any(|(slave, now)| slave.friction != *now);
+    let state = &view.frame().state;
+    let strategy = state.settings().strategy;
+    let leads = strategy != Strategy::Table2 && state.status != Status::Finished;
+    let parts = [
+        leads.then(|| format!("strategy {}", strategy.name())),
+        (state.sub_increment.cut > 0).then(|| {
+            format!(
+                "increment cut to {}",
+                number::plain(state.sub_increment.size())
+            )
+        }),
+        (held > 0).then(|| format!("◆ {held} held")),
+        (once > 0).then(|| format!("◇ {once} forced")),
+        increment,
+        friction.then(|| "friction changed".into()),
+        settings,
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| parts.join("  "))
+}

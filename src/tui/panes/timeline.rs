@@ -1,0 +1,269 @@
+//! The timeline: slave nodes by minor iterations, a letter for the mode that each had.
+//!
+//! Majors and increments are ruled off, a cycle is bracketed, forced modes are small letters. Only the columns around
+//! the cursor are looked at, so that the length of the history costs nothing.
+
+use crate::history::strip::{PointKind, Strip};
+use crate::model::Mode;
+use crate::step::event::{Failure, Outcome};
+use crate::tui::app::App;
+use crate::tui::layout::Pane;
+use crate::tui::paint;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+use std::ops::Range;
+use unicode_width::UnicodeWidthStr;
+
+/// Rows that are no nodes: increments, majors, the cursor's mark, what each iteration led to, brackets.
+pub const FRAME: u16 = 5;
+/// Width of the nodes' names.
+const NAME: Range<usize> = 9..14;
+
+/// A visible iteration and where it stands.
+struct Column {
+    at: usize,
+    x: u16,
+}
+
+/// Draws the timeline.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let strips = view.strips;
+    let mut title = title(view);
+    let count = view.model.contacts.len();
+    let selected = app.selected.min(count.saturating_sub(1));
+    let rows = usize::from(area.height.saturating_sub(2 + FRAME));
+    if rows < count {
+        title += &format!("  node {} of {count}", selected + 1);
+    }
+    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Timeline, theme);
+    if strips.is_empty() || inner.height <= FRAME {
+        return;
+    }
+    let longest = (0..count).map(|slave| view.slave(slave).width()).max();
+    let name = longest.unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
+    let left = inner.x + name as u16;
+    let room = usize::from(inner.right().saturating_sub(left));
+    let columns = columns(strips, view.cursor, left, room);
+    let top = selected
+        .saturating_sub(rows / 2)
+        .min(count.saturating_sub(rows));
+    let shown = top..(top + rows).min(count);
+    let nodes = inner.y + 3;
+    let below = nodes + shown.len() as u16;
+
+    for (y, text) in [(0, "increment"), (1, "major")] {
+        buffer.set_string(inner.x + 1, inner.y + y, text, theme.faint);
+    }
+    headings(buffer, inner, &columns, strips, theme.heading);
+    for (row, slave) in shown.clone().enumerate() {
+        let (mark, style) = match slave == selected {
+            true => ("▸", theme.selected),
+            false => (" ", theme.text),
+        };
+        let y = nodes + row as u16;
+        buffer.set_string(inner.x, y, mark, theme.focus);
+        let text = paint::cut(view.slave(slave), name - 2);
+        buffer.set_string(inner.x + 1, y, text, style);
+    }
+    for column in &columns {
+        let strip = &strips[column.at];
+        let here = column.at == view.cursor;
+        let reversed = |style: Style| match here {
+            true => style.add_modifier(Modifier::REVERSED),
+            false => style,
+        };
+        if here {
+            buffer.set_string(column.x, nodes - 1, "▼", theme.focus);
+        }
+        if let Some(rule) = rule(strips, column.at)
+            && column.x > left
+        {
+            for y in inner.y + 1..below {
+                buffer.set_string(column.x - 1, y, rule, theme.faint);
+            }
+        }
+        for (row, slave) in shown.clone().enumerate() {
+            let (letter, style) = cell(strip, slave, app);
+            buffer.set_string(column.x, nodes + row as u16, letter, reversed(style));
+        }
+        let (end, style) = end(strip.kind, app);
+        buffer.set_string(column.x, below, end, style);
+    }
+    for column in &columns {
+        bracket(buffer, inner, below + 1, column, &columns, app, view);
+    }
+}
+
+fn title(view: &View) -> String {
+    let Some(strip) = view.strips.get(view.cursor) else {
+        return "Timeline".into();
+    };
+    let at = strip.position;
+    let what = match strip.kind {
+        PointKind::Start => "start".into(),
+        PointKind::Intervention => "an intervention".into(),
+        kind => format!(
+            "increment {}, major {}, minor {}{}",
+            at.increment,
+            at.major,
+            at.minor,
+            match kind {
+                PointKind::Jumped | PointKind::LastJumped => ", jumped",
+                _ => "",
+            }
+        ),
+    };
+    let last = view.strips.len() - 1;
+    format!("Timeline  step {} of {last}: {what}", view.cursor)
+}
+
+/// What stands between an iteration and the one before it: a double rule between increments, a single one between
+/// majors.
+fn rule(strips: &[Strip], at: usize) -> Option<&'static str> {
+    let before = strips.get(at.checked_sub(1)?)?;
+    let (then, now) = (before.position, strips[at].position);
+    let of = |at: crate::step::event::Position| (at.increment, at.attempt);
+    match before.kind == PointKind::Start {
+        true => None,
+        false if of(then) != of(now) => Some("║"),
+        false => (then.major != now.major).then_some("│"),
+    }
+}
+
+fn width(strips: &[Strip], at: usize) -> usize {
+    1 + usize::from(rule(strips, at).is_some())
+}
+
+/// The iterations around the cursor that fit into the room: the cursor in the middle where both sides are long.
+fn columns(strips: &[Strip], cursor: usize, left: u16, room: usize) -> Vec<Column> {
+    let (mut first, mut after) = (cursor, cursor + 1);
+    let mut used = width(strips, cursor);
+    let back = |first: &mut usize, used: &mut usize, most: usize| {
+        while *first > 0 && *used + width(strips, *first - 1) <= most {
+            *first -= 1;
+            *used += width(strips, *first);
+        }
+    };
+    back(&mut first, &mut used, room / 2);
+    while after < strips.len() && used + width(strips, after) <= room {
+        used += width(strips, after);
+        after += 1;
+    }
+    back(&mut first, &mut used, room);
+    let mut x = left;
+    let mut columns = Vec::with_capacity(after - first);
+    for at in first..after {
+        x += width(strips, at) as u16 - 1;
+        columns.push(Column { at, x });
+        x += 1;
+    }
+    columns
+}
+
+/// Numbers of increments and majors over their first columns, where they do not run into each other.
+fn headings(buffer: &mut Buffer, inner: Rect, columns: &[Column], strips: &[Strip], style: Style) {
+    let mut free = [inner.x; 2];
+    for (index, column) in columns.iter().enumerate() {
+        let now = strips[column.at].position;
+        let then = index
+            .checked_sub(1)
+            .map(|before| strips[columns[before].at].position);
+        let increment = |at: crate::step::event::Position| (at.increment, at.attempt);
+        let anew = then.is_none_or(|then| increment(then) != increment(now));
+        let major = anew || then.is_none_or(|then| then.major != now.major);
+        for (row, wanted, text) in [(0, anew, now.increment), (1, major, now.major)] {
+            let text = text.to_string();
+            let fits = column.x >= free[row] && column.x + text.len() as u16 <= inner.right();
+            if wanted && fits {
+                buffer.set_string(column.x, inner.y + row as u16, &text, style);
+                free[row] = column.x + text.len() as u16 + 1;
+            }
+        }
+    }
+}
+
+/// The letter of a node's mode in an iteration; a small one where it was forced.
+fn cell(strip: &Strip, slave: usize, app: &App) -> (&'static str, Style) {
+    let (mode, forced) = (strip.before(slave), strip.is_forced(slave));
+    if strip.kind == PointKind::Intervention && !forced {
+        return ("·", app.theme.faint);
+    }
+    let letter = match (mode, forced) {
+        (Mode::Free, false) => "F",
+        (Mode::Sliding, false) => "S",
+        (Mode::Fixed, false) => "X",
+        (Mode::Free, true) => "f",
+        (Mode::Sliding, true) => "s",
+        (Mode::Fixed, true) => "x",
+    };
+    let mut style = app.theme.mode(mode);
+    if strip.changes(slave) {
+        style = style.add_modifier(Modifier::BOLD);
+    }
+    if forced {
+        style = style.add_modifier(Modifier::UNDERLINED);
+    }
+    (letter, style)
+}
+
+/// What an iteration led to.
+fn end(kind: PointKind, app: &App) -> (&'static str, Style) {
+    let theme = &app.theme;
+    match kind {
+        PointKind::Start => ("┊", theme.faint),
+        PointKind::Minor => (" ", theme.faint),
+        PointKind::Intervention => ("◇", theme.warning),
+        PointKind::Damped | PointKind::Cut => ("½", theme.warning),
+        PointKind::Climbed => ("⇑", theme.warning),
+        PointKind::Refused => ("⊘", theme.warning),
+        PointKind::Major => ("▸", theme.faint),
+        PointKind::Increment | PointKind::Last => ("✓", theme.good),
+        PointKind::Jumped | PointKind::LastJumped => ("↯", theme.warning),
+        PointKind::Cycle => ("↺", theme.bad),
+        PointKind::Failed => ("✗", theme.bad),
+    }
+}
+
+/// The bracket under the last round of a cycle that ends in this column.
+fn bracket(
+    buffer: &mut Buffer,
+    inner: Rect,
+    y: u16,
+    column: &Column,
+    columns: &[Column],
+    app: &App,
+    view: &View,
+) {
+    let event = view.frames[column.at].event.as_deref();
+    let cycle = match event.map(|event| &event.outcome) {
+        Some(
+            Outcome::Failed(Failure::Cycle(cycle))
+            | Outcome::Damped { cycle, .. }
+            | Outcome::Climbed {
+                why: Failure::Cycle(cycle),
+                ..
+            },
+        ) if view.frames[column.at].intervention.is_none() => cycle,
+        _ => return,
+    };
+    let first = (column.at + 1).saturating_sub(cycle.period as usize);
+    let from = columns.iter().find(|column| column.at >= first);
+    let from = from.map_or(column.x, |column| column.x);
+    for x in from..=column.x {
+        let stroke = match x {
+            _ if from == column.x => "╵",
+            x if x == from => "╰",
+            x if x == column.x => "╯",
+            _ => "─",
+        };
+        buffer.set_string(x, y, stroke, app.theme.bad);
+    }
+    let text = format!("{}-cycle", cycle.period);
+    let room = inner.right().saturating_sub(column.x + 2);
+    if text.len() <= usize::from(room) {
+        buffer.set_string(column.x + 2, y, text, app.theme.bad);
+    }
+}

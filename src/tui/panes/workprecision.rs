@@ -1,0 +1,258 @@
+//! The work-precision page: a chart, measured just now or read from a table (`stickslip chart --csv`), drawn in the
+//! terminal, error over cost in decades.
+//!
+//! Each run is its series' letter, a capital where no other run beats it in both; failures stand as ✗ on a rail above. One
+//! run is selected, and told in full below.
+
+use crate::explain::number;
+use crate::study::precision::{Point, Precision};
+use crate::study::precision_figure::{Decades, NOTHING, power};
+use crate::tui::chartpage::ChartPage;
+use crate::tui::paint;
+use crate::tui::theme::Theme;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::{Line, Span};
+
+/// Columns left of the plot, for the numbers of the axis.
+const LEFT: u16 = 7;
+/// Rows under the plot: axis, selected run (two), where it comes from.
+const BELOW: u16 = 5;
+/// Columns of the list of series, where there is room for it.
+const LEGEND: u16 = 36;
+
+/// A series' letter; after z they begin again.
+fn letter(series: usize, front: bool) -> char {
+    let letter = char::from(b'a' + (series % 26) as u8);
+    if front {
+        letter.to_ascii_uppercase()
+    } else {
+        letter
+    }
+}
+
+/// Draws the page.
+pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
+    let chart = page.shown();
+    let number = match page.charts.len() {
+        1 => String::new(),
+        all => format!("  {}/{all}", page.chart + 1),
+    };
+    let title = format!("Work and precision  {}{number}", chart.title);
+    let inner = paint::frame(buffer, area, &title, true, theme);
+    if inner.height < BELOW + 4 || inner.width < LEFT + 12 {
+        paint::lines(buffer, inner, &[Line::styled("no room", theme.faint)]);
+        return;
+    }
+    let legend = if inner.width >= LEFT + 40 + LEGEND {
+        LEGEND
+    } else {
+        0
+    };
+    let plot = Rect {
+        x: inner.x + LEFT,
+        y: inner.y + 1,
+        width: inner.width - LEFT - legend - 1,
+        height: inner.height - 1 - BELOW,
+    };
+    plot_runs(buffer, plot, page, theme);
+    if legend > 0 {
+        let area = Rect {
+            x: plot.right() + 1,
+            width: legend,
+            ..plot
+        };
+        paint::lines(buffer, area, &series(chart, theme, usize::from(legend)));
+    }
+    let below = Rect {
+        y: plot.bottom() + 1,
+        height: BELOW - 1,
+        ..inner
+    };
+    paint::lines(buffer, below, &told(page, theme, usize::from(inner.width)));
+}
+
+fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
+    let chart = page.shown();
+    let cost = |p: &Point| page.cost.of(p);
+    let x = Decades::of(chart.points.iter().map(cost));
+    let y = Decades::of(
+        chart
+            .points
+            .iter()
+            .filter_map(|p| Some(p.error?.max(NOTHING))),
+    );
+    let column = |value: f64| plot.x + (x.part(value) * f64::from(plot.width - 1)).round() as u16;
+    let row = |error: f64| {
+        let part = 1.0 - y.part(error.max(NOTHING));
+        plot.y + (part * f64::from(plot.height - 1)).round() as u16
+    };
+    let mut put = |x: u16, y: u16, text: &str, style: Style| {
+        buffer.set_string(x, y, text, style);
+    };
+    for decade in y.low..=y.high {
+        let at = row(10f64.powi(decade));
+        put(
+            plot.x - LEFT,
+            at,
+            &format!("{:>5}", power(decade)),
+            theme.faint,
+        );
+        put(plot.x - 1, at, "┤", theme.faint);
+    }
+    for decade in x.low..=x.high {
+        let (at, words) = (column(10f64.powi(decade)), power(decade));
+        let left = at.saturating_sub(words.len() as u16 / 2);
+        let left = left.min(plot.right().saturating_sub(words.len() as u16));
+        put(left, plot.bottom(), &words, theme.faint);
+    }
+    for dot in (plot.x..plot.right()).step_by(2) {
+        put(dot, plot.y - 1, "┄", theme.faint);
+    }
+    let mut selected = None;
+    for (k, point) in chart.points.iter().enumerate() {
+        let (style, text, at) = match (point.error, &point.failed) {
+            (Some(error), _) => {
+                let style = if point.front { theme.good } else { theme.text };
+                (
+                    style,
+                    letter(point.series, point.front).to_string(),
+                    row(error),
+                )
+            }
+            (None, Some(_)) => (theme.bad, "✗".to_owned(), plot.y - 1),
+            (None, None) => (theme.strong, "▾".to_owned(), plot.bottom() - 1),
+        };
+        put(column(cost(point)), at, &text, style);
+        if k == page.run {
+            selected = Some((column(cost(point)), at, text));
+        }
+    }
+    // Above all others.
+    if let Some((x, y, text)) = selected {
+        put(x, y, &text, theme.selected);
+    }
+}
+
+/// The series by their letters.
+fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> {
+    let one = |(k, name): (usize, &String)| {
+        Line::from(vec![
+            Span::styled(format!(" {} ", letter(k, false)), theme.strong),
+            Span::styled(paint::cut(name, width.saturating_sub(3)), theme.text),
+        ])
+    };
+    let mut lines: Vec<Line> = chart.series.iter().enumerate().map(one).collect();
+    lines.push(Line::default());
+    for (mark, words) in [
+        ("A", "capital: beaten by none"),
+        ("✗", "failed"),
+        ("▾", "the reference"),
+    ] {
+        lines.push(Line::styled(format!(" {mark} {words}"), theme.faint));
+    }
+    lines
+}
+
+/// The selected run, and where all come from.
+fn told(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
+    let chart = page.shown();
+    let axis = format!(" error over {}", page.cost.axis());
+    let Some(point) = chart.points.get(page.run) else {
+        return vec![Line::styled(axis, theme.faint)];
+    };
+    let name = format!(
+        " ▸ {} {}, {}",
+        letter(point.series, point.front),
+        chart.series[point.series],
+        point.name
+    );
+    let error = match (point.error, &point.failed) {
+        (Some(error), _) => format!("error {error:.3e}"),
+        (None, Some(why)) => format!("✗ {why}"),
+        (None, None) => "the reference".to_owned(),
+    };
+    let cost = format!(
+        "   {error}   {} s, {} factorizations, {} minor iterations",
+        number::six(point.seconds),
+        point.factorizations,
+        point.minors
+    );
+    let about = page.charts.last().and_then(|chart| chart.about.last());
+    let about = format!(" {}", about.map_or("", String::as_str));
+    [
+        (axis, theme.faint),
+        (name, theme.strong),
+        (cost, theme.text),
+        (about, theme.faint),
+    ]
+    .map(|(text, style)| Line::styled(paint::cut(&text, width), style))
+    .into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn page() -> ChartPage {
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("a.csv");
+        let table = "# made by hand\nscene,series,run,status,error,seconds,factorizations,minors\n\
+                     one,mesh,refine=1,whole,1e-2,0.1,10,20\none,mesh,refine=2,whole,1e-4,1,20,10\n\
+                     one,other,a=1,2-cycle of minors at load 1,,0.5,5,5\ntwo,mesh,b=1,whole,1e-3,1,1,1\n";
+        std::fs::write(&file, table).unwrap();
+        ChartPage::open(&file.to_string_lossy()).unwrap()
+    }
+
+    fn text(page: &ChartPage, width: u16, height: u16) -> String {
+        let area = Rect::new(0, 0, width, height);
+        let mut buffer = Buffer::empty(area);
+        draw(&mut buffer, area, page, &Theme::mono());
+        let row = |row: Rect| {
+            row.columns()
+                .map(|c| buffer[(c.x, c.y)].symbol().to_owned())
+                .collect()
+        };
+        area.rows().map(row).collect::<Vec<String>>().join("\n")
+    }
+
+    #[test]
+    fn runs_are_letters_failures_are_crosses_and_the_selected_run_is_told() {
+        let mut page = page();
+        let shown = text(&page, 100, 24);
+        let rows: Vec<&str> = shown.lines().collect();
+        // The failure stands above the plot, the nearer run below the other.
+        assert!(rows[1].contains('✗'), "{shown}");
+        let of = |mark: char| {
+            rows[2..19]
+                .iter()
+                .position(|row| row.chars().take(60).any(|c| c == mark))
+        };
+        assert!(of('A').is_some(), "{shown}");
+        assert!(
+            shown.contains("▸ A mesh, refine=1") && shown.contains("error 1.000e-2"),
+            "{shown}"
+        );
+        assert!(page.key("Left"));
+        let shown = text(&page, 100, 24);
+        assert!(shown.contains("✗ 2-cycle of minors at load 1"), "{shown}");
+        assert!(page.key("x") && page.key("x"));
+        // By minor iterations, the finer mesh beats the coarser one.
+        let shown = text(&page, 100, 24);
+        assert!(shown.contains("error over minor iterations"), "{shown}");
+        page.run = 0;
+        assert!(text(&page, 100, 24).contains("▸ a mesh, refine=1"));
+        assert!(page.key("Tab"));
+        assert!(text(&page, 100, 24).contains("two  2/2"));
+        assert!(!page.key("s"));
+    }
+
+    #[test]
+    fn any_size_shows_something() {
+        let page = page();
+        for (width, height) in [(1, 1), (20, 5), (40, 12), (80, 24), (200, 60)] {
+            text(&page, width, height);
+        }
+    }
+}

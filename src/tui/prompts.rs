@@ -1,0 +1,214 @@
+//! What waits for keys before the panes do: questions, lists, and a line that is typed.
+
+use crate::action::{self, Action, Question};
+use crate::explain::number;
+use crate::model::Mode;
+use crate::record::command::Command;
+use crate::teach::Tutor;
+use crate::teach::tutor::AnswerKind;
+use crate::tui::app::{App, Effect, Overlay, PAGE};
+use crate::tui::commandline::{CommandLine, Purpose};
+use crate::tui::theme;
+use crate::tui::view::{View, context};
+use crossterm::event::KeyEvent;
+
+impl App {
+    pub(super) fn ask(&mut self, question: Question, view: Option<&View>) {
+        let has_slaves = view.is_some_and(|view| !view.model.contacts.is_empty());
+        match question {
+            Question::Mode if !has_slaves => self.complain("this scene has no slave nodes"),
+            Question::Mode => self.overlay = Overlay::Mode,
+            Question::Increment => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Increment, ""))
+            }
+            Question::Node => self.overlay = Overlay::Line(CommandLine::new(Purpose::Node, "")),
+            Question::Scene => self.choose(),
+            Question::Break => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "break "))
+            }
+            Question::Lesson => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson "))
+            }
+            Question::Answer => self.ask_answer(view),
+        }
+    }
+
+    /// Opens what an answer is typed into.
+    pub(super) fn ask_answer(&mut self, view: Option<&View>) {
+        let asked = self.lesson.as_ref().and_then(Tutor::question);
+        let open = view.is_some_and(|view| self.guessing().is_some() && self.hides_any(view));
+        match asked.map(|question| question.kind) {
+            Some(AnswerKind::Number) => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Answer, ""))
+            }
+            Some(AnswerKind::Mode | AnswerKind::Choice) => self.overlay = Overlay::Answer,
+            None if open => self.overlay = Overlay::Answer,
+            // What there is to say about it, the answering says.
+            None => self.answer("free", view),
+        }
+    }
+
+    pub(super) fn answer_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        self.close(view);
+        if name != "Esc" {
+            self.answer(name, view);
+        }
+        None
+    }
+
+    pub(super) fn mode_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        self.close(view);
+        let wanted = [Mode::Free, Mode::Sliding, Mode::Fixed]
+            .into_iter()
+            .find(|mode| theme::letter(*mode).eq_ignore_ascii_case(name));
+        match wanted {
+            Some(mode) => {
+                let hold = name.chars().all(char::is_uppercase);
+                let force = Command::Force {
+                    slave: self.selected,
+                    mode,
+                    hold,
+                };
+                self.attempt(Ok(Action::Session(force)), None, view)
+            }
+            None if name == "Esc" => None,
+            None => {
+                self.complain(format!(
+                    "{name} is no mode: f free, s sliding, x fixed; a capital holds it"
+                ));
+                None
+            }
+        }
+    }
+
+    pub(super) fn help_key(&mut self, name: &str) -> Option<Effect> {
+        let Overlay::Help { top } = &mut self.overlay else {
+            return None;
+        };
+        match name {
+            "Esc" | "q" | "?" | "F1" | "Enter" => self.overlay = Overlay::None,
+            _ => *top = scrolled(*top, name, usize::MAX),
+        }
+        None
+    }
+
+    pub(super) fn chart_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        let Overlay::Chart(page) = &mut self.overlay else {
+            return None;
+        };
+        if !page.key(name) && ["Esc", "q", "Enter"].contains(&name) {
+            self.close(view);
+        }
+        None
+    }
+
+    pub(super) fn chooser_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        let Overlay::Chooser { at } = &mut self.overlay else {
+            return None;
+        };
+        match name {
+            "Enter" => {
+                return self
+                    .offers
+                    .get(*at)
+                    .map(|offer| Effect::Open(offer.name.clone()));
+            }
+            "q" | "Esc" if view.is_none() => return Some(Effect::Quit),
+            "q" | "Esc" => self.overlay = Overlay::None,
+            ":" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open ")),
+            "L" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson ")),
+            _ => *at = scrolled(*at, name, self.offers.len().saturating_sub(1)),
+        }
+        None
+    }
+
+    pub(super) fn line_key(
+        &mut self,
+        key: &KeyEvent,
+        name: &str,
+        view: Option<&View>,
+    ) -> Option<Effect> {
+        let scenes = self.scenes();
+        let context = context(view, self.selected, &scenes);
+        let Overlay::Line(line) = &mut self.overlay else {
+            return None;
+        };
+        match name {
+            "Esc" => self.close(view),
+            "Backspace" if line.text().is_empty() => self.close(view),
+            "Tab" => line.complete(1, &context),
+            "Shift-Tab" => line.complete(-1, &context),
+            "Up" => line.recall(1, &self.history),
+            "Down" => line.recall(-1, &self.history),
+            "Enter" => return self.enter(view),
+            _ => line.edit(key),
+        }
+        None
+    }
+
+    /// Carries out the line that was typed.
+    pub(super) fn enter(&mut self, view: Option<&View>) -> Option<Effect> {
+        let Overlay::Line(line) = &self.overlay else {
+            return None;
+        };
+        let (purpose, text) = (line.purpose, line.text().trim().to_string());
+        self.close(view);
+        let line = match purpose {
+            _ if text.is_empty() => return None,
+            Purpose::Command => text,
+            Purpose::Increment => format!("increment {text}"),
+            Purpose::Node => format!("node {text}"),
+            Purpose::Answer => format!("answer {text}"),
+        };
+        self.history.retain(|old| *old != line);
+        self.history.push(line.clone());
+        let scenes = self.scenes();
+        let action = action::parse(&line, &context(view, self.selected, &scenes));
+        self.attempt(action, None, view)
+    }
+
+    /// What the prompt in the message line asks; none where nothing is asked.
+    pub fn question(&self, view: Option<&View>) -> Option<String> {
+        let view = view?;
+        match &self.overlay {
+            Overlay::Mode => Some(format!(
+                "mode of {}:  f free   s sliding   x fixed   (a capital holds it until M releases)",
+                view.slave(self.selected)
+            )),
+            Overlay::Answer => Some(self.asked(view)),
+            Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
+                "new increment (now {}): ",
+                number::plain(view.frame().state.controls.increment)
+            )),
+            _ => None,
+        }
+    }
+
+    /// What the prompt of an answer says.
+    pub(super) fn asked(&self, view: &View) -> String {
+        match self.lesson.as_ref().and_then(Tutor::question) {
+            Some(question) if question.kind == AnswerKind::Choice => {
+                format!("your answer:  1 to {}", question.options.len())
+            }
+            Some(_) => "your answer:  f free   s sliding   x fixed".into(),
+            None => format!(
+                "next mode of {}:  f free   s sliding   x fixed",
+                view.slave(self.selected)
+            ),
+        }
+    }
+}
+
+/// Where a list stands after a key that moves in lists.
+fn scrolled(at: usize, name: &str, last: usize) -> usize {
+    let to = match name {
+        "Up" | "k" => at.saturating_sub(1),
+        "Down" | "j" => at.saturating_add(1),
+        "PageUp" => at.saturating_sub(PAGE as usize),
+        "PageDown" | "Space" => at.saturating_add(PAGE as usize),
+        "Home" | "g" => 0,
+        "End" | "G" => last,
+        _ => at,
+    };
+    to.min(last)
+}

@@ -1,0 +1,125 @@
+//! The whole screen from the app and the view: who draws where.
+
+use crate::outside::shown;
+use crate::session::Session;
+use crate::tui::app::{App, Overlay};
+use crate::tui::layout::{self, Pane};
+use crate::tui::paint;
+use crate::tui::panes::branches;
+use crate::tui::panes::chooser;
+use crate::tui::panes::curve;
+use crate::tui::panes::decision;
+use crate::tui::panes::diagnosis;
+use crate::tui::panes::footer;
+use crate::tui::panes::help;
+use crate::tui::panes::lesson;
+use crate::tui::panes::nodes;
+use crate::tui::panes::remedies;
+use crate::tui::panes::residual;
+use crate::tui::panes::shape;
+use crate::tui::panes::status;
+use crate::tui::panes::timeline;
+use crate::tui::panes::workprecision;
+use crate::tui::theme::Theme;
+use crate::tui::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use ratatui::widgets::Widget;
+
+/// Draws everything. Without a view (no scene yet) there is only the chooser.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
+    let slaves = view.map_or(0, |view| view.model.contacts.len());
+    let outcome = view.map_or(1, |view| status::outcome_lines(app, view, area.width));
+    let message = footer::message_lines(app, view, area.width);
+    let rows = view.map_or(0, |_| lesson::rows(app, area.width));
+    let places = layout::places(area, &app.choice(slaves, outcome, message, rows));
+    status::draw(buffer, places.status, app, view);
+    let body = places
+        .panes
+        .iter()
+        .map(|pane| pane.1)
+        .reduce(Rect::union)
+        .unwrap_or_default();
+    match (&app.overlay, view) {
+        (Overlay::Help { top }, _) => help::draw(buffer, body, *top, &app.theme),
+        (Overlay::Chart(page), _) => workprecision::draw(buffer, body, page, &app.theme),
+        (Overlay::Chooser { at }, _) => chooser::draw(buffer, body, *at, app),
+        (_, None) => {}
+        (_, Some(view)) => {
+            for (pane, area) in &places.panes {
+                draw_pane(*pane, buffer, *area, app, view);
+            }
+        }
+    }
+    footer::draw(buffer, &places, app, view);
+    harmless(buffer, area);
+}
+
+/// Takes from the cells what a terminal would obey, and what was not shown as something else before.
+fn harmless(buffer: &mut Buffer, area: Rect) {
+    for at in area.intersection(buffer.area).positions() {
+        let cell = &mut buffer[at];
+        if cell.symbol().contains(shown::is_order) {
+            let left: String = cell
+                .symbol()
+                .chars()
+                .filter(|c| !shown::is_order(*c))
+                .collect();
+            cell.set_symbol(if left.is_empty() { " " } else { &left });
+        }
+    }
+}
+
+fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    // These tell what comes next.
+    let tells = [
+        Pane::Timeline,
+        Pane::Diagnosis,
+        Pane::Branches,
+        Pane::Remedies,
+    ];
+    if tells.contains(&pane) && app.hides_any(view) {
+        let inner = paint::frame(buffer, area, "Hidden", app.focus == pane, &app.theme);
+        let text = " until you have said what follows";
+        Line::styled(text, app.theme.faint).render(inner, buffer);
+        return;
+    }
+    match pane {
+        Pane::Nodes => nodes::draw(buffer, area, app, view),
+        Pane::Decision => decision::draw(buffer, area, app, view),
+        Pane::Residual => residual::draw(buffer, area, app, view),
+        Pane::Shape => shape::draw(buffer, area, app, view),
+        Pane::Curve => curve::draw(buffer, area, app, view),
+        Pane::Lesson => lesson::draw(buffer, area, app),
+        Pane::Timeline => timeline::draw(buffer, area, app, view),
+        Pane::Diagnosis => diagnosis::draw(buffer, area, app, view),
+        Pane::Branches => branches::draw(buffer, area, app, view),
+        Pane::Remedies => remedies::draw(buffer, area, app, view),
+    }
+}
+
+/// The program's own screen as plain text, one line a row, no blanks at the ends.
+pub fn picture(session: &Session, width: u16, height: u16) -> String {
+    text(
+        &App::new(Theme::mono(), Vec::new()),
+        Some(&View::of(session)),
+        width,
+        height,
+    )
+}
+
+/// Any screen as plain text.
+pub fn text(app: &App, view: Option<&View>, width: u16, height: u16) -> String {
+    let area = Rect::new(0, 0, width, height);
+    let mut buffer = Buffer::empty(area);
+    draw(&mut buffer, area, app, view);
+    let rows = area.rows().map(|row| {
+        let row: String = row
+            .columns()
+            .map(|cell| buffer[(cell.x, cell.y)].symbol())
+            .collect();
+        row.trim_end().to_string() + "\n"
+    });
+    rows.collect()
+}
