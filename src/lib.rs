@@ -20,22 +20,12 @@
 
 pub mod action;
 pub mod cli;
-<<<<<<< main
-pub mod debug;
-=======
-pub mod contact;
 pub mod explain;
-pub mod fem;
 pub mod history;
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2
 pub mod outside;
 pub mod record;
 pub mod scene;
-<<<<<<< main
-=======
 pub mod session;
-pub mod solve;
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2
 pub mod study;
 pub mod teach;
 pub mod tui;

@@ -26,7 +26,7 @@ pub struct Context<'a> {
 pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, Misread> {
     match word {
         Some(word) => exact(word, context),
-        None if context.selected < model(context)?.slaves.len() => Ok(context.selected),
+        None if context.selected < model(context)?.contacts.len() => Ok(context.selected),
         None => Err(Misread::NoSlaves),
     }
 }
@@ -66,7 +66,7 @@ pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, M
     let mut nodes = Vec::new();
     for word in words.filter(|word| !word.is_empty()) {
         let counted = word.parse::<usize>().ok().and_then(|n| n.checked_sub(1));
-        let count = model(context)?.slaves.len();
+        let count = model(context)?.contacts.len();
         let slave = match (exact(word, context), counted) {
             (Ok(slave), _) => slave,
             (Err(_), Some(place)) if place < count => place,

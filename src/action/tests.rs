@@ -5,8 +5,8 @@ use super::{ACTIONS, Context, complete, markdown, parse};
 use crate::history::breakpoints::Condition;
 use crate::history::tree::Tree;
 use crate::history::watches::{Watch, WatchQuantity};
+use crate::model::{Contact, Node};
 use crate::model::{Friction, Mode, Model, Settings};
-use crate::model::{Node, Slave};
 use crate::record::command::{Command, Exported, Unit};
 use crate::scene::Scene;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ fn model() -> Model {
             at: [0.0; 2],
         })
         .into();
-    let slave = |node| Slave {
+    let slave = |node| Contact {
         node,
         surfaces: vec![],
         friction: Friction::default(),
@@ -32,7 +32,7 @@ fn model() -> Model {
         nodes,
         bodies: vec![],
         surfaces: vec![],
-        slaves: vec![slave(1), slave(2)],
+        contacts: vec![slave(1), slave(2)],
         dofs: Default::default(),
         loads: vec![],
         prescribed: vec![],
@@ -42,6 +42,7 @@ fn model() -> Model {
         jumps: Default::default(),
         settings: Settings::default(),
         monitors: vec![],
+        budget: 1e9,
         length: 1.0,
     }
 }

@@ -130,7 +130,7 @@ pub fn examine_nodes(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> 
 /// What a census finds.
 fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Examination {
     let census = match census(studied) {
-        Err(why) => return nothing(&why),
+        Err(why) => return nothing(&why.to_string()),
         Ok(census) => census,
     };
     let name = |place: usize| names::slave(model, studied.nodes[place].slave);

@@ -219,13 +219,8 @@ fn text(
     let carried: Vec<&str> = problem
         .nodes
         .iter()
-<<<<<<< main:src/debug/export.rs
         .filter(|node| node.moves() != [true; 2])
-        .map(|node| report::slave(model, node.slave))
-=======
-        .filter(|node| node.site.moves != [true; 2])
         .map(|node| names::slave(model, node.slave))
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:src/record/export.rs
         .collect();
     if !carried.is_empty() {
         return Err(NoExport::Carried(carried.join(", ")));

@@ -17,7 +17,7 @@ pub enum Refusal {
     NoStep { step: usize, last: usize },
     /// The solver does not take an intervention.
     #[error("{0}")]
-    Intervention(String),
+    Intervention(crate::step::intervene::Refusal),
     /// A setting that there is not, or a value that it cannot have.
     #[error("{0}")]
     Setting(String),

@@ -80,16 +80,8 @@ impl Look {
     /// Where the bodies cannot be condensed, or there are too many nodes for a census.
     pub fn answers(&self) -> Result<usize, Unknown> {
         let frozen = self.stepper().interface_problem();
-<<<<<<< main:src/debug/lesson/look.rs
-        let frozen = frozen.ok_or("the bodies of this state cannot be condensed")?;
-        Ok(census(&frozen)
-            .map_err(|why| why.to_string())?
-            .answers
-            .len())
-=======
         let frozen = frozen.ok_or(Unknown::NotCondensed)?;
         Ok(census(&frozen).map_err(Unknown::NoCensus)?.answers.len())
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:src/teach/look.rs
     }
 
     fn stepper(&self) -> Stepper {

@@ -45,7 +45,7 @@ pub enum Unknown {
     NotCondensed,
     /// Why there is no census.
     #[error("{0}")]
-    NoCensus(String),
+    NoCensus(crate::interface::census::TooMany),
     #[error("the increment does not end in a cycle")]
     NoCycle,
     #[error("this scene has no slave nodes")]

@@ -1,17 +1,9 @@
 //! Scenes that are known to cycle are diagnosed as their notes say (`tests/references/`, and the comments of the scenes):
 //! period, members, consistent states, cause.
 
-<<<<<<< main:tests/debugger/diagnosis.rs
 use crate::common::{Run, force, go_on, run, scene};
-use stickslip::debug::diagnosis::{Cause, Diagnosis, words};
-use stickslip::debug::influence::influences;
-=======
-mod common;
-
-use common::{Run, force, go_on, run, scene};
 use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
 use stickslip::explain::influence::influences;
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:tests/diagnosis.rs
 use stickslip::interface::problem::{InterfaceProblem, Trials};
 use stickslip::model::Mode;
 use stickslip::step::event::Failure;

@@ -3,7 +3,8 @@
 use crate::scenes::{PINNED, pinned, with};
 use stickslip::contact::projection::{footing, project};
 use stickslip::model::BodyKind;
-use stickslip::scene::{Cost, Scene, builtin};
+use stickslip::scene::cost::Cost;
+use stickslip::scene::{Scene, builtin};
 
 #[test]
 fn every_builtin_scene_is_sound_and_has_a_title() {

@@ -2,7 +2,8 @@
 
 use crate::scenes::{EVERYTHING, assert_usable};
 use proptest::prelude::*;
-use stickslip::scene::{Cost, Scene, builtin, paths};
+use stickslip::scene::cost::Cost;
+use stickslip::scene::{Scene, builtin, paths};
 
 fn try_text(text: &str) {
     match Scene::from_text("x", text, &[]) {

@@ -4,7 +4,8 @@ use crate::scenes::{BLOCK, ELASTIC, EVERYTHING, LINE, SOLID, assert_usable, smal
 use stickslip::model::BoundUpdate;
 use stickslip::model::Model;
 use stickslip::model::{BodyKind, Watched};
-use stickslip::scene::{Cost, Scene, Spec, builtin, paths, read};
+use stickslip::scene::cost::Cost;
+use stickslip::scene::{Scene, Spec, builtin, paths, read};
 
 #[test]
 fn tractions_add_up_to_load_times_length() {

@@ -5,10 +5,10 @@
 use crate::hostile::{CHART, CYCLES, LESSON, REFERENCE, STUDY, put, run, scene};
 use crate::program::{code, err, names, out, rows, well};
 use std::fs;
-use stickslip::debug::journal::Journal;
-use stickslip::debug::session::Session;
 use stickslip::outside::shown;
+use stickslip::record::journal::Journal;
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use tempfile::TempDir;
 
 /// What would set a title, ring, clear the screen, turn the writing, and colour by C1.
@@ -36,7 +36,7 @@ fn harmful() -> TempDir {
     let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
     session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
     for line in ["step", "rename x", "watch gap a"] {
-        use stickslip::debug::command::{Action, Context, parse};
+        use stickslip::action::{Action, Context, parse};
         let context = Context {
             model: Some(session.model()),
             ..Context::default()

@@ -2,18 +2,10 @@
 
 use crate::counting::{alone, live};
 use std::collections::HashMap;
-<<<<<<< main:tests/memory/history.rs
-use stickslip::debug::command::{Command, Unit};
-use stickslip::debug::session::{Frame, Session};
-use stickslip::debug::strip::Strip;
-use stickslip::debug::tree::BUDGET;
-=======
-use std::sync::atomic::{AtomicUsize, Ordering};
 use stickslip::history::frame::Frame;
 use stickslip::history::strip::Strip;
 use stickslip::history::tree::BUDGET;
 use stickslip::record::command::{Command, Unit};
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:tests/history.rs
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::state::State;

@@ -5,14 +5,9 @@ use crate::program::{code, err, out, program};
 use std::path::Path;
 use std::sync::Arc;
 use stickslip::contact::judge::Law;
-<<<<<<< main:tests/physics/audit.rs
-use stickslip::debug::audit::Audit;
-use stickslip::debug::remedies::{self, End};
-use stickslip::model::Mode;
-=======
 use stickslip::explain::audit::Audit;
 use stickslip::explain::remedies::{self, End};
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:tests/audit.rs
+use stickslip::model::Mode;
 use stickslip::model::{AtLimit, SlipCount, Sticking, Ties};
 use stickslip::scene::{Scene, builtin};
 use stickslip::step::event::Outcome;

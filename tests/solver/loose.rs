@@ -1,20 +1,9 @@
 //! Where increments end: bodies that come loose, the least increment, and advice that holds.
 
-<<<<<<< main:tests/solver/loose.rs
 use crate::common::{Run, run, scene};
 use crate::program::{code, err, program};
-use stickslip::debug::report::advice;
-use stickslip::debug::smaller::{Smaller, smaller};
-=======
-mod common;
-#[path = "common/program.rs"]
-mod program;
-
-use common::{Run, run, scene};
-use program::{code, err, program};
 use stickslip::explain::report::advice;
 use stickslip::explain::smaller::{Smaller, smaller};
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:tests/loose.rs
 use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
 use stickslip::step::event::Failure;

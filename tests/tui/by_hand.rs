@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use std::sync::Arc;
 use stickslip::contact::record::{ContactRecord, Forced};
 use stickslip::contact::table2::{Entry, Numbers, Ties, decide};
-use stickslip::debug::session::Frame;
+use stickslip::history::frame::Frame;
 use stickslip::linear::norms::Norms;
 use stickslip::model::{Beam, Body, BodyKind, Contact, Dofs, Node, Surface};
 use stickslip::model::{Friction, Mode, Model, Settings};
@@ -14,7 +14,7 @@ use stickslip::step::event::{Event, Outcome};
 use stickslip::step::state::State;
 use stickslip::tui::app::{App, Effect};
 use stickslip::tui::theme::Theme;
-use stickslip::tui::{View, draw, keys};
+use stickslip::tui::{View, keys, screen};
 
 /// A beam of five nodes over a floor; all of its nodes are slaves, or as many as asked for.
 pub fn model(slaves: usize) -> Model {
@@ -222,7 +222,7 @@ pub fn view<'a>(model: &'a Model, frames: &'a [Frame]) -> View<'a> {
         frames,
         strips: &[],
         tree: None,
-        looks: None,
+        background: None,
         cursor: frames.len() - 1,
         running: false,
         residuals: residuals(),
@@ -255,7 +255,7 @@ pub fn type_text(app: &mut App, view: &View, text: &str) {
 pub fn render(app: &App, view: &View, width: u16, height: u16) -> Buffer {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
-    draw::draw(&mut buffer, area, app, Some(view));
+    screen::draw(&mut buffer, area, app, Some(view));
     buffer
 }
 

@@ -2,10 +2,10 @@
 
 use crate::by_hand::{app, find, frames, minor, model, press, render, type_text, view};
 use ratatui::style::Color;
-use stickslip::debug::command::{Command, Unit};
 use stickslip::model::Mode;
+use stickslip::record::command::{Command, Unit};
 use stickslip::tui::app::Effect;
-use stickslip::tui::{View, draw};
+use stickslip::tui::{View, screen};
 
 #[test]
 fn keys_become_commands() {
@@ -98,7 +98,7 @@ fn the_command_line_completes_recalls_and_complains() {
     assert_eq!(press(&mut app, &view, ": Up Enter"), [set]);
     press(&mut app, &view, ":");
     type_text(&mut app, &view, "jump");
-    assert!(draw::text(&app, Some(&view), 80, 24).contains("\n:jump"));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains("\n:jump"));
     press(&mut app, &view, "Enter");
     let screen = render(&app, &view, 80, 24);
     assert_eq!(find(&screen, "no action is called 'jump'").fg, Color::Red);
@@ -111,10 +111,10 @@ fn help_lists_every_action_and_scrolls() {
     let view = view(&model, &frames);
     let mut app = app();
     press(&mut app, &view, "?");
-    insta::assert_snapshot!("help-110x70", draw::text(&app, Some(&view), 110, 70));
-    let top = draw::text(&app, Some(&view), 80, 24);
+    insta::assert_snapshot!("help-110x70", screen::text(&app, Some(&view), 110, 70));
+    let top = screen::text(&app, Some(&view), 80, 24);
     press(&mut app, &view, "G");
-    let end = draw::text(&app, Some(&view), 80, 24);
+    let end = screen::text(&app, Some(&view), 80, 24);
     assert!(
         top.contains("Go through the iterations") && end.contains("closer to switching"),
         "{end}"

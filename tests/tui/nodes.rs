@@ -12,7 +12,7 @@ use stickslip::model::Mode;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::tui::app::App;
 use stickslip::tui::theme::Theme;
-use stickslip::tui::{View, draw};
+use stickslip::tui::{View, screen};
 
 #[test]
 fn the_fired_cell_is_lit_and_nothing_else_is() {
@@ -81,7 +81,7 @@ fn a_tie_is_told_from_a_near_tie() {
     let frames = frames(&model, event((1, 1, 1), vec![tie, near], Outcome::Minor));
     let view = view(&model, &frames);
     let mut app = app();
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(
         screen.contains("|F_t| 5.000000000e-1 = |T_max| 5.000000000e-1"),
         "{screen}"
@@ -92,7 +92,7 @@ fn a_tie_is_told_from_a_near_tie() {
     );
     assert!(screen.contains(" 1-2e-10 "), "{screen}");
     press(&mut app, &view, "Down");
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(screen.contains("margin 1.000000083e-10 force"), "{screen}");
 }
 
@@ -121,7 +121,7 @@ fn held_and_off_surface_nodes_are_told_in_words() {
     frames[1].state.nodes[0].forced = Forced::Held(Mode::Free);
     let view = view(&model, &frames);
     let mut app = app();
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(
         screen.contains("You hold it free; Table 2 (◁) wanted fixed."),
         "{screen}"
@@ -136,7 +136,7 @@ fn held_and_off_surface_nodes_are_told_in_words() {
             .contains(Modifier::UNDERLINED)
     );
     press(&mut app, &view, "Down");
-    let screen = draw::text(&app, Some(&view), 80, 24);
+    let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(
         screen.contains("the projection lies past an end of every surface"),
         "{screen}"
@@ -149,7 +149,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
     let model = model(5);
     let say = |outcome| {
         let frames = frames(&model, event((3, 2, 4), records(), outcome));
-        draw::text(&app(), Some(&view(&model, &frames)), 120, 40)
+        screen::text(&app(), Some(&view(&model, &frames)), 120, 40)
             .lines()
             .nth(2)
             .unwrap_or("")
@@ -203,7 +203,7 @@ fn hundreds_of_nodes_scroll_with_the_selection() {
     let mut app = app();
     press(&mut app, &view, "End Up PageUp");
     assert_eq!(app.selected, 388);
-    assert!(draw::text(&app, Some(&view), 80, 24).contains("▸  beam.389"));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains("▸  beam.389"));
     press(&mut app, &view, "/");
     type_text(&mut app, &view, "beam.77");
     press(&mut app, &view, "Enter");
@@ -216,7 +216,7 @@ fn hundreds_of_nodes_scroll_with_the_selection() {
 
 /// Names in the table on the screen, from the top down.
 fn listed(app: &App, view: &View) -> Vec<String> {
-    let screen = draw::text(app, Some(view), 120, 40);
+    let screen = screen::text(app, Some(view), 120, 40);
     let rows = screen.lines().filter(|line| line.starts_with('┃'));
     rows.filter_map(|row| {
         row.split_whitespace()
@@ -240,7 +240,7 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     // Of 4 and 5, free both, the gap over the length counts; of the others the force over the scale, or the slip.
     assert_eq!(listed(&app, &view), ["3", "4", "2", "1", "5"]);
     assert_eq!(app.selected, 3);
-    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Slave nodes  2/5  by margin "));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains(" Slave nodes  2/5  by margin "));
     press(&mut app, &view, "Down");
     assert_eq!(app.selected, 1, "the row below, whatever its number");
     press(&mut app, &view, "<");
@@ -249,7 +249,7 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     assert_eq!(listed(&app, &view), ["4", "1", "2", "3", "5"]);
     press(&mut app, &view, "> A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"]);
-    assert!(draw::text(&app, Some(&view), 80, 24).contains(" 2/4 active of 5 "));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains(" 2/4 active of 5 "));
     press(&mut app, &view, "A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"], "one surface");
     press(&mut app, &view, "A End A");

@@ -1,7 +1,7 @@
 //! The debugger on real scenes: what is done is seen.
 
-use stickslip::debug::session::Session;
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
 

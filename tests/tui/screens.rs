@@ -10,7 +10,7 @@ use stickslip::model::{Monitor, Watched};
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::tui::app::{App, Effect, Offer};
 use stickslip::tui::theme::Theme;
-use stickslip::tui::{draw, keys};
+use stickslip::tui::{keys, screen};
 
 #[test]
 fn whole_screens() {
@@ -20,7 +20,7 @@ fn whole_screens() {
     for (width, height) in [(80, 24), (120, 40), (200, 60)] {
         insta::assert_snapshot!(
             format!("by-hand-{width}x{height}"),
-            draw::text(&app(), Some(&view), width, height)
+            screen::text(&app(), Some(&view), width, height)
         );
     }
 }
@@ -33,7 +33,7 @@ fn the_small_screen_turns_its_page() {
     let mut app = app();
     let mut seen = Vec::new();
     for _ in 0..9 {
-        seen.push(draw::text(&app, Some(&view), 80, 24));
+        seen.push(screen::text(&app, Some(&view), 80, 24));
         press(&mut app, &view, "Tab");
     }
     let titles = [
@@ -55,7 +55,7 @@ fn the_small_screen_turns_its_page() {
     }
     assert!(seen[3].contains("Tab page 4/9"));
     assert_eq!(
-        draw::text(&app, Some(&view), 80, 24)
+        screen::text(&app, Some(&view), 80, 24)
             .matches(" Remedies ")
             .count(),
         1,
@@ -86,18 +86,21 @@ fn the_load_is_drawn_over_a_monitor() {
     let mut view = view(&model, &frames);
     let mut app = app();
     press(&mut app, &view, "Tab Tab Tab Tab");
-    insta::assert_snapshot!("by-hand-curve-80x24", draw::text(&app, Some(&view), 80, 24));
+    insta::assert_snapshot!(
+        "by-hand-curve-80x24",
+        screen::text(&app, Some(&view), 80, 24)
+    );
     view.cursor = 4;
-    let back = draw::text(&app, Some(&view), 80, 24);
+    let back = screen::text(&app, Some(&view), 80, 24);
     assert!(back.contains("● -9.000e-2  at load 0.3"), "{back}");
     assert!(back.contains("-6.400e-1"), "the scale stays");
     press(&mut app, &view, "y");
-    assert!(draw::text(&app, Some(&view), 80, 24).contains(" Load over tip x  2/2 "));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains(" Load over tip x  2/2 "));
     press(&mut app, &view, "Shift-Tab");
-    let medium = draw::text(&app, Some(&view), 120, 40);
+    let medium = screen::text(&app, Some(&view), 120, 40);
     assert!(medium.contains(" Load over ") && !medium.contains(" Residual "));
     view.cursor = 0;
-    assert!(draw::text(&app, Some(&view), 200, 60).contains("No increment is done yet."));
+    assert!(screen::text(&app, Some(&view), 200, 60).contains("No increment is done yet."));
 }
 
 #[test]
@@ -108,7 +111,7 @@ fn without_a_scene_there_is_the_chooser() {
     };
     let mut app = App::new(Theme::colour(), vec![offer("01-first"), offer("02-second")]);
     app.choose();
-    insta::assert_snapshot!("chooser-80x24", draw::text(&app, None, 80, 24));
+    insta::assert_snapshot!("chooser-80x24", screen::text(&app, None, 80, 24));
     let press = |app: &mut App, key: &str| app.key(&keys::press(key).expect("a key's name"), None);
     assert_eq!(press(&mut app, "Esc"), Some(Effect::Quit));
     press(&mut app, "Down");
@@ -117,9 +120,9 @@ fn without_a_scene_there_is_the_chooser() {
         Some(Effect::Open("02-second".into()))
     );
     press(&mut app, ":");
-    assert!(draw::text(&app, None, 80, 24).contains(":open"));
+    assert!(screen::text(&app, None, 80, 24).contains(":open"));
     press(&mut app, "Esc");
-    assert!(draw::text(&app, None, 80, 24).contains("Choose a scene"));
+    assert!(screen::text(&app, None, 80, 24).contains("Choose a scene"));
 }
 
 #[test]
@@ -191,7 +194,7 @@ fn a_long_outcome_goes_on_in_further_lines() {
     };
     let outcome = Outcome::Failed(Failure::Cycle(cycle));
     let frames = frames(&model, event((3, 2, 4), records(), outcome));
-    let screen = draw::text(&app(), Some(&view(&model, &frames)), 80, 24);
+    let screen = screen::text(&app(), Some(&view(&model, &frames)), 80, 24);
     let told: String = screen.lines().skip(2).take(3).collect();
     assert!(
         told.contains("beam.1 free > fixed") && told.contains("beam.5 free"),
@@ -211,7 +214,7 @@ fn a_title_that_does_not_fit_says_so() {
     let frames = frames(&model, minor());
     let view = view(&model, &frames);
     let first = |width| {
-        let screen = draw::text(&app(), Some(&view), width, 24);
+        let screen = screen::text(&app(), Some(&view), width, 24);
         screen.lines().next().unwrap_or_default().to_string()
     };
     assert_eq!(first(30), " stickslip by-hand  A beam ov…");
@@ -226,7 +229,7 @@ fn a_long_message_is_not_cut() {
     let frames = frames(&model, minor());
     let mut app = app();
     app.complain("one two three four five six seven eight nine ten eleven twelve thirteen fourteen\nfifteen sixteen");
-    let screen = draw::text(&app, Some(&view(&model, &frames)), 80, 24);
+    let screen = screen::text(&app, Some(&view(&model, &frames)), 80, 24);
     assert!(
         screen.contains("fifteen sixteen") && screen.contains("? help"),
         "{screen}"
@@ -240,7 +243,7 @@ fn a_narrow_screen_shows_the_cell_that_fired_alone() {
     let view = view(&model, &frames);
     let mut app = app();
     press(&mut app, &view, "Down e");
-    let screen = draw::text(&app, Some(&view), 50, 14);
+    let screen = screen::text(&app, Some(&view), 50, 14);
     assert!(
         screen.contains("fixed → sliding   F_n > 0, |F_t| > |T_max|"),
         "{screen}"

@@ -32,7 +32,6 @@ pub enum Intervention {
     Settings(Settings),
 }
 
-<<<<<<< main:src/core/step/intervene.rs
 /// Why an intervention is refused; the state stays as it was.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Refusal {
@@ -65,9 +64,6 @@ pub enum Refusal {
 }
 
 /// Where a slave node is to start from in the next minor iteration, known from elsewhere.
-=======
-/// Where a slave node is to start from in the next minor iteration, as [`crate::explain::diagnosis::started`] has it.
->>>>>>> e9bd8bd9aa0f5b0dee754303acf9923846573bf2:src/solve/intervene.rs
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     pub slave: usize,
