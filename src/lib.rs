@@ -2,6 +2,7 @@
 //!
 //! The map of the house, from the ground up; an arrow of use only ever points down this list.
 //!
+//! - [`manual`]: the pages that `help` shows.
 //! - [`outside`]: what comes from outside: files that are read, and texts of them that are shown.
 //! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
 //! - [`linalg`]: the only place that knows faer, a package of its own. Sparsity patterns, factors, checked solves.
@@ -16,6 +17,7 @@ pub mod cli;
 pub mod contact;
 pub mod debug;
 pub mod fem;
+pub mod manual;
 pub mod outside;
 pub mod scene;
 pub mod solve;

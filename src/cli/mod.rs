@@ -9,6 +9,7 @@ mod check;
 mod core;
 mod debugger;
 mod diff;
+mod help;
 mod interrupt;
 mod lesson;
 mod list;
@@ -19,10 +20,13 @@ mod remedies;
 mod replay;
 mod resume;
 mod run;
+mod show;
 mod sink;
 mod story;
 mod study;
 mod table;
+
+pub use help::{commands, is_command_line};
 
 use crate::debug::files::FileError;
 use crate::debug::journal::JournalError;
@@ -82,9 +86,10 @@ fn how_to_overwrite(error: &FileError) -> &'static str {
 /// Steps through contact iterations of the finite element method, in a terminal.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version = origin::VERSION, args_conflicts_with_subcommands = true)]
-#[command(max_term_width = 100)]
+#[command(max_term_width = 100, disable_help_subcommand = true)]
 #[command(after_help = "\
 SCENE is a file or the name of a built-in scene (`stickslip list`).
+The manual: `stickslip help TOPIC`; `stickslip help` lists the topics.
 
 Exit codes: 0 converged, equal or sound; 1 snapshots differ; 2 bad input or usage;
 3 the solve did not converge; 130 interrupted.")]
@@ -127,6 +132,10 @@ enum Command {
     Chart(chart::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
+    /// Prints the file of a built-in scene, study or lesson, to start from
+    Show(show::Args),
+    /// Shows a page of the manual, or the help of a subcommand
+    Help(help::Args),
 }
 
 /// A scene, and what is changed in it.
@@ -185,6 +194,7 @@ pub fn main() -> ExitCode {
                 | Command::Resume(_)
                 | Command::Lesson(_)
                 | Command::Audit(_)
+                | Command::Help(_)
         )
     ) {
         // These have nothing to put away.
@@ -207,6 +217,8 @@ pub fn main() -> ExitCode {
         Some(Command::Map(args)) => map::main(args),
         Some(Command::Chart(args)) => chart::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
+        Some(Command::Show(args)) => show::main(args),
+        Some(Command::Help(args)) => help::main(args),
     };
     ended
         .unwrap_or_else(|error| {

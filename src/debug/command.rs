@@ -9,6 +9,7 @@ use crate::debug::breakpoints::Condition;
 use crate::debug::lesson;
 use crate::debug::tree::Tree;
 use crate::debug::watches::{Quantity, Watch};
+use crate::manual;
 use crate::scene::{Mode, Model, Scene, paths};
 use crate::solve::census::MOST;
 use crate::solve::{Intervention, Start};
@@ -181,6 +182,8 @@ pub enum Ui {
     /// Load another scene, by file or built-in name.
     Open(String),
     Help,
+    /// Show this page of the manual.
+    Manual(&'static manual::Page),
     Redraw,
     Suspend,
     /// Leave whatever is open: a count, a prompt, a zoomed pane.
@@ -415,6 +418,7 @@ enum Verb {
     Chart,
     Answer,
     Predict,
+    Help,
     Do(Ui),
 }
 
@@ -525,7 +529,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
     entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
     entry(Group::Program, "cancel", "", &["Esc"], "", "Drop a count, close a prompt, unzoom", Verb::Do(Ui::Cancel)),
-    entry(Group::Program, "help", "", &["?", "F1"], "help", "This list", Verb::Do(Ui::Help)),
+    entry(Group::Program, "help", "[TOPIC]", &["?", "F1"], "help", "This list, or a page of the manual", Verb::Help),
     entry(Group::Program, "quit", "", &["q"], "quit", "Leave", Verb::Do(Ui::Quit)),
 ];
 
@@ -697,6 +701,8 @@ impl Entry {
             }
             Verb::Monitor if rest.is_empty() => return Ok(Action::Ui(Ui::Monitor(None))),
             Verb::Monitor => return Ok(Action::Ui(Ui::Monitor(Some(monitor(rest, context)?)))),
+            Verb::Help if rest.is_empty() => return Ok(Action::Ui(Ui::Help)),
+            Verb::Help => return Ok(Action::Ui(Ui::Manual(manual::page(rest)?))),
             Verb::StartFrom => return Ok(Action::Ui(Ui::StartFrom(self.number(&words)?))),
             Verb::Apply => return Ok(Action::Ui(Ui::Apply(self.number(&words)?))),
             Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),
@@ -1137,6 +1143,7 @@ impl Entry {
                 .map(|value| value.to_string())
                 .collect(),
             (Verb::Open, 0) => context.scenes.to_vec(),
+            (Verb::Help, 0) => manual::PAGES.iter().map(|page| page.topic.into()).collect(),
             (Verb::Lesson, 0) => {
                 let names = lesson::list().iter().map(|lesson| lesson.name.into());
                 names.collect()

@@ -13,6 +13,7 @@ use crate::tui::branches;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
+use crate::tui::manual;
 use crate::tui::nodes;
 use crate::tui::number;
 use crate::tui::theme::{self, Theme};
@@ -46,6 +47,8 @@ pub enum Overlay {
     Help {
         top: usize,
     },
+    /// A page of the manual.
+    Manual(manual::Reader),
     /// The list of scenes, with one of them selected.
     Chooser {
         at: usize,
@@ -260,6 +263,12 @@ impl App {
             (_, "Ctrl-c") => self.interrupt(view),
             (Overlay::None, _) => self.pane_key(&name, view),
             (Overlay::Help { .. }, _) => self.help_key(&name),
+            (Overlay::Manual(reader), _) => {
+                if !reader.key(&name) {
+                    self.close(view);
+                }
+                None
+            }
             (Overlay::Chooser { .. }, _) => self.chooser_key(&name, view),
             (Overlay::Chart(_), _) => self.chart_key(&name, view),
             (Overlay::Line(_), _) => self.line_key(key, &name, view),
@@ -446,6 +455,7 @@ impl App {
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
             Ui::Help => self.overlay = Overlay::Help { top: 0 },
+            Ui::Manual(page) => self.overlay = Overlay::Manual(manual::Reader::new(page)),
             Ui::Cancel => {
                 self.zoomed = false;
                 self.say("");

@@ -7,8 +7,8 @@ use crate::tui::layout::{self, Pane};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use crate::tui::{
-    branches, chooser, curve, decision, diagnosis, footer, help, lesson, nodes, remedies, residual,
-    shape, status, timeline, workprecision,
+    branches, chooser, curve, decision, diagnosis, footer, help, lesson, manual, nodes, remedies,
+    residual, shape, status, timeline, workprecision,
 };
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -32,6 +32,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
         .unwrap_or_default();
     match (&app.overlay, view) {
         (Overlay::Help { top }, _) => help::draw(buffer, body, *top, &app.theme),
+        (Overlay::Manual(reader), _) => manual::draw(buffer, body, reader, &app.theme),
         (Overlay::Chart(page), _) => workprecision::draw(buffer, body, page, &app.theme),
         (Overlay::Chooser { at }, _) => chooser::draw(buffer, body, *at, app),
         (_, None) => {}

@@ -10,6 +10,7 @@
 //!   that none can be forgotten.
 
 mod macros;
+pub mod markdown;
 mod model;
 mod reference;
 mod words;

@@ -179,7 +179,11 @@ mod tests {
             let Some((_, said)) = field.docs.split_once("Default: ") else {
                 continue;
             };
-            let said = said.split([',', ';']).next().unwrap_or_default();
+            let said = said
+                .split([',', ';'])
+                .next()
+                .unwrap_or_default()
+                .trim_end_matches('.');
             let default = field
                 .default
                 .unwrap_or_else(|| panic!("{} has no default", field.name));
