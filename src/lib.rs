@@ -2,9 +2,9 @@
 //!
 //! The map of the house, from the ground up; an arrow of use only ever points down this list.
 //!
-//! - [`manual`]: the pages that `help` shows.
 //! - [`outside`]: what comes from outside: files that are read, and texts of them that are shown.
 //! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
+//! - [`manual`]: the pages that `help` shows.
 //! - [`linalg`]: the only place that knows faer, a package of its own. Sparsity patterns, factors, checked solves.
 //! - [`fem`]: the bodies. Shape functions, beams, quadrilaterals, materials, assembly of internal forces and tangent.
 //! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.

@@ -230,7 +230,8 @@ fn help_lists_the_pages_and_shows_one_as_plain_text_where_there_is_no_terminal()
     let listed = stickslip(&["help"]);
     assert_eq!(listed.status.code(), Some(0));
     for page in PAGES {
-        assert!(out(&listed).contains(&format!("{:<16}  {}\n", page.topic, page.about)));
+        let line = |line: &str| line.trim().starts_with(page.topic) && line.ends_with(page.about);
+        assert!(out(&listed).lines().any(line), "{}", page.topic);
         let shown = stickslip(&["help", page.topic]);
         assert_eq!(shown.status.code(), Some(0));
         let expected: Vec<String> = render(page.text, WIDTH)

@@ -134,5 +134,10 @@ pub fn arguments(line: &str) -> Option<Vec<&str>> {
         let rest = line.strip_prefix("stickslip")?;
         (rest.is_empty() || rest.starts_with(' ')).then_some(rest)
     })?;
-    Some(rest.split_whitespace().collect())
+    let mut words: Vec<&str> = rest.split_whitespace().collect();
+    // A subcommand that is only named need not have what it takes.
+    if words.len() == 1 {
+        words.push("--help");
+    }
+    Some(words)
 }
