@@ -62,12 +62,7 @@ fn every_page_fits_80_columns() {
         for line in render(page.text, WIDTH) {
             let text = line.text();
             let wide = unicode_width::UnicodeWidthStr::width(text.trim_end());
-            let code = text.starts_with("    ");
-            assert!(
-                wide <= WIDTH || code,
-                "{}: {wide} columns: {text}",
-                page.topic
-            );
+            assert!(wide <= WIDTH, "{}: {wide} columns: {text}", page.topic);
         }
     }
 }

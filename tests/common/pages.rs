@@ -114,13 +114,19 @@ pub fn typed(text: &str) -> Vec<String> {
         match (fence, line.strip_prefix("```")) {
             (None, Some(language)) => fence = Some(language),
             (Some(_), Some(_)) => fence = None,
-            (Some("sh"), None) => found.push(
-                line.split(" #")
-                    .next()
-                    .unwrap_or_default()
-                    .trim()
-                    .to_owned(),
-            ),
+            (Some("sh"), None) => match found.last_mut() {
+                Some(last) if last.ends_with('\\') => {
+                    last.pop();
+                    *last += line.trim();
+                }
+                _ => found.push(
+                    line.split(" #")
+                        .next()
+                        .unwrap_or_default()
+                        .trim()
+                        .to_owned(),
+                ),
+            },
             (Some(_), None) => {}
             (None, None) => found.extend(line.split('`').skip(1).step_by(2).map(str::to_owned)),
         }
@@ -136,7 +142,7 @@ pub fn arguments(line: &str) -> Option<Vec<&str>> {
     })?;
     let mut words: Vec<&str> = rest.split_whitespace().collect();
     // A subcommand that is only named need not have what it takes.
-    if words.len() == 1 {
+    if let [_] | [_, "--csv"] = words[..] {
         words.push("--help");
     }
     Some(words)
