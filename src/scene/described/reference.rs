@@ -210,6 +210,14 @@ mod tests {
         for one in all() {
             assert!(!one.docs.is_empty(), "{} is not described", one.name);
             assert!(!one.forms.is_empty(), "{} has no form", one.name);
+            for field in one.forms.iter().flat_map(|form| &form.fields) {
+                assert!(
+                    !field.docs.is_empty(),
+                    "{}: {} is not described",
+                    one.name,
+                    field.name
+                );
+            }
         }
     }
 
