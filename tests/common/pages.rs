@@ -108,7 +108,7 @@ fn fenced(picture: &str) -> String {
 
 /// What a reader may type: lines of `sh` blocks, and code within lines.
 pub fn typed(text: &str) -> Vec<String> {
-    let mut found = Vec::new();
+    let mut found: Vec<String> = Vec::new();
     let mut fence: Option<&str> = None;
     for line in text.lines() {
         match (fence, line.strip_prefix("```")) {
@@ -143,6 +143,7 @@ pub fn arguments(line: &str) -> Option<Vec<&str>> {
     let mut words: Vec<&str> = rest.split_whitespace().collect();
     // A subcommand that is only named need not have what it takes.
     if let [_] | [_, "--csv"] = words[..] {
+        words.truncate(1);
         words.push("--help");
     }
     Some(words)
