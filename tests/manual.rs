@@ -5,7 +5,6 @@
 #[path = "common/pages.rs"]
 mod pages;
 #[path = "common/terminal.rs"]
-#[allow(dead_code)]
 mod terminal;
 
 use std::fs;

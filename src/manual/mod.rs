@@ -21,6 +21,8 @@ pub struct Page {
 macro_rules! pages {
     ($($module:ident $topic:literal $file:literal $about:literal;)*) => {
         $(
+            // Brackets on a page are arguments that may be left out, and no links.
+            #[allow(rustdoc::broken_intra_doc_links)]
             #[doc = include_str!($file)]
             pub mod $module {}
         )*
@@ -84,6 +86,9 @@ pub struct Hit {
 pub fn search(text: &str) -> Vec<Hit> {
     let text = text.to_lowercase();
     let mut hits = Vec::new();
+    if text.trim().is_empty() {
+        return hits;
+    }
     for page in PAGES {
         let mut heading = String::new();
         for line in render::render(page.text, render::WIDTH) {
@@ -125,5 +130,6 @@ mod tests {
             "{hits:?}"
         );
         assert_eq!(search("no page has this in it"), []);
+        assert_eq!(search(" "), []);
     }
 }

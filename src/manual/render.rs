@@ -382,8 +382,7 @@ mod tests {
         let text = "one two three `four five` six seven eight\n\n- a long item of a list that goes on\n  here\n1. next";
         let expected = [
             "one two three four",
-            "five six seven",
-            "eight",
+            "five six seven eight",
             "",
             "- a long item of a",
             "  list that goes on",

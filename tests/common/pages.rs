@@ -1,15 +1,10 @@
 //! What README and manual show of the program: the part between each marker and its end is made by the program.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use stickslip::debug::lesson::Lesson;
 use stickslip::scene::described::markdown;
 use stickslip::tui::{Debugger, theme::Theme};
-
-/// The files: README and every page.
-pub fn readme() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")
-}
 
 /// Compares a file with what the program says now, or renews it where `README=write` asks for that.
 pub fn check(file: &Path) {
