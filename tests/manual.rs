@@ -230,7 +230,7 @@ fn help_lists_the_pages_and_shows_one_as_plain_text_where_there_is_no_terminal()
         assert_eq!(shown.status.code(), Some(0));
         let expected: Vec<String> = render(page.text, WIDTH)
             .iter()
-            .map(|l| l.text().trim_end().into())
+            .map(|line| line.plain())
             .collect();
         assert_eq!(out(&shown), expected.join("\n") + "\n", "{}", page.topic);
         assert!(!out(&shown).contains('\u{1b}'));

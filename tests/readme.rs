@@ -68,3 +68,35 @@ fn the_readme_and_the_page_on_speed_tell_the_same() {
         );
     }
 }
+
+#[test]
+fn errors_that_the_readme_names_stand_on_the_page_on_verification() {
+    let readme = fs::read_to_string(readme()).unwrap();
+    let page = stickslip::manual::page("verification").unwrap().text;
+    let rows = readme
+        .lines()
+        .skip_while(|line| !line.starts_with("| problem "));
+    let rows: Vec<_> = rows
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .collect();
+    assert_eq!(rows.len(), 5);
+    for row in rows {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        // The page's rows of the same problem, by its number or first word.
+        let problem = cells[1].split([' ', ',']).next().unwrap();
+        let mut inside = false;
+        let of = |line: &&str| {
+            // A row without a problem belongs to the one above.
+            inside = match line.strip_prefix("| | ") {
+                Some(_) => inside,
+                None => line.starts_with(&format!("| {problem}")),
+            };
+            inside
+        };
+        let own: String = page.lines().filter(of).collect();
+        for error in cells[3].split("; ") {
+            assert!(own.contains(error), "{row}: {error} is not in {own}");
+        }
+    }
+}

@@ -137,7 +137,7 @@ fn show(page: &Page) -> Result<Exit, Error> {
     let lines = render::render(page.text, width);
     let line = |line: &render::Line| match styled {
         true => line.ansi() + "\n",
-        false => line.text().trim_end().to_owned() + "\n",
+        false => line.plain() + "\n",
     };
     let text: String = lines.iter().map(line).collect();
     if terminal && paged(&text) {

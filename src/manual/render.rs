@@ -36,6 +36,16 @@ impl Line {
         self.pieces.iter().map(|(_, text)| text.as_str()).collect()
     }
 
+    /// For where there are no styles: a heading is underlined by a line below it.
+    pub fn plain(&self) -> String {
+        let text = self.text();
+        let text = text.trim_end();
+        match self.is_heading() {
+            true => format!("{text}\n{}", "─".repeat(text.width())),
+            false => text.to_owned(),
+        }
+    }
+
     pub fn is_heading(&self) -> bool {
         self.pieces
             .iter()
@@ -418,6 +428,7 @@ mod tests {
         assert_eq!(line.text(), "see this and that, code, 2 * 3 * 4");
         assert_eq!(line.pieces[1], (Style::Strong, "this".into()));
         assert!(render("# Title", 80)[0].is_heading());
+        assert_eq!(render("## Two", 80)[0].plain(), "Two\n───");
         assert_eq!(render("## A", 80)[0].ansi(), "\u{1b}[1;4mA\u{1b}[0m");
     }
 }
