@@ -10,6 +10,7 @@ mod check;
 mod core;
 mod debugger;
 mod diff;
+mod help;
 mod interrupt;
 mod lesson;
 mod list;
@@ -20,11 +21,22 @@ mod remedies;
 mod replay;
 mod resume;
 mod run;
+mod show;
 mod sink;
 mod story;
 mod study;
 mod table;
 
+<<<<<<< main
+=======
+pub use help::{commands, is_command_line};
+
+use crate::outside::files::FileError;
+use crate::outside::shown;
+use crate::record::journal::JournalError;
+use crate::record::snapshot::SnapshotError;
+use crate::scene::{Scene, SceneError};
+>>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 use crate::study::origin;
 use base::{Exit, say, tell};
 use clap::{Parser, Subcommand};
@@ -33,9 +45,10 @@ use std::process::ExitCode;
 /// Steps through contact iterations of the finite element method, in a terminal.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version = origin::VERSION, args_conflicts_with_subcommands = true)]
-#[command(max_term_width = 100)]
+#[command(max_term_width = 100, disable_help_subcommand = true)]
 #[command(after_help = "\
 SCENE is a file or the name of a built-in scene (`stickslip list`).
+The manual: `stickslip help TOPIC`; `stickslip help` lists the topics.
 
 Exit codes: 0 converged, equal or sound; 1 snapshots differ; 2 bad input or usage;
 3 the solve did not converge; 130 interrupted.")]
@@ -78,6 +91,10 @@ enum Command {
     Chart(chart::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
+    /// Prints the file of a built-in scene, study or lesson, to start from
+    Show(show::Args),
+    /// Shows a page of the manual, or the help of a subcommand
+    Help(help::Args),
 }
 
 /// Runs the program with the arguments of the process.
@@ -106,6 +123,7 @@ pub fn main() -> ExitCode {
                 | Command::Resume(_)
                 | Command::Lesson(_)
                 | Command::Audit(_)
+                | Command::Help(_)
         )
     ) {
         // These have nothing to put away.
@@ -128,6 +146,8 @@ pub fn main() -> ExitCode {
         Some(Command::Map(args)) => map::main(args),
         Some(Command::Chart(args)) => chart::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
+        Some(Command::Show(args)) => show::main(args),
+        Some(Command::Help(args)) => help::main(args),
     };
     ended
         .unwrap_or_else(|error| {

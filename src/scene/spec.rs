@@ -71,11 +71,19 @@ described! {
     #[serde(deny_unknown_fields)]
     pub enum Nodes {
         /// One node, called `id`.
-        Node { id: String => name, at: Point },
+        Node {
+            /// Name of the node, or of the chain.
+            id: String => name,
+            /// Where it stands.
+            at: Point,
+        },
         /// A straight chain.
         Line {
+            /// Name of the node, or of the chain.
             id: String => name,
+            /// Its first node.
             from: Point,
+            /// Its last node.
             to: Point,
             /// Number of elements, before refinement.
             elements: usize,
@@ -84,18 +92,28 @@ described! {
         },
         /// A circular arc; angles in degrees, anticlockwise from +x, `from` may exceed `to`.
         Arc {
+            /// Name of the node, or of the chain.
             id: String => name,
+            /// Center of the circle.
             center: Point,
+            /// Radius of the circle, a length.
             radius: f64,
+            /// Angle of its first node.
             from: f64,
+            /// Angle of its last node.
             to: f64,
+            /// Number of elements, before refinement.
             elements: usize,
+            /// Nodes per element, 2 to 9.
             per_element: usize,
         },
         /// A chain through given points; elements are the Lagrange curves through them.
         Through {
+            /// Name of the node, or of the chain.
             id: String => name,
+            /// The nodes before refinement, in order; each element shares its last one with the next.
             points: Vec<Point>,
+            /// Nodes per element, 2 to 9.
             per_element: usize,
         },
         /// A mesh of 8-node quadrilaterals on a block with four sides.
@@ -104,6 +122,7 @@ described! {
         /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
         /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
         Block {
+            /// Name of the block.
             id: String => name,
             /// Two opposite corners of an upright rectangle, lower left and upper right; or all four of a
             /// quadrilateral, anticlockwise, the bottom edge first.
@@ -124,6 +143,7 @@ described! {
         },
         /// One mesh of several blocks, joined along sides. Blocks lie apart, however close, where no joint names them.
         Mesh {
+            /// Name of the mesh.
             id: String => name,
             /// The blocks. Their edges keep their names; their common nodes have one name for each.
             of: Vec<String>,
@@ -137,10 +157,12 @@ described! {
         /// A chain over nodes that exist already, which it shares: a rigid joint between beams, or a line along several
         /// edges of blocks, around a corner too. Refined as far as its parts are.
         Chain {
+            /// Name of the node, or of the chain.
             id: String => name,
             /// Names of single nodes, of whole chains (`ID.all`) and of edges of blocks. A chain or edge goes on from the
             /// node at which the one before it ends.
             of: Vec<String>,
+            /// Nodes per element, 2 to 9.
             per_element: usize,
         },
     }
@@ -174,9 +196,13 @@ described! {
     #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct Sides {
+        /// The side between two corners; straight where none is given.
         pub bottom: Option<Side>,
+        /// The side between two corners; straight where none is given.
         pub right: Option<Side>,
+        /// The side between two corners; straight where none is given.
         pub top: Option<Side>,
+        /// The side between two corners; straight where none is given.
         pub left: Option<Side>,
     }
 }
@@ -199,11 +225,17 @@ described! {
     #[serde(deny_unknown_fields)]
     pub enum Side {
         /// The circular arc about a center that is equally far from both corners, the shorter way round.
-        Arc { center: Point },
+        Arc {
+            /// Center of the circle.
+            center: Point,
+        },
         /// The curve of a chain that stands above the block in the scene, or of an earlier block's edge, walked either
         /// way; its ends are the two corners. Only the curve is taken, with the chain's own spacing (a graded edge is
         /// graded already); no nodes are shared.
-        Along { chain: String },
+        Along {
+            /// Id of the chain, or name of the edge.
+            chain: String,
+        },
     }
 }
 
@@ -229,6 +261,7 @@ described! {
     pub enum Material {
         /// A beam's section stiffnesses.
         Section {
+            /// Name of the material.
             id: String => name,
             /// Axial stiffness, force.
             EA: f64,
@@ -240,6 +273,7 @@ described! {
         },
         /// An elastic continuum in the plane.
         Elastic {
+            /// Name of the material.
             id: String => name,
             /// Young's modulus, force by area.
             E: f64,
@@ -281,15 +315,20 @@ described! {
     pub enum BodySpec {
         /// A geometrically exact planar beam along a chain of nodes.
         Beam {
+            /// Name of the body.
             id: String => name,
+            /// Id of the chain.
             along: String,
+            /// Id of the material.
             material: String,
         },
         /// A continuum on a block, or on a mesh of several.
         Solid {
+            /// Name of the body.
             id: String => name,
             /// Id of the block or mesh.
             mesh: String,
+            /// Id of the material.
             material: String,
             /// Parts of another material; where they overlap, the last one holds. Default: none.
             #[serde(default)]
@@ -299,6 +338,7 @@ described! {
         /// of `nodes`. Either `stiffness` (f = K u) or `compliance` (u = W f, W may be singular) is named, row by row;
         /// neither need be symmetric.
         Matrix {
+            /// Name of the body.
             id: String => name,
             /// Names of nodes, each once.
             nodes: Vec<String>,
@@ -313,7 +353,12 @@ described! {
             free: Vec<f64>,
         },
         /// Linear bars, their directions fixed: small displacements.
-        Springs { id: String => name, bars: Vec<Bar> },
+        Springs {
+            /// Name of the body.
+            id: String => name,
+            /// The bars.
+            bars: Vec<Bar>,
+        },
     }
 }
 
@@ -341,6 +386,7 @@ described! {
         pub from: Point,
         /// Upper right corner.
         pub to: Point,
+        /// Id of the material.
         pub material: String,
     }
 }
@@ -366,7 +412,9 @@ described! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct SurfaceSpec {
+        /// Name of the surface.
         pub id: String => name,
+        /// Id of the chain, or name of the edge.
         pub along: String,
         /// Walk the chain the other way, so that the outward side changes. Default: false.
         #[serde(default)]
@@ -404,7 +452,9 @@ described! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct SupportSpec {
+        /// Name of a node; `ID.all` for a whole chain.
         pub node: String,
+        /// What is restrained.
         pub fix: Vec<Component>,
     }
 }
@@ -416,39 +466,54 @@ described! {
     pub enum LoadSpec {
         /// A dead point load.
         Force {
+            /// Name of the node.
             node: String,
+            /// Component along x, a force. Default: 0.
             #[serde(default)]
             x: f64,
+            /// Component along y, a force. Default: 0.
             #[serde(default)]
             y: f64,
+            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
             #[serde(default)]
             scale: Scale,
         },
         /// A moment on a beam node, anticlockwise positive.
         Moment {
+            /// Name of the node.
             node: String,
+            /// Force times length.
             value: f64,
+            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
             #[serde(default)]
             scale: Scale,
         },
         /// A uniform dead load along a chain: on each unit of its undeformed length.
         Traction {
+            /// Id of the chain, or name of the edge.
             along: String,
             /// Along the outward normal of the undeformed chain, to the right of its walk. Default: 0.
             #[serde(default)]
             normal: f64,
+            /// Component along x, force by length. Default: 0.
             #[serde(default)]
             x: f64,
+            /// Component along y, force by length. Default: 0.
             #[serde(default)]
             y: f64,
+            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
             #[serde(default)]
             scale: Scale,
         },
         /// A prescribed displacement (or rotation) of a node; `ID.all` moves a whole chain.
         Displacement {
+            /// Name of a node; `ID.all` for a whole chain.
             node: String,
+            /// Along which degree of freedom.
             component: Component,
+            /// Length, or angle in radians.
             value: f64,
+            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
             #[serde(default)]
             scale: Scale,
         },
@@ -492,6 +557,7 @@ described! {
     pub struct MonitorSpec {
         /// Column name in `--csv`.
         pub name: String => name,
+        /// What is reported.
         pub of: Quantity,
     }
 }
@@ -502,18 +568,31 @@ described! {
     #[serde(deny_unknown_fields)]
     pub enum Quantity {
         /// A displacement (or rotation) of a node.
-        Displacement { node: String, component: Component },
+        Displacement {
+            /// Name of the node.
+            node: String,
+            /// Along which degree of freedom.
+            component: Component,
+        },
         /// The interaction force on one slave node, or on all of them together.
         Contact {
+            /// Name of the slave node. Default: all of them together.
             #[serde(default)]
             node: Option<String>,
+            /// Along which axis.
             component: Axis,
         },
         /// The force of the support at a restrained degree of freedom.
-        Reaction { node: String, component: Component },
+        Reaction {
+            /// Name of the node.
+            node: String,
+            /// Along which degree of freedom.
+            component: Component,
+        },
         /// How far one slave node that sticks has gone along its surface from the point where it stuck (length, with the
         /// sign of slip; 0 where it slides or is free), or that of all which has gone furthest.
         Drift {
+            /// Name of the slave node. Default: the one that has gone furthest.
             #[serde(default)]
             node: Option<String>,
         },

@@ -77,6 +77,12 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     CHARTS.iter().map(|(name, _)| *name)
 }
 
+/// The file of a scene's chart.
+pub fn text(name: &str) -> Option<&'static str> {
+    let found = CHARTS.iter().find(|(own, _)| *own == name);
+    found.map(|(_, text)| *text)
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {

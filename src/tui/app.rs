@@ -10,8 +10,17 @@ use crate::tui::chartpage::ChartPage;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
+<<<<<<< main
 use crate::tui::theme::Theme;
 use crate::tui::view::{View, context};
+=======
+use crate::tui::manual;
+use crate::tui::panes::branches;
+use crate::tui::panes::nodes;
+use crate::tui::panes::workprecision;
+use crate::tui::theme::{self, Theme};
+use crate::tui::view::View;
+>>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 use crossterm::event::KeyEvent;
 use std::fmt;
 
@@ -44,6 +53,8 @@ pub enum Overlay {
     Help {
         top: usize,
     },
+    /// A page of the manual.
+    Manual(manual::Reader),
     /// The list of scenes, with one of them selected.
     Chooser {
         at: usize,
@@ -224,6 +235,12 @@ impl App {
             (_, "Ctrl-c") => self.interrupt(view),
             (Overlay::None, _) => self.pane_key(&name, view),
             (Overlay::Help { .. }, _) => self.help_key(&name),
+            (Overlay::Manual(reader), _) => {
+                if !reader.key(&name) {
+                    self.close(view);
+                }
+                None
+            }
             (Overlay::Chooser { .. }, _) => self.chooser_key(&name, view),
             (Overlay::Chart(_), _) => self.chart_key(&name, view),
             (Overlay::Line(_), _) => self.line_key(key, &name, view),
@@ -381,6 +398,7 @@ impl App {
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
             Ui::Help => self.overlay = Overlay::Help { top: 0 },
+            Ui::Manual(page) => self.overlay = Overlay::Manual(manual::Reader::new(page)),
             Ui::Cancel => {
                 self.zoomed = false;
                 self.say("");

@@ -4,6 +4,7 @@ use crate::outside::shown;
 use crate::session::Session;
 use crate::tui::app::{App, Overlay};
 use crate::tui::layout::{self, Pane};
+<<<<<<< main:src/tui/screen.rs
 use crate::tui::paint;
 use crate::tui::panes::branches;
 use crate::tui::panes::chooser;
@@ -20,6 +21,13 @@ use crate::tui::panes::shape;
 use crate::tui::panes::status;
 use crate::tui::panes::timeline;
 use crate::tui::panes::workprecision;
+=======
+use crate::tui::manual;
+use crate::tui::panes::{
+    branches, chooser, curve, decision, diagnosis, footer, help, lesson, nodes, remedies, residual,
+    shape, status, timeline, workprecision,
+};
+>>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664:src/tui/draw.rs
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
@@ -43,6 +51,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
         .unwrap_or_default();
     match (&app.overlay, view) {
         (Overlay::Help { top }, _) => help::draw(buffer, body, *top, &app.theme),
+        (Overlay::Manual(reader), _) => manual::draw(buffer, body, reader, &app.theme),
         (Overlay::Chart(page), _) => workprecision::draw(buffer, body, page, &app.theme),
         (Overlay::Chooser { at }, _) => chooser::draw(buffer, body, *at, app),
         (_, None) => {}

@@ -1,113 +1,109 @@
-//! The README shows what the program shows: its screens and key list are generated, its scene is sound.
+//! The README is a front page: short, and it shows what the program shows.
 //!
-//! `README=write cargo test --test readme` renews them.
+//! `README=write cargo test --test readme` renews its picture and its list of pages.
+
+#[path = "common/pages.rs"]
+mod pages;
 
 use std::fs;
+<<<<<<< main:tests/files/readme.rs
 use std::sync::Arc;
 use stickslip::scene::Scene;
 use stickslip::teach::{Lesson, play::play};
 use stickslip::tui::{Debugger, theme::Theme};
+=======
+use std::path::PathBuf;
+>>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664:tests/readme.rs
 
-const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
+fn readme() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("README.md")
+}
 
-/// The README with the part between each marker and its end made anew.
-fn renewed(readme: &str) -> String {
-    let mut text = String::new();
-    let mut skipping = false;
-    for line in readme.lines() {
-        if line == "<!-- end -->" {
-            skipping = false;
-        }
-        if !skipping {
-            text += line;
-            text.push('\n');
-        }
-        if let Some(what) = line.strip_prefix("<!-- screen ") {
-            text += &screen(what.trim_end_matches(" -->"));
-            skipping = true;
-        } else if let Some(what) = line.strip_prefix("<!-- lesson ") {
-            text += &lesson_screen(what.trim_end_matches(" -->"));
-            skipping = true;
-        } else if line == "<!-- keys -->" {
-            text += &format!("\n{}\n", stickslip::action::markdown().trim_end());
-            skipping = true;
-        }
+#[test]
+fn the_picture_and_the_list_of_pages_in_the_readme_are_those_of_the_program() {
+    pages::check(&readme());
+}
+
+#[test]
+fn the_readme_is_a_front_page() {
+    let readme = fs::read_to_string(readme()).unwrap();
+    let lines = readme.lines().count();
+    assert!(lines <= 250, "{lines} lines");
+    assert!(readme.contains("cargo test "), "it must say how to test");
+}
+
+#[test]
+fn every_command_in_the_readme_can_be_typed() {
+    let readme = fs::read_to_string(readme()).unwrap();
+    let lines = pages::typed(&readme);
+    let commands: Vec<_> = lines
+        .iter()
+        .filter_map(|line| pages::arguments(line))
+        .collect();
+    assert!(commands.len() > 5);
+    for words in commands {
+        stickslip::cli::is_command_line(&words)
+            .unwrap_or_else(|error| panic!("{words:?}: {error}"));
     }
-    text
 }
 
-/// `WIDTHxHEIGHT SCENE: KEYS` as a fenced picture of the program's own buffer.
-fn screen(what: &str) -> String {
-    let (size, rest) = what.split_once(' ').unwrap();
-    let (scene, keys) = rest.split_once(": ").unwrap();
-    let (width, height) = size.split_once('x').unwrap();
-    let picture =
-        stickslip::tui::screen(scene, keys, width.parse().unwrap(), height.parse().unwrap())
-            .unwrap();
-    fenced(&picture)
-}
-
-/// `WIDTHxHEIGHT LESSON: KEYS`, likewise.
-fn lesson_screen(what: &str) -> String {
-    let (size, rest) = what.split_once(' ').unwrap();
-    let (name, keys) = rest.split_once(": ").unwrap();
-    let (width, height) = size.split_once('x').unwrap();
-    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
-    debugger.teach(Lesson::open(name).unwrap());
-    debugger.type_keys(keys);
-    fenced(&debugger.text(width.parse().unwrap(), height.parse().unwrap()))
-}
-
-fn fenced(picture: &str) -> String {
-    let lines: Vec<&str> = picture.lines().map(str::trim_end).collect();
-    format!("```text\n{}\n```\n", lines.join("\n").trim_end())
-}
-
+/// The rows of a README table are rows of the page that it sends the reader to for all of them.
 #[test]
-fn screens_and_keys_in_the_readme_are_those_of_the_program() {
-    let readme = fs::read_to_string(README).unwrap();
-    let expected = renewed(&readme);
-    if std::env::var("README").as_deref() == Ok("write") {
-        fs::write(README, &expected).unwrap();
+fn the_readme_and_the_page_on_speed_tell_the_same() {
+    let readme = fs::read_to_string(readme()).unwrap();
+    let speed = stickslip::manual::page("speed").unwrap().text;
+    let cells = |row: &str| {
+        row.split('|')
+            .map(|cell| cell.trim().to_owned())
+            .collect::<Vec<_>>()
+    };
+    let rows = readme
+        .lines()
+        .skip_while(|line| !line.starts_with("| unknowns "))
+        .skip(2);
+    let rows: Vec<_> = rows
+        .take_while(|line| line.starts_with('|'))
+        .map(cells)
+        .collect();
+    assert_eq!(rows.len(), 3);
+    for row in rows {
+        let of = |line: &&str| cells(line).get(1) == row.get(1) && line.contains(&row[3]);
+        let whole = cells(speed.lines().find(of).unwrap());
+        assert!(
+            row.iter().all(|cell| whole.contains(cell)),
+            "{row:?} is not in {whole:?}"
+        );
     }
-    assert!(
-        readme == expected,
-        "renew it: README=write cargo test --test readme"
-    );
-}
-
-/// The RON example that has these words in it.
-fn example<'a>(readme: &'a str, words: &str) -> &'a str {
-    let examples = readme.split("```ron\n").skip(1);
-    let mut texts = examples.map(|after| after.split("```").next().unwrap());
-    texts.find(|text| text.contains(words)).unwrap()
 }
 
 #[test]
-fn the_lesson_in_the_readme_plays_through() {
-    let readme = fs::read_to_string(README).unwrap();
-    let text = example(&readme, "Pulled, not pushed");
-    let lesson = Lesson::from_text("README.md", text).unwrap_or_else(|e| panic!("{e}"));
-    let answers = play(&Arc::new(lesson)).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(answers.len(), 3);
-}
-
-#[test]
-fn the_scenes_in_the_readme_are_sound_and_converge() {
-    let readme = fs::read_to_string(README).unwrap();
-    // Others are parts of scenes, or lessons.
-    let whole =
-        |block: &&str| block.starts_with("(\n    title:") && !block.contains("\n    steps: [");
-    let blocks: Vec<&str> = readme.split("```ron\n").skip(1).filter(whole).collect();
-    assert_eq!(blocks.len(), 2);
-    for block in blocks {
-        let text = block.split("```").next().unwrap();
-        let scene = Scene::from_text("README.md", text, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(scene.model));
-        while let Some(event) = stepper.step() {
-            if let stickslip::step::event::Outcome::Failed(failure) = &event.outcome {
-                panic!("{failure:?}");
-            }
+fn errors_that_the_readme_names_stand_on_the_page_on_verification() {
+    let readme = fs::read_to_string(readme()).unwrap();
+    let page = stickslip::manual::page("verification").unwrap().text;
+    let rows = readme
+        .lines()
+        .skip_while(|line| !line.starts_with("| problem "));
+    let rows: Vec<_> = rows
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .collect();
+    assert_eq!(rows.len(), 5);
+    for row in rows {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        // The page's rows of the same problem, by its number or first word.
+        let problem = cells[1].split([' ', ',']).next().unwrap();
+        let mut inside = false;
+        let of = |line: &&str| {
+            // A row without a problem belongs to the one above.
+            inside = match line.strip_prefix("| | ") {
+                Some(_) => inside,
+                None => line.starts_with(&format!("| {problem}")),
+            };
+            inside
+        };
+        let own: String = page.lines().filter(of).collect();
+        for error in cells[3].split("; ") {
+            assert!(own.contains(error), "{row}: {error} is not in {own}");
         }
     }
 }

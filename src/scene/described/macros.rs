@@ -1,4 +1,4 @@
-//! [`described!`]: a type of the scene file, its walk and its part of the reference, from one definition.
+//! `described!`: a type of the scene file, its walk and its part of the reference, from one definition.
 
 /// Whether an attribute says that a field, or every field, may be left out.
 macro_rules! has_default {

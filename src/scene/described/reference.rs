@@ -179,7 +179,11 @@ mod tests {
             let Some((_, said)) = field.docs.split_once("Default: ") else {
                 continue;
             };
-            let said = said.split([',', ';']).next().unwrap_or_default();
+            let said = said
+                .split([',', ';'])
+                .next()
+                .unwrap_or_default()
+                .trim_end_matches('.');
             let default = field
                 .default
                 .unwrap_or_else(|| panic!("{} has no default", field.name));
@@ -206,6 +210,14 @@ mod tests {
         for one in all() {
             assert!(!one.docs.is_empty(), "{} is not described", one.name);
             assert!(!one.forms.is_empty(), "{} has no form", one.name);
+            for field in one.forms.iter().flat_map(|form| &form.fields) {
+                assert!(
+                    !field.docs.is_empty(),
+                    "{}: {} is not described",
+                    one.name,
+                    field.name
+                );
+            }
         }
     }
 

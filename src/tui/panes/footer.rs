@@ -62,6 +62,19 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
     let room = places.footer.width as usize;
     match &app.overlay {
         Overlay::None => table_keys(app, places, room),
+        Overlay::Manual(reader) => match reader.typed() {
+            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
+            None => listed(
+                &[
+                    ("↑↓", "scroll"),
+                    ("←→", "page"),
+                    ("/", "search"),
+                    ("n", "again"),
+                    ("Esc", "back"),
+                ],
+                app,
+            ),
+        },
         Overlay::Help { .. } => listed(&[("↑↓", "scroll"), ("Esc", "back")], app),
         Overlay::Chart(_) => listed(
             &[

@@ -1,0 +1,180 @@
+//! `stickslip help [TOPIC]`: the manual's pages, searched or shown, and the help of subcommands.
+
+use super::{Cli, Error, Exit, say};
+use crate::manual::{self, Page, render};
+use crate::tui;
+use clap::{CommandFactory, Parser};
+use std::ffi::OsString;
+use std::io::{IsTerminal, Write};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A page of the manual, or a subcommand; without one, the pages are listed
+    topic: Option<String>,
+    /// Lists the lines of the manual that hold this, with their topics and headings
+    #[arg(long, value_name = "WORD", conflicts_with = "topic")]
+    search: Option<String>,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    match (&args.topic, &args.search) {
+        (None, Some(word)) => search(word),
+        (None, None) => contents(),
+        (Some(topic), _) if Cli::command().find_subcommand(topic).is_some() => subcommand(topic),
+        (Some(topic), _) => show(manual::page(topic).map_err(Error::Usage)?),
+    }
+}
+
+fn contents() -> Result<Exit, Error> {
+    let pages = manual::contents();
+    say(&format!(
+        "Pages of the manual (`stickslip help TOPIC`; `stickslip help --search WORD`):\n\n{pages}\n\
+         `stickslip --help` lists the subcommands, `stickslip help SUBCOMMAND` explains one.\n"
+    ))?;
+    Ok(Exit::Good)
+}
+
+/// What `SUBCOMMAND --help` says.
+fn subcommand(name: &str) -> Result<Exit, Error> {
+    if let Err(help) = Cli::try_parse_from(["stickslip", name, "--help"]) {
+        say(&help.render().to_string())?;
+    }
+    Ok(Exit::Good)
+}
+
+fn search(word: &str) -> Result<Exit, Error> {
+    let hits = manual::search(word);
+    if hits.is_empty() {
+        let word = crate::outside::shown::cut(word, 40);
+        return Err(Error::Usage(format!(
+            "no page of the manual holds '{word}'"
+        )));
+    }
+    let mut text = String::new();
+    let mut above = ("", String::new());
+    for hit in hits {
+        let here = (hit.topic, hit.heading);
+        if here != above {
+            text += &format!("{}: {}\n", here.0, here.1);
+        }
+        text += &format!("    {}\n", hit.line);
+        above = here;
+    }
+    say(&text)?;
+    Ok(Exit::Good)
+}
+
+/// All subcommands with their arguments and options, as the manual shows them.
+pub fn commands() -> String {
+    let mut program = Cli::command();
+    program.build();
+    let mut text = String::new();
+    for command in std::iter::once(&program).chain(program.get_subcommands()) {
+        let name = match command.get_name() {
+            "stickslip" => "stickslip [SCENE]".to_owned(),
+            name => format!("stickslip {name}"),
+        };
+        let about = command
+            .get_about()
+            .map(ToString::to_string)
+            .unwrap_or_default();
+        text += &format!("## {name}\n\n{}.\n\n", about.trim_end_matches('.'));
+        for argument in command
+            .get_arguments()
+            .filter(|argument| argument.get_id() != "help")
+        {
+            let help = argument
+                .get_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            text += format!("- `{}`: {help}", written(argument)).trim_end_matches([':', ' ']);
+            text.push('\n');
+        }
+        text = text.trim_end().to_owned() + "\n\n";
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+/// An argument as one types it.
+fn written(argument: &clap::Arg) -> String {
+    let takes = argument.get_action().takes_values();
+    let values = argument.get_value_names().unwrap_or_default();
+    let values: Vec<&str> = values
+        .iter()
+        .filter(|_| takes)
+        .map(|name| name.as_str())
+        .collect();
+    let short = argument.get_short().map(|short| format!("-{short}"));
+    let long = argument.get_long().map(|long| format!("--{long}"));
+    let flags: Vec<String> = short.into_iter().chain(long).collect();
+    format!("{} {}", flags.join(", "), values.join(" "))
+        .trim()
+        .to_owned()
+}
+
+/// Whether these words can follow the program's name, without doing what they say.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn is_command_line(words: &[&str]) -> Result<(), String> {
+    let program = std::iter::once("stickslip");
+    match Cli::try_parse_from(program.chain(words.iter().copied())) {
+        Err(error) if error.use_stderr() => Err(error.to_string()),
+        _ => Ok(()),
+    }
+}
+
+/// A page: through a pager on a terminal, else as plain text.
+fn show(page: &Page) -> Result<Exit, Error> {
+    let terminal = std::io::stdout().is_terminal();
+    let width = match terminal {
+        true => tui::width().clamp(40, 100),
+        false => render::WIDTH,
+    };
+    let styled = terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+    let lines = render::render(page.text, width);
+    let line = |line: &render::Line| match styled {
+        true => line.ansi() + "\n",
+        false => line.plain() + "\n",
+    };
+    let text: String = lines.iter().map(line).collect();
+    if terminal && paged(&text) {
+        return Ok(Exit::Good);
+    }
+    // Not through `say`, which would show the styles instead of obeying them: the pages are our own.
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
+        _ => Ok(Exit::Good),
+    }
+}
+
+/// Shows a text with the user's pager; whether there was one that did.
+fn paged(text: &str) -> bool {
+    // Ctrl-C is the pager's while it has the terminal.
+    let kept = signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::default());
+    let mut command = Command::new("/bin/sh");
+    let pager = std::env::var_os("PAGER").filter(|pager| !pager.is_empty());
+    command
+        .arg("-c")
+        .arg(pager.unwrap_or_else(|| OsString::from("less -R")))
+        .stdin(Stdio::piped());
+    if std::env::var_os("LESS").is_none() {
+        // So that `PAGER=less` shows bold text, too.
+        command.env("LESS", "R");
+    }
+    let shown = command.spawn().and_then(|mut child| {
+        if let Some(mut pipe) = child.stdin.take() {
+            // A pager that is left before the end of the page closes the pipe.
+            let _ = pipe.write_all(text.as_bytes());
+        }
+        child.wait()
+    });
+    if let Ok(kept) = kept {
+        signal_hook::low_level::unregister(kept);
+    }
+    // 126 and 127 are the shell's words for a program that cannot be run.
+    shown.is_ok_and(|status| !matches!(status.code(), Some(126 | 127)))
+}

@@ -1,0 +1,61 @@
+//! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from.
+
+use super::{Error, Exit, say, tell};
+use crate::outside::files;
+use crate::scene::{builtin, error::did_you_mean};
+use crate::study::{builtin as studies, chart_file};
+use crate::teach;
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Name of a built-in scene, study or lesson
+    name: String,
+    /// The work-precision chart of that scene
+    #[arg(long)]
+    chart: bool,
+    /// Writes the file here
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Overwrites a file that exists
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let text = find(&args.name, args.chart).map_err(Error::Usage)?;
+    match &args.output {
+        Some(path) if path.as_os_str() != "-" => {
+            files::write(path, text, args.force)?;
+            tell(&format!("wrote {}", path.display()));
+        }
+        _ => say(text)?,
+    }
+    Ok(Exit::Good)
+}
+
+fn find(name: &str, chart: bool) -> Result<&'static str, String> {
+    let found = match chart {
+        true => chart_file::text(name.strip_suffix(".ron").unwrap_or(name)),
+        false => builtin::find(name)
+            .map(|scene| scene.text)
+            .or_else(|| studies::find(name).map(|study| study.text))
+            .or_else(|| lesson::find(name).map(|lesson| lesson.text)),
+    };
+    found.ok_or_else(|| {
+        let scenes = builtin::list().iter().map(|scene| scene.name);
+        let others = studies::list().iter().map(|study| study.name);
+        let lessons = lesson::list().iter().map(|lesson| lesson.name);
+        let (what, near) = match chart {
+            true => ("chart", did_you_mean(name, chart_file::names())),
+            false => (
+                "scene, study or lesson",
+                did_you_mean(name, scenes.chain(others).chain(lessons)),
+            ),
+        };
+        let name = crate::outside::shown::cut(name, 60);
+        format!(
+            "no built-in {what} is called '{name}'{near} (`stickslip list`, `stickslip lesson`)"
+        )
+    })
+}

@@ -1,0 +1,107 @@
+//! The scene reference as the manual's pages show it.
+
+use super::{Field, Form, Type, reference};
+
+/// Every type of the file but the settings, which have a page of their own.
+///
+/// # Errors
+/// If the reference cannot be made.
+pub fn types() -> Result<String, String> {
+    let all = reference()?;
+    let is_word = |one: &Type| one.forms.iter().all(|form| form.fields.is_empty());
+    let mut text = String::new();
+    for one in all
+        .iter()
+        .filter(|one| one.name != "Settings" && !is_word(one))
+    {
+        text += &format!("### {}\n\n{}\n\n", one.name, plain(&one.docs));
+        for form in &one.forms {
+            if let Some(name) = form.name {
+                text += &format!("#### {name}\n\n");
+            }
+            if !form.docs.is_empty() {
+                text += &format!("{}\n\n", plain(&form.docs));
+            }
+            text += &fields(form, &all);
+        }
+    }
+    Ok(text.trim_end().replace("(#settings)", "(settings.md)") + "\n")
+}
+
+/// The settings, each with its choices.
+///
+/// # Errors
+/// If the reference cannot be made.
+pub fn settings() -> Result<String, String> {
+    let all = reference()?;
+    let found = all.iter().find(|one| one.name == "Settings");
+    let settings = found.ok_or("the reference has no Settings")?;
+    Ok(settings
+        .forms
+        .iter()
+        .map(|form| fields(form, &all))
+        .collect())
+}
+
+fn fields(form: &Form, all: &[Type]) -> String {
+    let mut text = String::new();
+    for field in &form.fields {
+        let default = field.default.as_ref();
+        let default =
+            default.map_or_else(String::new, |value| match value.starts_with("all its") {
+                true => format!(", default {value}"),
+                false => format!(", default `{value}`"),
+            });
+        let words = words(field, all);
+        let kind = match words {
+            Some(_) => "one of these words".to_owned(),
+            None => field.kind.clone(),
+        };
+        text += format!("- `{}`: {kind}{default}. {}", field.name, said(&field.docs)).trim_end();
+        text.push('\n');
+        for word in words.into_iter().flatten() {
+            text += format!(
+                "    - `{}`: {}",
+                word.name.unwrap_or_default(),
+                plain(&word.docs)
+            )
+            .trim_end_matches([':', ' ']);
+            text.push('\n');
+        }
+    }
+    text.push('\n');
+    text
+}
+
+/// The words that a field can be.
+fn words<'a>(field: &Field, all: &'a [Type]) -> Option<&'a [Form]> {
+    let listed = field.kind.strip_prefix("one of ")?;
+    let names = |one: &Type| {
+        one.forms
+            .iter()
+            .filter_map(|form| form.name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    all.iter()
+        .find(|one| names(one) == listed)
+        .map(|one| &one.forms[..])
+}
+
+/// A comment without the default at its end, where that is a plain value: it stands before, as it is read.
+fn said(docs: &str) -> String {
+    let docs = plain(docs);
+    match docs.split_once("Default: ") {
+        Some((before, default))
+            if !default.trim_end_matches('.').contains(' ') || default == "(1, 1)." =>
+        {
+            before.trim_end().to_owned()
+        }
+        _ => docs,
+    }
+}
+
+/// A comment without rustdoc's links, which lead nowhere on a page.
+fn plain(docs: &str) -> String {
+    docs.replace("[`", "`").replace("`]", "`")
+}

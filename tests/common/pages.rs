@@ -1,0 +1,145 @@
+//! What README and manual show of the program: the part between each marker and its end is made by the program.
+
+use std::fs;
+use std::path::Path;
+use stickslip::scene::described::markdown;
+use stickslip::teach::Lesson;
+use stickslip::tui::{Debugger, theme::Theme};
+
+/// Compares a file with what the program says now, or renews it where `README=write` asks for that.
+pub fn check(file: &Path) {
+    let text = fs::read_to_string(file).unwrap();
+    let expected = renewed(&text);
+    if std::env::var("README").as_deref() == Ok("write") {
+        fs::write(file, &expected).unwrap();
+        return;
+    }
+    let same = text == expected;
+    assert!(
+        same,
+        "{}: renew it: README=write cargo test --test readme --test manual",
+        file.display()
+    );
+}
+
+/// A text with what stands between each marker and its end made anew.
+fn renewed(text: &str) -> String {
+    let mut renewed = String::new();
+    let mut skipping = false;
+    for line in text.lines() {
+        if line == "<!-- end -->" {
+            assert!(skipping, "an end without a marker");
+            skipping = false;
+        }
+        if !skipping {
+            renewed += line;
+            renewed.push('\n');
+        }
+        let marker = line
+            .strip_prefix("<!-- ")
+            .and_then(|rest| rest.strip_suffix(" -->"));
+        if let Some(made) = marker.and_then(made) {
+            assert!(!skipping, "a marker before the end of another: {line}");
+            renewed += &made;
+            skipping = true;
+        }
+    }
+    assert!(!skipping, "a marker without an end");
+    renewed
+}
+
+/// What a marker stands for.
+fn made(marker: &str) -> Option<String> {
+    let (kind, what) = marker.split_once(' ').unwrap_or((marker, ""));
+    let list = |text: String| Some(format!("\n{}\n\n", text.trim_end()));
+    match kind {
+        "screen" => Some(screen(what)),
+        "lesson" => Some(lesson(what)),
+        "keys" => list(stickslip::action::markdown()),
+        "commands" => list(stickslip::cli::commands()),
+        "reference" => list(markdown::types().unwrap()),
+        "settings" => list(markdown::settings().unwrap()),
+        "topics" => {
+            let pages = stickslip::manual::PAGES.iter();
+            let rows = pages.map(|page| {
+                format!(
+                    "- [{0}](src/manual/pages/{0}.md): {1}\n",
+                    page.topic, page.about
+                )
+            });
+            list(rows.collect())
+        }
+        _ => None,
+    }
+}
+
+/// `WIDTHxHEIGHT NAME: KEYS`.
+fn parts(what: &str) -> (u16, u16, &str, &str) {
+    let (size, rest) = what.split_once(' ').unwrap();
+    let (name, keys) = rest.split_once(": ").unwrap();
+    let (width, height) = size.split_once('x').unwrap();
+    (width.parse().unwrap(), height.parse().unwrap(), name, keys)
+}
+
+/// A fenced picture of the program's own buffer.
+fn screen(what: &str) -> String {
+    let (width, height, scene, keys) = parts(what);
+    fenced(&stickslip::tui::screen(scene, keys, width, height).unwrap())
+}
+
+/// The same of a lesson.
+fn lesson(what: &str) -> String {
+    let (width, height, name, keys) = parts(what);
+    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
+    debugger.teach(Lesson::open(name).unwrap());
+    debugger.type_keys(keys);
+    fenced(&debugger.text(width, height))
+}
+
+fn fenced(picture: &str) -> String {
+    let lines: Vec<&str> = picture.lines().map(str::trim_end).collect();
+    format!("```text\n{}\n```\n", lines.join("\n").trim_end())
+}
+
+/// What a reader may type: lines of `sh` blocks, and code within lines.
+pub fn typed(text: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    let mut fence: Option<&str> = None;
+    for line in text.lines() {
+        match (fence, line.strip_prefix("```")) {
+            (None, Some(language)) => fence = Some(language),
+            (Some(_), Some(_)) => fence = None,
+            (Some("sh"), None) => match found.last_mut() {
+                Some(last) if last.ends_with('\\') => {
+                    last.pop();
+                    *last += line.trim();
+                }
+                _ => found.push(
+                    line.split(" #")
+                        .next()
+                        .unwrap_or_default()
+                        .trim()
+                        .to_owned(),
+                ),
+            },
+            (Some(_), None) => {}
+            (None, None) => found.extend(line.split('`').skip(1).step_by(2).map(str::to_owned)),
+        }
+    }
+    found
+}
+
+/// The arguments, where a line calls the program.
+pub fn arguments(line: &str) -> Option<Vec<&str>> {
+    let rest = line.strip_prefix("cargo run --release --").or_else(|| {
+        let rest = line.strip_prefix("stickslip")?;
+        (rest.is_empty() || rest.starts_with(' ')).then_some(rest)
+    })?;
+    let mut words: Vec<&str> = rest.split_whitespace().collect();
+    // A subcommand that is only named need not have what it takes.
+    if let [_] | [_, "--csv"] = words[..] {
+        words.truncate(1);
+        words.push("--help");
+    }
+    Some(words)
+}
