@@ -2,13 +2,7 @@
 //!
 //! The map of the house, from the ground up: each line uses those above it and none below.
 //!
-<<<<<<< main
 //! - [`outside`]: what comes from outside and goes there: files that are read and written, texts of others that are shown.
-=======
-//! - [`outside`]: what comes from outside: files that are read, and texts of them that are shown.
-//! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
-//! - [`manual`]: the pages that `help` shows.
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 //! - [`linalg`]: the only place that knows faer, a package of its own. Sparsity patterns, factors, checked solves.
 //! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
 //! - [`fem`]: the bodies. Shape functions, beams, quadrilaterals, materials, assembly of internal forces and tangent.
@@ -26,15 +20,9 @@
 
 pub mod action;
 pub mod cli;
-<<<<<<< main
 pub mod explain;
 pub mod history;
-=======
-pub mod contact;
-pub mod debug;
-pub mod fem;
 pub mod manual;
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 pub mod outside;
 pub mod record;
 pub mod scene;

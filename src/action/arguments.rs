@@ -6,6 +6,7 @@ use super::misread::Misread;
 use super::table::{Entry, Verb, by_name};
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
+use crate::manual;
 use crate::model::Mode;
 use crate::record::command::{Command, To};
 use crate::scene::paths;
@@ -127,6 +128,8 @@ impl Entry {
             }
             Verb::Monitor if rest.is_empty() => return Ok(Action::Ui(Ui::Monitor(None))),
             Verb::Monitor => return Ok(Action::Ui(Ui::Monitor(Some(monitor(rest, context)?)))),
+            Verb::Help if rest.is_empty() => return Ok(Action::Ui(Ui::Help)),
+            Verb::Help => return Ok(Action::Ui(Ui::Manual(manual::page(rest)?))),
             Verb::StartFrom => return Ok(Action::Ui(Ui::StartFrom(self.number(&words)?))),
             Verb::Apply => return Ok(Action::Ui(Ui::Apply(self.number(&words)?))),
             Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),

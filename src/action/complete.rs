@@ -6,6 +6,7 @@ use super::meaning::{Filter, Sort, Whose};
 use super::table::{ACTIONS, Entry, Verb, by_name};
 use crate::history::tree::Tree;
 use crate::history::watches::WatchQuantity;
+use crate::manual;
 use crate::scene::paths;
 
 /// What a line could go on as: whole lines, of which the first is the likeliest.
@@ -77,6 +78,7 @@ impl Entry {
                 .map(|value| value.to_string())
                 .collect(),
             (Verb::Open, 0) => context.scenes.to_vec(),
+            (Verb::Help, 0) => manual::PAGES.iter().map(|page| page.topic.into()).collect(),
             (Verb::Lesson, 0) => {
                 let names = context.lessons.iter();
                 names.map(|lesson| lesson.name.into()).collect()

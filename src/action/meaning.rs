@@ -1,5 +1,6 @@
 //! What a key or a typed line can mean: a command for the session, or something that concerns the terminal alone.
 
+use crate::manual;
 use crate::record::command::Command;
 use crate::study::Vary;
 
@@ -72,6 +73,8 @@ pub enum Ui {
     /// Load another scene, by file or built-in name.
     Open(String),
     Help,
+    /// Show this page of the manual.
+    Manual(&'static manual::Page),
     Redraw,
     Suspend,
     /// Leave whatever is open: a count, a prompt, a zoomed pane.

@@ -2,6 +2,7 @@
 
 use crate::history::breakpoints::NoPlace;
 use crate::interface::census::MOST;
+use crate::manual::NoPage;
 
 /// Why a line means no action: what is wrong, and what would be right.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -29,6 +30,8 @@ pub enum Misread {
         kind: &'static str,
         instead: String,
     },
+    #[error(transparent)]
+    NoPage(#[from] NoPage),
     #[error(transparent)]
     NoPlace(#[from] NoPlace),
     #[error("'{word}' is none of {}", all.join(", "))]

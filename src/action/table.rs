@@ -106,6 +106,7 @@ pub(super) enum Verb {
     Chart,
     Answer,
     Predict,
+    Help,
     Do(Ui),
 }
 
@@ -216,7 +217,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
     entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
     entry(Group::Program, "cancel", "", &["Esc"], "", "Drop a count, close a prompt, unzoom", Verb::Do(Ui::Cancel)),
-    entry(Group::Program, "help", "", &["?", "F1"], "help", "This list", Verb::Do(Ui::Help)),
+    entry(Group::Program, "help", "[TOPIC]", &["?", "F1"], "help", "This list, or a page of the manual", Verb::Help),
     entry(Group::Program, "quit", "", &["q"], "quit", "Leave", Verb::Do(Ui::Quit)),
 ];
 

@@ -1,6 +1,7 @@
 //! `stickslip help [TOPIC]`: the manual's pages, searched or shown, and the help of subcommands.
 
-use super::{Cli, Error, Exit, say};
+use super::Cli;
+use super::base::{Error, Exit, say};
 use crate::manual::{self, Page, render};
 use crate::tui;
 use clap::{CommandFactory, Parser};
@@ -23,7 +24,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         (None, Some(word)) => search(word),
         (None, None) => contents(),
         (Some(topic), _) if Cli::command().find_subcommand(topic).is_some() => subcommand(topic),
-        (Some(topic), _) => show(manual::page(topic).map_err(Error::Usage)?),
+        (Some(topic), _) => show(manual::page(topic).map_err(|why| Error::Usage(why.to_string()))?),
     }
 }
 

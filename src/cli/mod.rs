@@ -27,16 +27,8 @@ mod story;
 mod study;
 mod table;
 
-<<<<<<< main
-=======
 pub use help::{commands, is_command_line};
 
-use crate::outside::files::FileError;
-use crate::outside::shown;
-use crate::record::journal::JournalError;
-use crate::record::snapshot::SnapshotError;
-use crate::scene::{Scene, SceneError};
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 use crate::study::origin;
 use base::{Exit, say, tell};
 use clap::{Parser, Subcommand};

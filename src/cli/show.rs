@@ -1,6 +1,6 @@
 //! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from.
 
-use super::{Error, Exit, say, tell};
+use super::base::{Error, Exit, say, tell};
 use crate::outside::files;
 use crate::scene::{builtin, error::did_you_mean};
 use crate::study::{builtin as studies, chart_file};
@@ -40,12 +40,12 @@ fn find(name: &str, chart: bool) -> Result<&'static str, String> {
         false => builtin::find(name)
             .map(|scene| scene.text)
             .or_else(|| studies::find(name).map(|study| study.text))
-            .or_else(|| lesson::find(name).map(|lesson| lesson.text)),
+            .or_else(|| teach::find(name).map(|lesson| lesson.text)),
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);
         let others = studies::list().iter().map(|study| study.name);
-        let lessons = lesson::list().iter().map(|lesson| lesson.name);
+        let lessons = teach::list().iter().map(|lesson| lesson.name);
         let (what, near) = match chart {
             true => ("chart", did_you_mean(name, chart_file::names())),
             false => (

@@ -53,16 +53,24 @@ pages! {
     changes "changes" "pages/changes.md" "What became different";
 }
 
+/// A topic that no page has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the manual has no page '{topic}'{near}; `help` lists them")]
+pub struct NoPage {
+    topic: String,
+    /// What may have been meant.
+    near: String,
+}
+
 /// The page of a topic.
 ///
 /// # Errors
 /// That there is none, with the nearest one.
-pub fn page(topic: &str) -> Result<&'static Page, String> {
+pub fn page(topic: &str) -> Result<&'static Page, NoPage> {
     let found = PAGES.iter().find(|page| page.topic == topic);
-    found.ok_or_else(|| {
-        let near = did_you_mean(topic, PAGES.iter().map(|page| page.topic));
-        let topic = crate::outside::shown::cut(topic, 40);
-        format!("the manual has no page '{topic}'{near}; `help` lists them")
+    found.ok_or_else(|| NoPage {
+        topic: crate::outside::shown::cut(topic, 40).to_string(),
+        near: did_you_mean(topic, PAGES.iter().map(|page| page.topic)),
     })
 }
 
@@ -116,8 +124,11 @@ mod tests {
 
     #[test]
     fn a_wrong_topic_is_answered_with_the_nearest() {
-        assert!(page("strategis").is_err_and(|e| e.contains("did you mean \"strategies\"?")));
-        assert!(page("\u{1b}]0;x").is_err_and(|e| !e.contains('\u{1b}')));
+        assert!(
+            page("strategis")
+                .is_err_and(|e| e.to_string().contains("did you mean \"strategies\"?"))
+        );
+        assert!(page("\u{1b}]0;x").is_err_and(|e| !e.to_string().contains('\u{1b}')));
         assert_eq!(page("keys").map(|page| page.topic), Ok("keys"));
     }
 

@@ -10,17 +10,9 @@ use crate::tui::chartpage::ChartPage;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
-<<<<<<< main
+use crate::tui::panes::manual;
 use crate::tui::theme::Theme;
 use crate::tui::view::{View, context};
-=======
-use crate::tui::manual;
-use crate::tui::panes::branches;
-use crate::tui::panes::nodes;
-use crate::tui::panes::workprecision;
-use crate::tui::theme::{self, Theme};
-use crate::tui::view::View;
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 use crossterm::event::KeyEvent;
 use std::fmt;
 

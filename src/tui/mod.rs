@@ -16,18 +16,10 @@ pub mod layout;
 mod learning;
 mod lists;
 pub mod loading;
-<<<<<<< main
 mod order;
 pub mod paint;
 pub mod panes;
 mod prompts;
-=======
-pub mod manual;
-pub mod nodes;
-pub mod number;
-pub mod remedies;
-pub mod residual;
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 pub mod run;
 pub mod screen;
 pub mod terminal;
@@ -36,9 +28,6 @@ pub mod view;
 
 pub use app::{App, Effect};
 pub use run::{Debugger, Error, resume, run, run_lesson, screen};
-<<<<<<< main
 pub use screen::picture;
-=======
 pub use terminal::width;
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664
 pub use view::View;

@@ -4,7 +4,6 @@ use crate::outside::shown;
 use crate::session::Session;
 use crate::tui::app::{App, Overlay};
 use crate::tui::layout::{self, Pane};
-<<<<<<< main:src/tui/screen.rs
 use crate::tui::paint;
 use crate::tui::panes::branches;
 use crate::tui::panes::chooser;
@@ -14,6 +13,7 @@ use crate::tui::panes::diagnosis;
 use crate::tui::panes::footer;
 use crate::tui::panes::help;
 use crate::tui::panes::lesson;
+use crate::tui::panes::manual;
 use crate::tui::panes::nodes;
 use crate::tui::panes::remedies;
 use crate::tui::panes::residual;
@@ -21,13 +21,6 @@ use crate::tui::panes::shape;
 use crate::tui::panes::status;
 use crate::tui::panes::timeline;
 use crate::tui::panes::workprecision;
-=======
-use crate::tui::manual;
-use crate::tui::panes::{
-    branches, chooser, curve, decision, diagnosis, footer, help, lesson, nodes, remedies, residual,
-    shape, status, timeline, workprecision,
-};
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664:src/tui/draw.rs
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;

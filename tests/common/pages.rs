@@ -17,7 +17,7 @@ pub fn check(file: &Path) {
     let same = text == expected;
     assert!(
         same,
-        "{}: renew it: README=write cargo test --test readme --test manual",
+        "{}: renew it: README=write cargo test --test files",
         file.display()
     );
 }

@@ -1,7 +1,11 @@
 //! Files and names that come from outside, and what the program and its README are made of.
 
+#[path = "../common/pages.rs"]
+mod pages;
 #[path = "../common/program.rs"]
 mod program;
+#[path = "../common/terminal.rs"]
+mod terminal;
 
 // Shared: scenes as text.
 mod scenes;
@@ -27,5 +31,7 @@ mod writing;
 mod licences;
 // The declared Rust version is true, and the same everywhere.
 mod versions;
+// The pages of the manual show what the program shows, and are found.
+mod manual;
 // The README shows what the program shows.
 mod readme;

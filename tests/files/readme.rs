@@ -1,19 +1,10 @@
 //! The README is a front page: short, and it shows what the program shows.
 //!
-//! `README=write cargo test --test readme` renews its picture and its list of pages.
+//! `README=write cargo test --test files` renews its picture and its list of pages.
 
-#[path = "common/pages.rs"]
-mod pages;
-
+use crate::pages;
 use std::fs;
-<<<<<<< main:tests/files/readme.rs
-use std::sync::Arc;
-use stickslip::scene::Scene;
-use stickslip::teach::{Lesson, play::play};
-use stickslip::tui::{Debugger, theme::Theme};
-=======
 use std::path::PathBuf;
->>>>>>> 07bedc05de54b031770ff99611470e79a3bb0664:tests/readme.rs
 
 fn readme() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("README.md")

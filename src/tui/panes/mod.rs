@@ -9,6 +9,7 @@ pub mod diagnosis;
 pub mod footer;
 pub mod help;
 pub mod lesson;
+pub mod manual;
 pub mod nodes;
 pub mod remedies;
 pub mod residual;

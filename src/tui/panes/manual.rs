@@ -2,7 +2,7 @@
 
 use crate::manual::render::{self, Line as Shown, Style};
 use crate::manual::{PAGES, Page};
-use crate::tui::screen;
+use crate::tui::paint;
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -127,7 +127,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, theme: &Theme) {
         }
     };
     let room = area.width.saturating_sub(4) as usize;
-    let title = Line::styled(format!(" {} ", draw::cut(&title, room)), theme.focus);
+    let title = Line::styled(format!(" {} ", paint::cut(&title, room)), theme.focus);
     let block = Block::new()
         .borders(Borders::TOP)
         .border_style(theme.focus)
@@ -142,7 +142,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, theme: &Theme) {
     let lines: Vec<Line> = shown
         .map(|line| styled(line, &reader.sought, theme))
         .collect();
-    draw::lines(buffer, inner, &lines);
+    paint::lines(buffer, inner, &lines);
 }
 
 fn styled(line: &Shown, sought: &str, theme: &Theme) -> Line<'static> {

@@ -1,12 +1,8 @@
 //! The manual: its pages show what the program shows, `help` and `:help` show its pages, and `show` what is built in.
 //!
-//! `README=write cargo test --test manual` renews what is made by the program.
+//! `README=write cargo test --test files` renews what is made by the program.
 
-#[path = "common/pages.rs"]
-mod pages;
-#[path = "common/terminal.rs"]
-mod terminal;
-
+use crate::{pages, terminal};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -94,7 +90,7 @@ fn every_command_in_the_manual_can_be_typed() {
             }
             if let Some(action) = line.strip_prefix(':').filter(|rest| !rest.is_empty()) {
                 let name = action.split_whitespace().next().unwrap();
-                command::by_name(name)
+                action::by_name(name)
                     .unwrap_or_else(|error| panic!("{}: {line}: {error}", page.topic));
             }
         }
@@ -298,7 +294,7 @@ fn show_prints_what_is_built_in_byte_for_byte() {
     }
     let study = studies::list()[0];
     assert_eq!(out(&stickslip(&["show", study.name])), study.text);
-    let lesson = lesson::list()[0];
+    let lesson = teach::list()[0];
     assert_eq!(out(&stickslip(&["show", lesson.name])), lesson.text);
     let name = chart_file::names().next().unwrap();
     assert_eq!(
@@ -445,13 +441,13 @@ fn a_page_in_the_debugger_scrolls_searches_turns_and_is_left() {
 
 #[test]
 fn topics_complete() {
-    let context = command::Context::default();
+    let context = action::Context::default();
     assert_eq!(
-        command::complete("help st", &context),
+        action::complete("help st", &context),
         ["help strategies", "help studies"]
     );
     assert_eq!(
-        command::complete("help maps", &context),
+        action::complete("help maps", &context),
         ["help maps-and-charts"]
     );
 }
