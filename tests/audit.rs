@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stickslip::contact::judge::Law;
 use stickslip::explain::audit::Audit;
-use stickslip::explain::remedies::{self, End};
+use stickslip::explain::remedies::{self, TrialEnd};
 use stickslip::scene::spec::{AtLimit, SlipCount, Sticking, Ties};
 use stickslip::scene::{Scene, builtin};
 use stickslip::solve::{Outcome, Stepper};
@@ -188,7 +188,10 @@ fn no_remedy_that_ends_against_a_law_is_called_converged() {
             let trial = remedies::attempt(&mut stepper, &failed, &remedy, &|| false).unwrap();
             let verdict = stepper.state().start.verdict;
             let broken = verdict.is_some_and(|verdict| verdict.broken().next().is_some());
-            assert!(trial.end != End::Converged || !broken, "{name}: {trial:?}");
+            assert!(
+                trial.end != TrialEnd::Converged || !broken,
+                "{name}: {trial:?}"
+            );
             judged += u32::from(verdict.is_some());
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::history::breakpoints::NoPlace;
 use crate::solve::census::MOST;
+use crate::study::read::NoVary;
 
 /// Why a line means no action: what is wrong, and what would be right.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -57,8 +58,8 @@ pub enum Misread {
     #[error("no monitor is called '{name}'; there are {monitors}")]
     NoMonitor { name: String, monitors: String },
     /// Settings of a chart that cannot be read.
-    #[error("{0}")]
-    NoChart(String),
+    #[error(transparent)]
+    NoChart(#[from] NoVary),
 }
 
 impl Misread {

@@ -13,7 +13,8 @@
 //!
 //! Work-precision charts:
 //!
-//! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_figure`]: drawn.
+//! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_table`]: as a table;
+//!   [`precision_figure`]: drawn.
 //! - [`reference`]: what runs are measured against; [`measuring`]: a chart measured beside other work.
 //!
 //! Nothing here knows a command line.
@@ -30,6 +31,7 @@ pub mod plan;
 pub mod plot;
 pub mod precision;
 pub mod precision_figure;
+pub mod precision_table;
 pub mod random;
 pub mod read;
 pub mod reason;
@@ -43,7 +45,7 @@ pub mod verdict;
 pub mod verdict_figure;
 
 pub use plan::{Case, Plan};
-pub use read::{Quantity, Study, Vary};
+pub use read::{AxisQuantity, Study, Vary};
 pub use reason::Reason;
-pub use result::{End, Row, Run};
+pub use result::{CaseEnd, Row, Run};
 pub use run::{Watch, run};
