@@ -12,7 +12,7 @@ pub enum NoPage {
     #[error(transparent)]
     Table(#[from] TableError),
     #[error(transparent)]
-    NotMeasured(#[from] NotMeasured),
+    NotMeasured(#[from] Box<NotMeasured>),
     #[error("stopped before there was anything to compare")]
     Empty,
 }

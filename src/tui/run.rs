@@ -473,7 +473,7 @@ impl Debugger {
         };
         (self.measuring, self.app.measuring) = (None, None);
         self.app.say("");
-        let page = result.map_err(NoPage::from);
+        let page = result.map_err(|why| NoPage::from(Box::new(why)));
         self.show_chart(page.and_then(ChartPage::of_chart));
         true
     }

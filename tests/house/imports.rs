@@ -448,7 +448,7 @@ fn tree(tokens: &[String], mut k: usize, above: &[String], found: &mut Vec<Broug
                 return k + 1;
             }
             name => {
-                if !(name == "self" && !path.is_empty()) {
+                if name != "self" || path.is_empty() {
                     path.push(name.into());
                 }
                 k += 1;
