@@ -2,7 +2,7 @@
 //!
 //! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
 //! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
-//! - [`run`]: the cases side by side, each on one thread; [`result`]: what one of them came to.
+//! - [`run`](mod@run): the cases side by side, each on one thread; [`result`]: what one of them came to.
 //! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG.
 //!
 //! Stability maps:
@@ -15,7 +15,7 @@
 //!
 //! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_table`]: as a table;
 //!   [`precision_figure`]: drawn.
-//! - [`reference`]: what runs are measured against; [`measuring`]: a chart measured beside other work.
+//! - [`reference`](mod@reference): what runs are measured against; [`measuring`]: a chart measured beside other work.
 //!
 //! Nothing here knows a command line.
 
