@@ -14,7 +14,8 @@
 //! A front is factored again only if its own entries, or a child's remainder, have changed since the last time: so the
 //! minor iterations of a major one repeat what depends on the modes that changed, and have the same bits all the same.
 
-use super::{Pattern, SolveError};
+use super::check::SolveError;
+use super::pattern::Pattern;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A pivot must have this part of the largest entry in its column.

@@ -13,7 +13,8 @@
 //! Only the upper half is looked at. There is no pivoting. Where a pivot is too small to go on, the check of the solution says so, and the matrix is one
 //! for [`super::Factors`].
 
-use super::{Pattern, SolveError, largest, symbolic_view};
+use super::check::{SolveError, largest};
+use super::pattern::{Pattern, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
