@@ -2,11 +2,8 @@
 
 use crate::history::breakpoints::NoPlace;
 use crate::interface::census::MOST;
-<<<<<<< main
 use crate::manual::NoPage;
-=======
 use crate::study::read::NoVary;
->>>>>>> 2921394a205dc01e6dc8bcfdb4726d25782dd975
 
 /// Why a line means no action: what is wrong, and what would be right.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

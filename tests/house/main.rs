@@ -18,6 +18,11 @@ const PACKAGES: &[Package] = &[
         others: &["linalg", "core"],
     },
     Package {
+        name: "stickslip_core",
+        folder: "src/core",
+        others: &[],
+    },
+    Package {
         name: "stickslip_linalg",
         folder: "src/linalg",
         others: &[],
@@ -30,16 +35,9 @@ const MOST_LINES: usize = 700;
 const MOST_PART: f64 = 0.15;
 
 /// Folders in which files still import each other in a circle.
-const CIRCULAR_YET: &[&str] = &["src/contact", "src/fem", "src/solve"];
+const CIRCULAR_YET: &[&str] = &["src/cli"];
 /// Files that are still longer than they may be.
-const LONG_YET: &[&str] = &[
-    "src/contact/judge.rs",
-    "src/scene/nodes.rs",
-    "src/scene/paths.rs",
-    "src/scene/spec.rs",
-    "src/solve/stepper.rs",
-    "src/solve/system.rs",
-];
+const LONG_YET: &[&str] = &["src/core/contact/judge.rs", "src/scene/nodes.rs"];
 /// Folders that still have more than their part of all lines.
 const LARGE_YET: &[&str] = &["src/scene"];
 

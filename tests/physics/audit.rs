@@ -6,12 +6,8 @@ use std::path::Path;
 use std::sync::Arc;
 use stickslip::contact::judge::Law;
 use stickslip::explain::audit::Audit;
-<<<<<<< main:tests/physics/audit.rs
-use stickslip::explain::remedies::{self, End};
-use stickslip::model::Mode;
-=======
 use stickslip::explain::remedies::{self, TrialEnd};
->>>>>>> 2921394a205dc01e6dc8bcfdb4726d25782dd975:tests/audit.rs
+use stickslip::model::Mode;
 use stickslip::model::{AtLimit, SlipCount, Sticking, Ties};
 use stickslip::scene::{Scene, builtin};
 use stickslip::step::event::Outcome;
@@ -197,18 +193,11 @@ fn no_remedy_that_ends_against_a_law_is_called_converged() {
             let verdict = stepper.state().start.verdict;
             let broken = verdict.is_some_and(|verdict| verdict.broken().next().is_some());
             assert!(
-<<<<<<< main:tests/physics/audit.rs
-                !broken || matches!(trial.end, End::Against(_)),
+                !broken || matches!(trial.end, TrialEnd::Against(_)),
                 "{name}: {trial:?}"
             );
             sound += u32::from(verdict.is_some() && !broken);
             against += u32::from(broken);
-=======
-                trial.end != TrialEnd::Converged || !broken,
-                "{name}: {trial:?}"
-            );
-            judged += u32::from(verdict.is_some());
->>>>>>> 2921394a205dc01e6dc8bcfdb4726d25782dd975:tests/audit.rs
         }
     }
     assert!(
