@@ -2,17 +2,17 @@
 //!
 //! The map of the house, from the ground up: each line uses those above it and none below.
 //!
+//! The solver is a package of its own, [`stickslip_core`], with [`linalg`] under it; its modules are handed on here. The
+//! program stands on them:
+//!
 //! - [`outside`]: what comes from outside and goes there: files that are read and written, texts of others that are shown.
-//! - [`linalg`]: the only place that knows faer, a package of its own. Sparsity patterns, factors, checked solves.
-//! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`scene::Model`].
-//! - [`fem`]: the bodies. Shape functions, beams, quadrilaterals, materials, assembly of internal forces and tangent.
-//! - [`contact`]: the interface. Projection, modes, Table 1, T_max, Table 2 with its reasons.
-//! - [`solve`]: the stepper: increments, major iterations, minor iterations, one per call.
+//! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`model::Model`].
 //! - [`explain`]: what happened, why, and what could be done about it, in the words that all front ends share.
 //! - [`study`]: many runs of a scene: sweeps, stability maps, work-precision charts.
 //! - [`history`]: what was done so far: frames, branches, breakpoints, watches.
 //! - [`record`]: what is kept in files: snapshots, journals, problems written as scenes.
 //! - [`session`]: the debugger without a terminal: commands in, frames out.
+//! - [`manual`]: the pages that `help` shows.
 //! - [`action`]: everything that can be done, by name, by key, or by a typed line.
 //! - [`teach`]: guided lessons.
 //! - [`tui`]: the debugger in the terminal.

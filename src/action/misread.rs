@@ -3,6 +3,7 @@
 use crate::history::breakpoints::NoPlace;
 use crate::interface::census::MOST;
 use crate::manual::NoPage;
+use crate::study::read::NoVary;
 
 /// Why a line means no action: what is wrong, and what would be right.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -60,8 +61,8 @@ pub enum Misread {
     #[error("no monitor is called '{name}'; there are {monitors}")]
     NoMonitor { name: String, monitors: String },
     /// Settings of a chart that cannot be read.
-    #[error("{0}")]
-    NoChart(String),
+    #[error(transparent)]
+    NoChart(#[from] NoVary),
 }
 
 impl Misread {

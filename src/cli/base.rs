@@ -77,15 +77,22 @@ pub struct SetArgs {
     pub set: Vec<(String, String)>,
 }
 
-/// What is no assignment.
+/// A value on the command line that will not do: what it must be.
 #[derive(Debug, thiserror::Error)]
-#[error("it must be PATH=VALUE, as friction.angle=20")]
-struct NoAssignment;
+#[error("{0}")]
+pub struct NoValue(String);
 
-fn assignment(text: &str) -> Result<(String, String), NoAssignment> {
+impl NoValue {
+    /// With what it must be.
+    pub fn new(must_be: impl Into<String>) -> NoValue {
+        NoValue(must_be.into())
+    }
+}
+
+fn assignment(text: &str) -> Result<(String, String), NoValue> {
     match text.split_once('=') {
         Some((path, value)) => Ok((path.to_owned(), value.to_owned())),
-        None => Err(NoAssignment),
+        None => Err(NoValue::new("it must be PATH=VALUE, as friction.angle=20")),
     }
 }
 

@@ -1,12 +1,13 @@
 //! `stickslip chart`: what settings cost, and how far from the truth they are.
 
-use super::base::{Error, Exit, SetArgs, tell};
+use super::base::{Error, Exit, NoValue, SetArgs, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
 use crate::explain::number::six;
 use crate::study::chart_file::{Chart, Truth};
 use crate::study::precision::{self, Cost, Measure, Precision};
+use crate::study::precision_table;
 use crate::study::{Vary, Watch, precision_figure};
 use std::path::{Path, PathBuf};
 
@@ -50,23 +51,25 @@ pub struct Args {
     out: OutputArgs,
 }
 
-fn target(text: &str) -> Result<f64, String> {
+fn target(text: &str) -> Result<f64, NoValue> {
     let target = text
         .parse::<f64>()
         .ok()
         .filter(|t| *t > 0.0 && t.is_finite());
-    target.ok_or_else(|| "it must be a number above 0, as 1e-3".to_owned())
+    target.ok_or_else(|| NoValue::new("it must be a number above 0, as 1e-3"))
 }
 
-fn cost(text: &str) -> Result<Cost, String> {
-    Cost::named(text).ok_or_else(|| format!("it must be one of {}", Cost::WORDS.join(", ")))
+fn cost(text: &str) -> Result<Cost, NoValue> {
+    Cost::named(text)
+        .ok_or_else(|| NoValue::new(format!("it must be one of {}", Cost::WORDS.join(", "))))
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(file) = &args.from {
         let name = file.display().to_string();
-        let text = precision::open(file).map_err(Error::Usage)?;
-        let charts = precision::read(&name, &text, args.cost, args.target).map_err(Error::Usage)?;
+        let text = precision_table::open(file).map_err(|e| Error::Usage(e.to_string()))?;
+        let charts = precision_table::read(&name, &text, args.cost, args.target)
+            .map_err(|e| Error::Usage(e.to_string()))?;
         let outputs = Outputs::open(&args.out)?;
         return finish(args, outputs, &charts);
     }
@@ -116,7 +119,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 /// Writes, draws and tells charts.
 fn finish(args: &Args, outputs: Outputs, charts: &[Precision]) -> Result<Exit, Error> {
     let sent = outputs.write(
-        &precision::csv(charts),
+        &precision_table::csv(charts),
         || precision_figure::sheet(charts)?.svg(),
         || precision_figure::sheet(charts)?.png(),
     )?;

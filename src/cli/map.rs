@@ -1,6 +1,6 @@
 //! `stickslip map`: where the iterations converge and where they do not.
 
-use super::base::{Error, Exit, SetArgs, say, tell};
+use super::base::{Error, Exit, NoValue, SetArgs, say, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
@@ -61,7 +61,7 @@ pub struct Args {
     out: OutputArgs,
 }
 
-fn range(text: &str) -> Result<RangeInclusive<usize>, String> {
+fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
     let number = |text: &str| text.trim().parse::<usize>().ok();
     let ends = match text.split_once("..") {
         Some((low, high)) => number(low).zip(number(high.trim_start_matches('='))),
@@ -71,17 +71,19 @@ fn range(text: &str) -> Result<RangeInclusive<usize>, String> {
     const MOST: usize = 6;
     match ends {
         Some((low, high)) if (1..=high).contains(&low) && high <= MOST => Ok(low..=high),
-        _ => Err(format!("it must be a number or A..B, within 1 to {MOST}")),
+        _ => Err(NoValue::new(format!(
+            "it must be a number or A..B, within 1 to {MOST}"
+        ))),
     }
 }
 
-fn count(text: &str) -> Result<usize, String> {
+fn count(text: &str) -> Result<usize, NoValue> {
     const MOST: usize = 10_000_000;
     let count = text
         .parse::<usize>()
         .ok()
         .filter(|n| (1..=MOST).contains(n));
-    count.ok_or_else(|| format!("it must be a whole number from 1 to {MOST}"))
+    count.ok_or_else(|| NoValue::new(format!("it must be a whole number from 1 to {MOST}")))
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {

@@ -1,6 +1,6 @@
 //! `stickslip record`: solves up to a place, and writes a snapshot of it.
 
-use super::base::{Error, Exit, SceneArgs, say, tell};
+use super::base::{Error, Exit, NoValue, SceneArgs, say, tell};
 use super::interrupt::Interrupt;
 use crate::explain::names;
 use crate::explain::report;
@@ -73,15 +73,15 @@ struct At {
 }
 
 impl FromStr for At {
-    type Err = String;
+    type Err = NoValue;
 
-    fn from_str(text: &str) -> Result<At, String> {
+    fn from_str(text: &str) -> Result<At, NoValue> {
         let wrong = "a place is INC, INC.MAJOR or INC.MAJOR.MINOR, whole numbers from 1 on";
         let mut numbers = Vec::new();
         for part in text.split('.') {
             match part.parse::<u32>() {
                 Ok(number) if number > 0 => numbers.push(number),
-                _ => return Err(wrong.to_owned()),
+                _ => return Err(NoValue::new(wrong)),
             }
         }
         match numbers[..] {
@@ -90,7 +90,7 @@ impl FromStr for At {
                 major: rest.first().copied(),
                 minor: rest.get(1).copied(),
             }),
-            _ => Err(wrong.to_owned()),
+            _ => Err(NoValue::new(wrong)),
         }
     }
 }

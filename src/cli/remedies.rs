@@ -2,7 +2,7 @@
 //! costs and leaves.
 
 use super::base::{Error, Exit, SceneArgs, say, tell};
-use crate::explain::remedies::{self, COLUMNS, End};
+use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
@@ -45,7 +45,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut headings = vec!["remedy".to_owned()];
     headings.extend(COLUMNS.map(String::from));
     say(&table(&headings, &rows.collect::<Vec<_>>()))?;
-    let any = trials.iter().any(|trial| trial.end == End::Converged);
+    let any = trials.iter().any(|trial| trial.end == TrialEnd::Converged);
     Ok(if any { Exit::Good } else { Exit::Unconverged })
 }
 

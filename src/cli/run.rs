@@ -151,7 +151,7 @@ struct Run<'a> {
 }
 
 /// How a run ended.
-enum End {
+enum Ended {
     Finished,
     Failed(Failure),
     Interrupted,
@@ -177,20 +177,20 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<End, Error> {
+    fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<Ended, Error> {
         if outputs.headers(&self.scene.model)? == Sent::Closed {
-            return Ok(End::Closed);
+            return Ok(Ended::Closed);
         }
         while !interrupt.came() {
             if self.stepper.step().is_none() {
-                return Ok(End::Finished);
+                return Ok(Ended::Finished);
             }
             (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
             self.progress.show(self.stepper.event(), self.steps);
             let (model, event) = (&self.scene.model, self.stepper.event());
             let mut sent = send(&mut outputs.trace, || table::trace_rows(model, event))?;
             if let Outcome::Failed(failure) = &event.outcome {
-                return Ok(End::Failed(failure.clone()));
+                return Ok(Ended::Failed(failure.clone()));
             }
             if matches!(
                 event.outcome,
@@ -206,10 +206,10 @@ impl<'a> Run<'a> {
                 sent = first_closed(sent, self.accept(outputs)?);
             }
             if sent == Sent::Closed {
-                return Ok(End::Closed);
+                return Ok(Ended::Closed);
             }
         }
-        Ok(End::Interrupted)
+        Ok(Ended::Interrupted)
     }
 
     fn accept(&mut self, outputs: &mut Outputs) -> Result<Sent, Error> {
@@ -259,7 +259,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells how the run ended.
-    fn tell(&mut self, end: &End, args: &Args) -> Exit {
+    fn tell(&mut self, end: &Ended, args: &Args) -> Exit {
         if self.doubtful > MOST_WARNINGS {
             tell(&format!(
                 "warning: {} increments in all were accepted like this",
@@ -280,14 +280,14 @@ impl<'a> Run<'a> {
         }
         let name = &self.scene.name;
         match end {
-            End::Finished => Exit::Good,
-            End::Closed => Exit::Interrupted,
-            End::Interrupted => {
+            Ended::Finished => Exit::Good,
+            Ended::Closed => Exit::Interrupted,
+            Ended::Interrupted => {
                 let at = names::position(self.stepper.state().next);
                 tell(&format!("{name}: interrupted before {at}"));
                 Exit::Interrupted
             }
-            End::Failed(failure) => {
+            Ended::Failed(failure) => {
                 let (event, state) = (self.stepper.event(), self.stepper.state());
                 let told = report::failure(
                     &self.scene.model,

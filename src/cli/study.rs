@@ -6,7 +6,7 @@ use super::outputs::{OutputArgs, Outputs, aligned};
 use super::sink::Sent;
 use crate::explain::number::six;
 use crate::study::figure;
-use crate::study::{self, End, Plan, Quantity, Run, Study, Vary, Watch, csv, plot};
+use crate::study::{self, AxisQuantity, CaseEnd, Plan, Run, Study, Vary, Watch, csv, plot};
 
 /// Monitors shown in the table of runs.
 const MONITORS: usize = 2;
@@ -79,10 +79,10 @@ fn plan(args: &Args) -> Result<Plan, Error> {
     }
     study.set.extend(args.set.set.iter().cloned());
     if let Some(x) = &args.x {
-        study.x = Some(Quantity::named(x));
+        study.x = Some(AxisQuantity::named(x));
     }
     if let Some(y) = &args.y {
-        study.y = Some(Quantity::named(y));
+        study.y = Some(AxisQuantity::named(y));
     }
     Ok(Plan::new(study)?)
 }
@@ -107,7 +107,7 @@ fn tell_table(plan: &Plan, runs: &[Run]) {
         row.push(run.minors().to_string());
         row.push(six(run.last().load));
         for name in monitors() {
-            let value = run.value(run.last(), &Quantity::Monitor(name.clone()));
+            let value = run.value(run.last(), &AxisQuantity::Monitor(name.clone()));
             row.push(value.map_or_else(String::new, six));
         }
         row.push(run.unsettled().to_string());
@@ -121,16 +121,16 @@ fn tell_table(plan: &Plan, runs: &[Run]) {
 
 fn end(run: &Run) -> String {
     match &run.end {
-        End::Finished => "whole".to_owned(),
-        End::Failed(failed) => format!(
+        CaseEnd::Finished => "whole".to_owned(),
+        CaseEnd::Failed(failed) => format!(
             "{} in increment {}, major {}, load {}",
             failed.reason,
             failed.increment,
             failed.major,
             six(failed.load)
         ),
-        End::Interrupted => "interrupted".to_owned(),
-        End::NotRun => "not run".to_owned(),
+        CaseEnd::Interrupted => "interrupted".to_owned(),
+        CaseEnd::NotRun => "not run".to_owned(),
     }
 }
 
@@ -154,7 +154,7 @@ fn tell_end(plan: &Plan, runs: &[Run]) -> bool {
             "{name}: {jumped} of {all} runs jumped to another branch"
         ));
     }
-    let left = count(|run| matches!(run.end, End::Interrupted | End::NotRun));
+    let left = count(|run| matches!(run.end, CaseEnd::Interrupted | CaseEnd::NotRun));
     if left > 0 {
         tell(&format!(
             "{name}: interrupted; {} of {all} runs were done",

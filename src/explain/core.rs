@@ -15,7 +15,7 @@ const EXHAUSTIVE: usize = 10;
 /// Most members of which a core is looked for; among more, of those whose modes change.
 const MOST: usize = 40;
 /// Numbers of two iterations that differ by less than this, relatively, are the same.
-const SAME: f64 = 1e-12;
+const SAME_ITERATION: f64 = 1e-12;
 
 /// Most rounds until the T_max of a cycle has come to rest.
 const ROUNDS: usize = 1000;
@@ -136,7 +136,12 @@ pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
         if settled {
             return None;
         }
-        if let Some(cycle) = trail.cycle(&nodes, minor, SAME * problem.force, SAME) {
+        if let Some(cycle) = trail.cycle(
+            &nodes,
+            minor,
+            SAME_ITERATION * problem.force,
+            SAME_ITERATION,
+        ) {
             return Some(cycle);
         }
     }

@@ -45,7 +45,7 @@ pub struct Diagnosis {
 pub struct Phase {
     /// What it found at each node.
     pub records: Vec<ContactRecord>,
-    /// For each node whose mode it changes, in the first [`MOST_PHASES`] of them: the change, since the iteration before, that did most to what was tested.
+    /// For each node whose mode it changes, in the first `MOST_PHASES` of them: the change, since the iteration before, that did most to what was tested.
     pub pushes: Vec<Push>,
 }
 

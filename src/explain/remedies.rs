@@ -39,7 +39,7 @@ pub struct Remedy {
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq)]
-pub enum End {
+pub enum TrialEnd {
     /// The load that failed was accepted.
     Converged,
     /// A state was accepted, as held modes or the settings want it, that the judge found against this law.
@@ -73,7 +73,7 @@ pub struct Left {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
     pub label: String,
-    pub end: End,
+    pub end: TrialEnd,
     pub minors: u32,
     pub majors: u32,
     /// Factorizations of the bodies: one a major iteration, or one a minor where the system is not condensed.
@@ -113,7 +113,10 @@ pub fn all(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
     for (label, strategy) in [
         ("enter contact as sliding", Strategy::Sliding),
         ("one change at a time, least index", Strategy::Least),
-        ("the same, entering as sliding", Strategy::SlidingLeast),
+        (
+            "enter as sliding, one change at a time",
+            Strategy::SlidingLeast,
+        ),
         ("block changes, least-index fallback", Strategy::Block),
         ("semismooth Newton", Strategy::Newton),
         ("Lemke's pivoting", Strategy::Lemke),
@@ -177,7 +180,7 @@ pub fn attempt(
     let target = (state.start.leg, state.load_factor);
     let mut trial = Trial {
         label: remedy.label.clone(),
-        end: End::Budget,
+        end: TrialEnd::Budget,
         minors: 0,
         majors: 0,
         factorizations: 0,
@@ -200,7 +203,7 @@ pub fn attempt(
         }
         let began = Instant::now();
         let Some(event) = stepper.step().cloned() else {
-            trial.end = End::Converged;
+            trial.end = TrialEnd::Converged;
             break;
         };
         trial.seconds += began.elapsed().as_secs_f64();
@@ -212,7 +215,7 @@ pub fn attempt(
         trial.factorizations += u32::from(ends || uncondensed);
         match &event.outcome {
             Outcome::Failed(failure) => {
-                trial.end = End::Failed(failure.clone());
+                trial.end = TrialEnd::Failed(failure.clone());
                 break;
             }
             Outcome::Increment {
@@ -220,12 +223,12 @@ pub fn attempt(
                 marked: Some(found),
                 ..
             } => {
-                trial.end = End::Against(found.law);
+                trial.end = TrialEnd::Against(found.law);
                 trial.left = Some(left(stepper, &event, after));
                 break;
             }
             Outcome::Increment { after, .. } if is_there(stepper.state(), &event, target) => {
-                trial.end = End::Converged;
+                trial.end = TrialEnd::Converged;
                 trial.left = Some(left(stepper, &event, after));
                 break;
             }
@@ -238,7 +241,7 @@ pub fn attempt(
         }
     }
     // The last major iteration, where the trial ended within it.
-    if trial.end == End::Budget {
+    if trial.end == TrialEnd::Budget {
         trial.factorizations += 1;
     }
     Some(trial)
@@ -312,9 +315,9 @@ fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
 /// Best first: those that converged and leave no violation, by cost; those that leave one, by its size; then the others.
 pub fn sort(trials: &mut [Trial]) {
     let class = |trial: &Trial| match (&trial.end, &trial.left) {
-        (End::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
-        (End::Converged, _) => 0,
-        (End::Against(_), _) => 1,
+        (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
+        (TrialEnd::Converged, _) => 0,
+        (TrialEnd::Against(_), _) => 1,
         _ => 2,
     };
     let worst = |trial: &Trial| trial.left.map_or(0.0, |left| left.worst);
@@ -331,24 +334,24 @@ pub fn sort(trials: &mut [Trial]) {
 }
 
 /// An end in a word or two.
-pub fn end_words(end: &End) -> String {
+pub fn end_words(end: &TrialEnd) -> String {
     match end {
-        End::Converged => "converged".into(),
-        End::Against(law) => format!("breaks {}", law.name()),
-        End::Budget => format!("{BUDGET} minors"),
-        End::Failed(Failure::Cycle(cycle)) => format!("{}-cycle", cycle.period),
-        End::Failed(Failure::MinorLimit { .. }) => "minors' limit".into(),
-        End::Failed(Failure::MajorLimit { .. }) => "majors' limit".into(),
-        End::Failed(Failure::MajorCycle(_)) => "majors cycle".into(),
-        End::Failed(Failure::Singular(_)) => "singular".into(),
-        End::Failed(Failure::Diverged { .. }) => "diverged".into(),
-        End::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
-        End::Failed(Failure::Refused(_)) => "refused".into(),
-        End::Failed(Failure::Leapt { .. }) => "jumps".into(),
-        End::Failed(Failure::RoundOff { .. }) => "round-off".into(),
-        End::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
-        End::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
-        End::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),
+        TrialEnd::Converged => "converged".into(),
+        TrialEnd::Against(law) => format!("breaks {}", law.name()),
+        TrialEnd::Budget => format!("{BUDGET} minors"),
+        TrialEnd::Failed(Failure::Cycle(cycle)) => format!("{}-cycle", cycle.period),
+        TrialEnd::Failed(Failure::MinorLimit { .. }) => "minors' limit".into(),
+        TrialEnd::Failed(Failure::MajorLimit { .. }) => "majors' limit".into(),
+        TrialEnd::Failed(Failure::MajorCycle(_)) => "majors cycle".into(),
+        TrialEnd::Failed(Failure::Singular(_)) => "singular".into(),
+        TrialEnd::Failed(Failure::Diverged { .. }) => "diverged".into(),
+        TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
+        TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
+        TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
+        TrialEnd::Failed(Failure::RoundOff { .. }) => "round-off".into(),
+        TrialEnd::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
+        TrialEnd::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
+        TrialEnd::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),
     }
 }
 

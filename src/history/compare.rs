@@ -2,7 +2,7 @@
 //!
 //! The common place is the last load at which both accepted an increment after they parted (on a path that goes to and
 //! fro, on the same leg); without one, the last minor iteration of the same position. States are the same
-//! where displacements differ by less than [`SAME`] of the scene's length, and forces by less than [`SAME`] of the
+//! where displacements differ by less than [`SAME_STATE`] of the scene's length, and forces by less than [`SAME_STATE`] of the
 //! larger branch's largest force; modes may differ between them only in ties, and are told beside.
 
 use crate::explain::names;
@@ -14,7 +14,7 @@ use crate::model::{Mode, Model};
 use crate::step::event::Position;
 
 /// States that differ by less, relatively, are the same.
-pub const SAME: f64 = 1e-7;
+pub const SAME_STATE: f64 = 1e-7;
 
 /// Whether two states are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,7 +163,10 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
         return None;
     }
     let apart = |x: &[f64], y: &[f64], size: f64| {
-        x.len() != y.len() || x.iter().zip(y).any(|(x, y)| (x - y).abs() > SAME * size)
+        x.len() != y.len()
+            || x.iter()
+                .zip(y)
+                .any(|(x, y)| (x - y).abs() > SAME_STATE * size)
     };
     let forces = |frame: &Frame| -> Vec<f64> {
         let nodes = frame.state.nodes.iter();

@@ -1,6 +1,6 @@
 //! Dense LU for systems of the size of the interface.
 
-use super::{SolveError, fill_probe, largest};
+use super::check::{SolveError, fill_probe, largest};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
 use faer::linalg::lu::partial_pivoting::solve::{solve_in_place, solve_in_place_scratch};

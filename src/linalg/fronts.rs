@@ -15,7 +15,8 @@
 //! minor iterations of a major one repeat only what depends on the modes that changed, with the same bits as a full
 //! factorization.
 
-use super::{Pattern, SolveError};
+use super::check::SolveError;
+use super::pattern::Pattern;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A pivot must be larger than this part of the largest entry below in its column.

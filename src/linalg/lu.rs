@@ -7,8 +7,9 @@
 //! front ([`super::fronts`]); others, and those that find no pivots there, by faer with partial pivoting. The symbolic
 //! part is kept as long as the pattern stands.
 
+use super::check::{SolveError, fill_probe, largest};
 use super::fronts::Fronts;
-use super::{Pattern, SolveError, fill_probe, largest, symbolic_view};
+use super::pattern::{Pattern, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::lu::{LuRef, NumericLu, SymbolicLu, factorize_symbolic_lu};

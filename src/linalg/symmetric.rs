@@ -13,7 +13,8 @@
 //! Only the upper half of the matrix is read. There is no pivoting. If a pivot is too small, the check of the solution fails,
 //! and the caller turns to [`super::Factors`].
 
-use super::{Pattern, SolveError, largest, symbolic_view};
+use super::check::{SolveError, largest};
+use super::pattern::{Pattern, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};

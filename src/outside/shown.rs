@@ -1,7 +1,7 @@
 //! Texts of others, made harmless: what a terminal would obey is shown instead, as `\u{1b}`.
 //!
 //! Everything that the program writes for people or as a table goes through [`text`], texts that stand within a line through
-//! [`line`]. Both leave what is harmless as it is, so that it does no harm to go through them twice.
+//! [`line()`]. Both leave what is harmless as it is, so that it does no harm to go through them twice.
 
 use std::borrow::Cow;
 

@@ -1,6 +1,6 @@
 //! Looking closer without disturbing: what needs solves of its own, made on a thread of its own beside the session's.
 //!
-//! - **Pushes**: what the changes of all nodes since the minor iteration before did to one node ([`influences`]). The
+//! - **Pushes**: what the changes of all nodes since the minor iteration before did to one node ([`pushes`]). The
 //!   thread goes over both iterations again and takes the frozen interface problem between them.
 //! - **Findings**: the diagnosis of the cycle that the shown state runs into, or else the census of the frozen problem
 //!   that is solved next from it.

@@ -123,7 +123,7 @@ impl Session {
         Ok(Reply(told))
     }
 
-    /// What came of the last file that [`Command::Export`] wrote; once.
+    /// What came of the last file that [`Command::Export`](crate::record::command::Command::Export) wrote; once.
     pub fn exported(&mut self) -> Option<Result<Reply, Refusal>> {
         Some(
             self.background

@@ -197,18 +197,3 @@ fn any() -> Vec<Series> {
         one("T_max", "settings.t_max", &["lagged", "consistent"]),
     ]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_built_in_chart_is_sound() {
-        for name in names() {
-            let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-            let plans = super::super::precision::plans(&chart).unwrap_or_else(|e| panic!("{e}"));
-            assert!(plans.iter().all(|plan| !plan.cases.is_empty()), "{name}");
-            assert!(!chart.title.is_empty());
-        }
-    }
-}

@@ -11,9 +11,33 @@
 //! Floats have as many digits as they need to read back to the same bits.
 
 use super::plan::Plan;
-use super::result::{End, Run};
+use super::result::{CaseEnd, Run};
+use crate::outside::input::Unreadable;
 use crate::outside::shown;
 use std::fmt::Write;
+use std::path::Path;
+
+/// Why a table cannot be read: where, and what is wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    #[error("{}", why.of(file))]
+    Unreadable { file: String, why: Unreadable },
+    #[error("{file}:{line}:{column}: {message}")]
+    Wrong {
+        file: String,
+        line: usize,
+        column: usize,
+        message: String,
+    },
+}
+
+impl TableError {
+    /// A file that cannot be read at all.
+    pub(super) fn unreadable(file: &Path, why: Unreadable) -> TableError {
+        let file = file.display().to_string();
+        TableError::Unreadable { file, why }
+    }
+}
 
 /// The table, header first.
 pub fn table(plan: &Plan, runs: &[Run]) -> String {
@@ -64,8 +88,8 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
     }
     let blanks = ",".repeat(plan.monitors.len() + 1);
     match &run.end {
-        End::Finished | End::NotRun => {}
-        End::Failed(failed) => {
+        CaseEnd::Finished | CaseEnd::NotRun => {}
+        CaseEnd::Failed(failed) => {
             let _ = writeln!(
                 text,
                 "{leading}{},{},{:?},{},{},{}{blanks}",
@@ -77,7 +101,7 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
                 failed.unsettled
             );
         }
-        End::Interrupted => {
+        CaseEnd::Interrupted => {
             let _ = writeln!(text, "{leading}interrupted,,,,,{blanks}");
         }
     }

@@ -1,9 +1,9 @@
 //! The results of a study as curves: the form of the paper's figures.
 
 use super::plan::Plan;
-use super::plot::{Axis, Chart, Curve, End as CurveEnd};
-use super::read::Quantity;
-use super::result::{End, Run};
+use super::plot::{Axis, Chart, Curve, CurveEnd};
+use super::read::AxisQuantity;
+use super::result::{CaseEnd, Run};
 use crate::explain::number::six;
 
 /// The chart of a study: a curve per run, over the plan's axes.
@@ -13,19 +13,19 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
         .cases
         .iter()
         .zip(runs)
-        .filter(|(_, run)| run.end != End::NotRun)
+        .filter(|(_, run)| run.end != CaseEnd::NotRun)
         .map(|(case, run)| Curve {
             label: label(&names, &case.values),
             points: points(plan, run),
             end: match &run.end {
-                End::Finished | End::NotRun => CurveEnd::Whole,
-                End::Failed(failed) => CurveEnd::Failed(format!(
+                CaseEnd::Finished | CaseEnd::NotRun => CurveEnd::Whole,
+                CaseEnd::Failed(failed) => CurveEnd::Failed(format!(
                     "{} in increment {}, load {}",
                     failed.reason,
                     failed.increment,
                     six(failed.load)
                 )),
-                End::Interrupted => CurveEnd::Stopped("interrupted".to_owned()),
+                CaseEnd::Interrupted => CurveEnd::Stopped("interrupted".to_owned()),
             },
         })
         .collect();
@@ -59,25 +59,25 @@ pub fn short_names(paths: &[String]) -> Vec<String> {
     }
 }
 
-fn axis(quantity: &Quantity) -> Axis {
+fn axis(quantity: &AxisQuantity) -> Axis {
     let name = match quantity {
-        Quantity::Load => "load factor",
-        Quantity::Majors => "major iterations of the increment",
-        Quantity::Minors => "minor iterations of the increment",
+        AxisQuantity::Load => "load factor",
+        AxisQuantity::Majors => "major iterations of the increment",
+        AxisQuantity::Minors => "minor iterations of the increment",
         other => other.name(),
     };
     Axis {
         name: name.to_owned(),
         counts: matches!(
             quantity,
-            Quantity::Increment | Quantity::Majors | Quantity::Minors
+            AxisQuantity::Increment | AxisQuantity::Majors | AxisQuantity::Minors
         ),
     }
 }
 
 /// From the start of the history on, where the quantities have a value there.
 fn points(plan: &Plan, run: &Run) -> Vec<(f64, f64)> {
-    let counts = |q: &Quantity| matches!(q, Quantity::Majors | Quantity::Minors);
+    let counts = |q: &AxisQuantity| matches!(q, AxisQuantity::Majors | AxisQuantity::Minors);
     let start = (!counts(&plan.x) && !counts(&plan.y)).then_some(&run.start);
     start
         .into_iter()

@@ -10,7 +10,7 @@ use super::figure::{label, short_names};
 use super::log::{Log, key};
 use super::origin;
 use super::plan::{Case, Plan};
-use super::result::{End, Run};
+use super::result::{CaseEnd, Run};
 use super::run::{RunError, Watch, one, pool};
 use super::verdict::Verdict;
 use crate::model::{Model, Watched};
@@ -49,7 +49,7 @@ pub struct Ended {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
     pub name: String,
-    pub kind: Kind,
+    pub kind: MonitorKind,
     /// Its value in the end, and the largest magnitude that it ever had.
     pub end: f64,
     pub largest: f64,
@@ -57,7 +57,8 @@ pub struct Seen {
 
 /// What a monitor is: those of one kind have one scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Kind {
+#[serde(rename = "Kind")]
+pub enum MonitorKind {
     Length,
     Rotation,
     Force,
@@ -104,9 +105,9 @@ impl Ended {
     /// What a run came to; none where it was stopped from outside.
     pub fn of(run: &Run, model: &Model) -> Option<Ended> {
         let failed = match &run.end {
-            End::Finished => None,
-            End::Failed(failed) => Some((failed.verdict, failed.increment, failed.load)),
-            End::Interrupted | End::NotRun => return None,
+            CaseEnd::Finished => None,
+            CaseEnd::Failed(failed) => Some((failed.verdict, failed.increment, failed.load)),
+            CaseEnd::Interrupted | CaseEnd::NotRun => return None,
         };
         let monitor = |k: usize| {
             let value = |row: &super::Row| row.monitors.get(k).copied().unwrap_or(0.0);
@@ -132,14 +133,14 @@ impl Ended {
     /// Largest difference of a monitor's end to that of a reference, over the largest value of its kind in the
     /// reference's run; infinite where something is no number.
     pub fn difference(&self, reference: &Ended) -> f64 {
-        let scale = |kind: Kind| {
+        let scale = |kind: MonitorKind| {
             let of_kind = reference.monitors.iter().filter(|m| m.kind == kind);
             of_kind.map(|m| m.largest).fold(f64::MIN_POSITIVE, f64::max)
         };
         let differences = reference
             .monitors
             .iter()
-            .filter(|m| m.kind != Kind::Drift)
+            .filter(|m| m.kind != MonitorKind::Drift)
             .map(|theirs| {
                 let ours = self.monitors.iter().find(|m| m.name == theirs.name);
                 let difference = ours.map_or(f64::INFINITY, |ours| {
@@ -156,18 +157,18 @@ impl Ended {
 }
 
 /// What a monitor is.
-pub fn kind(model: &Model, watched: &Watched) -> Kind {
+pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
     match watched {
         Watched::Displacement { dof } => {
             // The rotation is the third of a node.
             let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
             match (0..model.nodes.len()).any(turns) {
-                true => Kind::Rotation,
-                false => Kind::Length,
+                true => MonitorKind::Rotation,
+                false => MonitorKind::Length,
             }
         }
-        Watched::Contact { .. } | Watched::Reaction { .. } => Kind::Force,
-        Watched::Drift { .. } => Kind::Drift,
+        Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
+        Watched::Drift { .. } => MonitorKind::Drift,
     }
 }
 

@@ -1,7 +1,7 @@
 //! A work-precision chart that is measured on a thread of its own, so that who wants it can go on.
 
 use super::chart_file::Chart;
-use super::precision::{self, Cost, Measure, Precision};
+use super::precision::{self, Cost, Measure, Precision, PrecisionError};
 use super::{Plan, Vary, Watch};
 use crate::scene::{Scene, SceneError};
 use std::sync::Arc;
@@ -9,12 +9,23 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
+/// Why there is no chart.
+#[derive(Debug, thiserror::Error)]
+pub enum NotMeasured {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Failed(#[from] PrecisionError),
+    #[error("measuring broke down")]
+    BrokeDown,
+}
+
 /// A chart on its way; dropping it ends it.
 pub struct Measuring {
     stop: Arc<AtomicBool>,
     done: Arc<AtomicU64>,
     all: Arc<AtomicU64>,
-    result: Receiver<Result<Precision, String>>,
+    result: Receiver<Result<Precision, NotMeasured>>,
 }
 
 impl Measuring {
@@ -41,7 +52,7 @@ impl Measuring {
                 let plans = precision::plans(&chart)?;
                 Ok((chart, plans))
             };
-            let measured = plan().map_err(|error| error.to_string());
+            let measured = plan().map_err(NotMeasured::from);
             let measured = measured.and_then(|(chart, plans)| {
                 let cases = plans.iter().flat_map(|plan| &plan.cases);
                 let increments = cases.map(|case| case.increments).sum();
@@ -66,11 +77,11 @@ impl Measuring {
     }
 
     /// The chart, or why there is none, once it is done.
-    pub fn result(&self) -> Option<Result<Precision, String>> {
+    pub fn result(&self) -> Option<Result<Precision, NotMeasured>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Err("measuring broke down".into())),
+            Err(TryRecvError::Disconnected) => Some(Err(NotMeasured::BrokeDown)),
         }
     }
 }
@@ -80,7 +91,7 @@ fn measure(
     plans: &[Plan],
     stop: &AtomicBool,
     done: &AtomicU64,
-) -> Result<Precision, String> {
+) -> Result<Precision, NotMeasured> {
     let watch = Watch {
         stop: &|| stop.load(Ordering::Relaxed),
         done: &|increments| {
@@ -92,7 +103,7 @@ fn measure(
         target: None,
         repeats: 1,
     };
-    precision::run(chart, plans, measure, &watch).map_err(|error| error.to_string())
+    Ok(precision::run(chart, plans, measure, &watch)?)
 }
 
 impl Drop for Measuring {

@@ -2,7 +2,7 @@
 //!
 //! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
 //! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
-//! - [`run`]: the cases side by side, each on one thread; [`result`]: what one of them came to.
+//! - [`run`](mod@run): the cases side by side, each on one thread; [`result`]: what one of them came to.
 //! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG.
 //!
 //! Stability maps:
@@ -13,8 +13,9 @@
 //!
 //! Work-precision charts:
 //!
-//! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_figure`]: drawn.
-//! - [`reference`]: what runs are measured against; [`measuring`]: a chart measured beside other work.
+//! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_table`]: as a table;
+//!   [`precision_figure`]: drawn.
+//! - [`reference`](mod@reference): what runs are measured against; [`measuring`]: a chart measured beside other work.
 //!
 //! Nothing here knows a command line.
 
@@ -30,6 +31,7 @@ pub mod plan;
 pub mod plot;
 pub mod precision;
 pub mod precision_figure;
+pub mod precision_table;
 pub mod random;
 pub mod read;
 pub mod reason;
@@ -43,7 +45,7 @@ pub mod verdict;
 pub mod verdict_figure;
 
 pub use plan::{Case, Plan};
-pub use read::{Quantity, Study, Vary};
+pub use read::{AxisQuantity, Study, Vary};
 pub use reason::Reason;
-pub use result::{End, Row, Run};
+pub use result::{CaseEnd, Row, Run};
 pub use run::{Watch, run};

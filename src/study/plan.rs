@@ -1,6 +1,6 @@
 //! The product of all settings of a study, with every case found sound before any is run.
 
-use super::read::{Quantity, Study, Vary};
+use super::read::{AxisQuantity, Study, Vary};
 use crate::scene::error::{SceneError, did_you_mean, some_of};
 use crate::scene::{Scene, increments, paths};
 use std::sync::Arc;
@@ -18,8 +18,8 @@ pub struct Plan {
     pub cases: Vec<Case>,
     /// Names of all monitors, in the order in which the scenes first have them.
     pub monitors: Vec<String>,
-    pub x: Quantity,
-    pub y: Quantity,
+    pub x: AxisQuantity,
+    pub y: AxisQuantity,
 }
 
 /// One run of a study.
@@ -78,8 +78,8 @@ impl Plan {
             columns: columns(&study),
             cases: Vec::new(),
             monitors: Vec::new(),
-            x: Quantity::Increment,
-            y: study.y.clone().unwrap_or(Quantity::Load),
+            x: AxisQuantity::Increment,
+            y: study.y.clone().unwrap_or(AxisQuantity::Load),
             study,
         };
         for name in plan.study.scenes.clone() {
@@ -87,8 +87,8 @@ impl Plan {
         }
         plan.x = match (&plan.study.x, plan.monitors.first()) {
             (Some(x), _) => x.clone(),
-            (None, Some(first)) => Quantity::Monitor(first.clone()),
-            (None, None) => Quantity::Increment,
+            (None, Some(first)) => AxisQuantity::Monitor(first.clone()),
+            (None, None) => AxisQuantity::Increment,
         };
         for axis in [&plan.x, &plan.y] {
             plan.check_axis(axis)?;
@@ -151,8 +151,8 @@ impl Plan {
         Ok(())
     }
 
-    fn check_axis(&self, axis: &Quantity) -> Result<(), SceneError> {
-        let Quantity::Monitor(name) = axis else {
+    fn check_axis(&self, axis: &AxisQuantity) -> Result<(), SceneError> {
+        let AxisQuantity::Monitor(name) = axis else {
             return Ok(());
         };
         if self.monitors.contains(name) {

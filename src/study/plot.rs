@@ -35,12 +35,12 @@ pub struct Curve {
     pub label: String,
     /// Finite numbers.
     pub points: Vec<(f64, f64)>,
-    pub end: End,
+    pub end: CurveEnd,
 }
 
 /// What a curve's last point is.
 #[derive(Debug, Clone, PartialEq)]
-pub enum End {
+pub enum CurveEnd {
     /// Where it should end.
     Whole,
     /// Where it failed, and why: a cross, and a line of the legend.
@@ -150,7 +150,7 @@ fn labelled(chart: &Chart) -> Chart {
     }
     for curve in &mut chart.curves {
         curve.label = label(&curve.label);
-        if let End::Failed(why) | End::Stopped(why) = &mut curve.end {
+        if let CurveEnd::Failed(why) | CurveEnd::Stopped(why) = &mut curve.end {
             *why = label(why);
         }
     }
@@ -199,7 +199,7 @@ impl Layout {
         let told = chart
             .curves
             .iter()
-            .any(|c| !c.label.is_empty() || c.end != End::Whole);
+            .any(|c| !c.label.is_empty() || c.end != CurveEnd::Whole);
         let entries = if told {
             chart.curves.len().min(MOST_ENTRIES)
         } else {
@@ -240,7 +240,7 @@ impl Layout {
         let mut widest: f64 = 0.0;
         for curve in &chart.curves[..self.entries] {
             widest = widest.max(width_of(&curve.label, TICK)?);
-            if let End::Failed(why) | End::Stopped(why) = &curve.end {
+            if let CurveEnd::Failed(why) | CurveEnd::Stopped(why) = &curve.end {
                 widest = widest.max(width_of(why, SMALL)?);
             }
         }
@@ -252,7 +252,13 @@ impl Layout {
     }
 
     fn legend_height(&self, chart: &Chart) -> f64 {
-        let lines = |curve: &Curve| if curve.end == End::Whole { 1.0 } else { 1.9 };
+        let lines = |curve: &Curve| {
+            if curve.end == CurveEnd::Whole {
+                1.0
+            } else {
+                1.9
+            }
+        };
         let lines: f64 = chart.curves[..self.entries].iter().map(lines).sum();
         let more = if self.entries < chart.curves.len() {
             1.0
@@ -378,7 +384,7 @@ fn curves<DB: DrawingBackend>(
     }
     // Above all lines, so that none hides a failure.
     for curve in &chart.curves {
-        if let (End::Failed(_), Some(end)) = (&curve.end, curve.points.last()) {
+        if let (CurveEnd::Failed(_), Some(end)) = (&curve.end, curve.points.last()) {
             cross(root, plot.backend_coord(end), 7.0, layout)?;
         }
     }
@@ -409,9 +415,9 @@ fn legend<DB: DrawingBackend>(
         marker(root, k, (middle, row), layout)?;
         root.draw(&Text::new(curve.label.as_str(), (words, row), text.clone()))?;
         y += ENTRY;
-        if let End::Failed(why) | End::Stopped(why) = &curve.end {
+        if let CurveEnd::Failed(why) | CurveEnd::Stopped(why) = &curve.end {
             let row = layout.pixels(y - 0.1 * ENTRY);
-            if matches!(curve.end, End::Failed(_)) {
+            if matches!(curve.end, CurveEnd::Failed(_)) {
                 cross(root, (middle, row), 5.0, layout)?;
             }
             root.draw(&Text::new(why.as_str(), (words, row), small.color(&GREY)))?;

@@ -8,32 +8,21 @@
 //! that went to the end, those that no other one beats in both are the **front**.
 
 use super::chart_file::{Chart, Truth};
+use super::csv::TableError;
 use super::figure::{label, short_names};
-use super::map::{Kind, kind};
+use super::map::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
 use super::read::Study;
 use super::reference::{self, Reference};
-use super::result::{End, Run};
+use super::result::{CaseEnd, Run};
 use super::run::{Watch, one};
 use crate::linear::estimate::Estimate;
 use crate::model::Model;
-use crate::outside::input::{self, MARK, TABLE_BYTES};
-use crate::outside::shown;
 use crate::scene::SceneError;
-use crate::scene::error::quoted;
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
-use std::fmt::Write;
-use std::path::Path;
 
-/// Most characters of a name in a table that is read.
-const MOST_NAME: usize = 200;
-/// Most comments of a table that are kept, and most characters of one.
-const MOST_COMMENTS: usize = 40;
-const MOST_COMMENT: usize = 2000;
-/// Most runs of a table that is read.
-const MOST_RUNS: usize = 20_000;
 /// Runs that take this long altogether (seconds) are not repeated any more.
 const LONG: f64 = 20.0;
 
@@ -138,6 +127,9 @@ pub struct Measure {
 pub enum PrecisionError {
     #[error(transparent)]
     Scene(#[from] SceneError),
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// There is nothing to compare with.
     #[error("{0}")]
     Reference(String),
 }
@@ -146,7 +138,7 @@ pub enum PrecisionError {
 struct Measured {
     point: Point,
     run: Run,
-    kinds: Vec<Kind>,
+    kinds: Vec<MonitorKind>,
     path: Vec<f64>,
 }
 
@@ -238,7 +230,7 @@ fn measured(
         let start = thread_seconds();
         let run = one(case, &quiet)?;
         times.push(thread_seconds() - start);
-        if matches!(run.end, End::Interrupted | End::NotRun) {
+        if matches!(run.end, CaseEnd::Interrupted | CaseEnd::NotRun) {
             return Ok(None);
         }
         last = Some(run);
@@ -282,7 +274,7 @@ fn measured(
     }))
 }
 
-fn kinds(model: &Model) -> Vec<Kind> {
+fn kinds(model: &Model) -> Vec<MonitorKind> {
     model.monitors.iter().map(|m| kind(model, &m.of)).collect()
 }
 
@@ -302,14 +294,14 @@ fn truth(
     let wrong = PrecisionError::Reference;
     match &chart.truth {
         Truth::Table(file) => {
-            let table = Reference::open(file, &path).map_err(wrong)?;
+            let table = Reference::open(file, &path)?;
             Ok((table, None))
         }
         Truth::Builtin => {
             let name = chart.scene.strip_suffix(".ron").unwrap_or(&chart.scene);
             let known = Reference::builtin(name, &path);
             let none = || wrong(format!("there is no reference for {name} in the program"));
-            Ok((known.ok_or_else(none)?.map_err(wrong)?, None))
+            Ok((known.ok_or_else(none)??, None))
         }
         Truth::Run(settings) => {
             let plan = Plan::new(Study {
@@ -327,8 +319,8 @@ fn truth(
                 .collect();
             let name = format!("a run with {}", names.join(", "));
             match run.end {
-                End::Finished => Ok((Reference::of(&run, name, &path), None)),
-                End::Failed(failed) => Err(wrong(format!(
+                CaseEnd::Finished => Ok((Reference::of(&run, name, &path), None)),
+                CaseEnd::Failed(failed) => Err(wrong(format!(
                     "the reference, {name}, failed: {}",
                     failed.verdict
                 ))),
@@ -370,10 +362,10 @@ fn compare(
     };
     let names = first.run.monitors.join(", ");
     let kinds = first.run.monitors.iter().cloned().zip(first.kinds.clone());
-    let kinds: HashMap<String, Kind> = kinds.collect();
+    let kinds: HashMap<String, MonitorKind> = kinds.collect();
     let kind = |name: &String| kinds.get(name).copied();
     let counts = |name: &&String| match wanted {
-        [] => kind(name) == Some(Kind::Length),
+        [] => kind(name) == Some(MonitorKind::Length),
         some => some.contains(name) && kind(name).is_some(),
     };
     precision.monitors = reference.monitors.iter().filter(counts).cloned().collect();
@@ -402,7 +394,7 @@ fn compare(
         .iter()
         .filter_map(|name| Some((reference.monitors.iter().position(|own| own == name)?, name)))
         .collect();
-    let scale = |wanted: Option<Kind>| {
+    let scale = |wanted: Option<MonitorKind>| {
         let of_kind = columns.iter().filter(|(_, name)| kind(name) == wanted);
         let values =
             of_kind.flat_map(|(k, _)| reference.rows.iter().map(|row| row.values[*k].abs()));
@@ -434,7 +426,7 @@ fn compare(
 }
 
 /// Marks the runs that none beats in cost and error.
-fn mark_front(points: &mut [Point], cost: Cost) {
+pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
     let measured: Vec<Option<(f64, f64)>> = points
         .iter()
         .map(|point| Some((cost.of(point), point.error?)))
@@ -509,196 +501,10 @@ fn origin(
     ]
 }
 
-/// The text of a table, for [`read`].
-///
-/// # Errors
-/// If the file cannot be read.
-pub fn open(file: &Path) -> Result<String, String> {
-    input::text(file, TABLE_BYTES, "no table of a chart has")
-        .map_err(|error| error.of(&file.display().to_string()))
-}
-
-/// Charts from a table as [`csv`] writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
-/// missing, and the runs need not be of this program.
-///
-/// # Errors
-/// If it cannot be read: file, line, column, what is wrong.
-pub fn read(
-    name: &str,
-    text: &str,
-    cost: Cost,
-    target: Option<f64>,
-) -> Result<Vec<Precision>, String> {
-    let text = text.strip_prefix(MARK).unwrap_or(text);
-    let comments = text.lines().filter_map(|line| line.strip_prefix('#'));
-    let about = comments.map(|line| shown::cut(line.trim(), MOST_COMMENT));
-    let about: Vec<String> = about.take(MOST_COMMENTS).collect();
-    let lines = text
-        .lines()
-        .enumerate()
-        .map(|(k, line)| (k + 1, line.trim_end()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (first, header) = lines
-        .next()
-        .ok_or_else(|| format!("{name}:1:1: there is no header"))?;
-    let heads = super::csv::split(header);
-    for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
-        if !heads.iter().any(|head| head == wanted) {
-            return Err(format!(
-                "{name}:{first}:1: it is no table of a chart: it has no column {wanted}"
-            ));
-        }
-    }
-    let mut charts: Vec<Precision> = Vec::new();
-    let mut runs = 0;
-    for (line, text) in lines {
-        let fields = super::csv::split(text);
-        if fields.len() != heads.len() {
-            let (has, wants) = (fields.len(), heads.len());
-            return Err(format!(
-                "{name}:{line}:1: the row has {has} fields, the header {wants}"
-            ));
-        }
-        let place = |head: &str| heads.iter().position(|own| own == head);
-        let word = |head: &str| place(head).map_or("", |k| fields[k].as_str());
-        let at = |head: &str| {
-            let column = place(head).map_or(1, |k| super::csv::column(text, k));
-            format!("{name}:{line}:{column}")
-        };
-        for head in ["scene", "series", "run", "status"] {
-            let letters = word(head).chars().count();
-            if letters > MOST_NAME {
-                return Err(format!(
-                    "{}: the text under {head} has {letters} characters; it must have {MOST_NAME} at most",
-                    at(head)
-                ));
-            }
-        }
-        let number = |head: &str| match word(head) {
-            "" => Ok(None),
-            word => {
-                let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
-                let wrong = || {
-                    let word = quoted(word);
-                    format!(
-                        "{}: {word} under {head} is no number that can be drawn",
-                        at(head)
-                    )
-                };
-                value.map(Some).ok_or_else(wrong)
-            }
-        };
-        let count = |head: &str| number(head).map(|value| value.unwrap_or(0.0) as u64);
-        runs += 1;
-        if runs > MOST_RUNS {
-            return Err(format!(
-                "{name}:{line}:1: the table has more than {MOST_RUNS} runs; no chart of so many can be read"
-            ));
-        }
-        let (scene, own) = (word("scene"), word("series"));
-        if charts.last().is_none_or(|chart| chart.scene != scene) {
-            charts.push(Precision {
-                scene: scene.to_owned(),
-                title: scene.to_owned(),
-                monitors: Vec::new(),
-                about: Vec::new(),
-                series: Vec::new(),
-                points: Vec::new(),
-                cost,
-                target,
-                planned: 0,
-            });
-        }
-        let Some(chart) = charts.last_mut() else {
-            continue;
-        };
-        let series = chart.series.iter().position(|name| name == own);
-        let series = series.unwrap_or_else(|| {
-            chart.series.push(own.to_owned());
-            chart.series.len() - 1
-        });
-        let status = word("status");
-        chart.points.push(Point {
-            series,
-            name: word("run").to_owned(),
-            settings: Vec::new(),
-            seconds: number("seconds")?.unwrap_or(0.0),
-            repeats: count("repeats")? as usize,
-            factorizations: count("factorizations")?,
-            majors: count("majors")?,
-            minors: count("minors")?,
-            increments: count("increments")?,
-            unknowns: count("unknowns")? as usize,
-            failed: (!["whole", "reference"].contains(&status)).then(|| status.to_owned()),
-            unsettled: count("unsettled")? as usize,
-            error: number("error")?,
-            reference: status == "reference",
-            front: false,
-        });
-    }
-    for chart in &mut charts {
-        chart.planned = chart.points.len();
-        mark_front(&mut chart.points, cost);
-    }
-    let last = charts
-        .last_mut()
-        .ok_or_else(|| format!("{name}:{first}:1: it has no rows"))?;
-    last.about = about;
-    Ok(charts)
-}
-
-/// A row for each run of some charts, after lines that say what they are.
-pub fn csv(charts: &[Precision]) -> String {
-    let mut text = super::csv::comments(charts.iter().flat_map(|chart| &chart.about));
-    text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\
-             unsettled,front\n";
-    for (chart, point) in charts
-        .iter()
-        .flat_map(|c| c.points.iter().map(move |p| (c, p)))
-    {
-        let settings: Vec<String> = point
-            .settings
-            .iter()
-            .map(|(p, v)| format!("{p}={v}"))
-            .collect();
-        let status = match (&point.failed, point.reference) {
-            (Some(why), _) => why.as_str(),
-            (None, true) => "reference",
-            (None, false) => "whole",
-        };
-        let words = [
-            &chart.scene,
-            &chart.series[point.series],
-            &point.name,
-            &settings.join(" "),
-            status,
-        ];
-        let words: Vec<String> = words.into_iter().map(super::csv::field).collect();
-        // Writing to a string does not fail.
-        let _ = writeln!(
-            text,
-            "{},{},{:?},{},{},{},{},{},{},{},{}",
-            words.join(","),
-            point
-                .error
-                .map_or_else(String::new, |error| format!("{error:?}")),
-            point.seconds,
-            point.repeats,
-            point.factorizations,
-            point.majors,
-            point.minors,
-            point.increments,
-            point.unknowns,
-            point.unsettled,
-            point.front
-        );
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::chart_file;
 
     fn point(seconds: f64, error: Option<f64>) -> Point {
         Point {
@@ -733,5 +539,15 @@ mod tests {
         mark_front(&mut points, Cost::Time);
         let front: Vec<bool> = points.iter().map(|p| p.front).collect();
         assert_eq!(front, [true, true, false, true, false, true]);
+    }
+
+    #[test]
+    fn every_built_in_chart_is_sound() {
+        for name in chart_file::names() {
+            let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
+            let plans = plans(&chart).unwrap_or_else(|e| panic!("{e}"));
+            assert!(plans.iter().all(|plan| !plan.cases.is_empty()), "{name}");
+            assert!(!chart.title.is_empty());
+        }
     }
 }

@@ -39,9 +39,9 @@ pub struct Study {
     /// What is set for all runs: path and value.
     pub set: Vec<(String, String)>,
     /// Horizontal axis; none is the first monitor.
-    pub x: Option<Quantity>,
+    pub x: Option<AxisQuantity>,
     /// Vertical axis; none is the load factor.
-    pub y: Option<Quantity>,
+    pub y: Option<AxisQuantity>,
 }
 
 /// One setting and the values that it takes.
@@ -51,18 +51,29 @@ pub struct Vary {
     pub values: Vec<String>,
 }
 
+/// Why a text does not say what is varied.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoVary {
+    #[error("it must be PATH=A,B,C, as history.increment=0.01,0.02")]
+    NoValues,
+    #[error("{0}: a range is LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, as 0.01..0.1/4")]
+    NoRange(String),
+    #[error("{0}: even ratios need ends above 0")]
+    NoRatios(String),
+}
+
 impl Vary {
     /// What is varied, as typed: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` are four evenly spaced values, ends
     /// included, `0.01..0.1/4log` four with even ratios. `2x` is twice what the scene has (the plan works it out).
     ///
     /// # Errors
     /// A message that says what it must be.
-    pub fn parse(text: &str) -> Result<Vary, String> {
+    pub fn parse(text: &str) -> Result<Vary, NoVary> {
         let Some((path, values)) = text.split_once('=') else {
-            return Err("it must be PATH=A,B,C, as history.increment=0.01,0.02".to_owned());
+            return Err(NoVary::NoValues);
         };
         let values = values.split(',').map(|value| spread(value.trim()));
-        let values: Result<Vec<Vec<String>>, String> = values.collect();
+        let values: Result<Vec<Vec<String>>, NoVary> = values.collect();
         Ok(Vary {
             path: path.trim().to_owned(),
             values: values?.concat(),
@@ -71,12 +82,11 @@ impl Vary {
 }
 
 /// A value, or those of a range.
-fn spread(value: &str) -> Result<Vec<String>, String> {
+fn spread(value: &str) -> Result<Vec<String>, NoVary> {
     let Some((low, rest)) = value.split_once("..") else {
         return Ok(vec![value.to_owned()]);
     };
-    let wrong =
-        || format!("{value}: a range is LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, as 0.01..0.1/4");
+    let wrong = || NoVary::NoRange(value.to_owned());
     let (high, count) = rest.split_once('/').ok_or_else(wrong)?;
     let (count, even_ratios) = match count.strip_suffix("log") {
         Some(count) => (count, true),
@@ -87,7 +97,7 @@ fn spread(value: &str) -> Result<Vec<String>, String> {
     let count = count.parse::<u32>().ok().filter(|n| (2..=1000).contains(n));
     let count = count.ok_or_else(wrong)?;
     if even_ratios && !(low > 0.0 && high > 0.0) {
-        return Err(format!("{value}: even ratios need ends above 0"));
+        return Err(NoVary::NoRatios(value.to_owned()));
     }
     let at = |k: u32| {
         let part = f64::from(k) / f64::from(count - 1);
@@ -105,7 +115,7 @@ fn spread(value: &str) -> Result<Vec<String>, String> {
 
 /// A number that every accepted increment has.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Quantity {
+pub enum AxisQuantity {
     Increment,
     Load,
     Majors,
@@ -114,26 +124,26 @@ pub enum Quantity {
     Monitor(String),
 }
 
-impl Quantity {
+impl AxisQuantity {
     /// The quantity of that name; what is none of the words is a monitor.
-    pub fn named(name: &str) -> Quantity {
+    pub fn named(name: &str) -> AxisQuantity {
         match name {
-            "increment" => Quantity::Increment,
-            "load" => Quantity::Load,
-            "majors" => Quantity::Majors,
-            "minors" => Quantity::Minors,
-            monitor => Quantity::Monitor(monitor.to_owned()),
+            "increment" => AxisQuantity::Increment,
+            "load" => AxisQuantity::Load,
+            "majors" => AxisQuantity::Majors,
+            "minors" => AxisQuantity::Minors,
+            monitor => AxisQuantity::Monitor(monitor.to_owned()),
         }
     }
 
     /// Its name.
     pub fn name(&self) -> &str {
         match self {
-            Quantity::Increment => "increment",
-            Quantity::Load => "load",
-            Quantity::Majors => "majors",
-            Quantity::Minors => "minors",
-            Quantity::Monitor(name) => name,
+            AxisQuantity::Increment => "increment",
+            AxisQuantity::Load => "load",
+            AxisQuantity::Majors => "majors",
+            AxisQuantity::Minors => "minors",
+            AxisQuantity::Monitor(name) => name,
         }
     }
 }
@@ -194,8 +204,8 @@ impl Study {
             scenes: file.scenes,
             vary: vary(file.vary),
             set: file.set.into_iter().map(|(path, w)| (path, w.0)).collect(),
-            x: file.x.as_deref().map(Quantity::named),
-            y: file.y.as_deref().map(Quantity::named),
+            x: file.x.as_deref().map(AxisQuantity::named),
+            y: file.y.as_deref().map(AxisQuantity::named),
         })
     }
 

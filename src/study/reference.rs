@@ -4,7 +4,7 @@
 //! path of the load factor turns round, `leg` (from 1; without it, a new leg begins after the load of each corner). What
 //! `stickslip run --csv` writes is one.
 
-use super::csv::column;
+use super::csv::{TableError, column};
 use super::result::Run;
 use crate::outside::input::{self, MARK, TABLE_BYTES};
 use crate::scene::error::{quoted, shortened};
@@ -54,7 +54,7 @@ impl Reference {
     ///
     /// # Errors
     /// None that the tests have not found.
-    pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, String>> {
+    pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, TableError>> {
         let (name, text) = TABLES.iter().find(|(name, _)| *name == scene)?;
         Some(Reference::read(&format!("{name}.csv"), text, path))
     }
@@ -63,9 +63,10 @@ impl Reference {
     ///
     /// # Errors
     /// If it cannot be read: file, line, column, what is wrong.
-    pub fn open(file: &Path, path: &[f64]) -> Result<Reference, String> {
+    pub fn open(file: &Path, path: &[f64]) -> Result<Reference, TableError> {
         let name = file.display().to_string();
-        let text = input::text(file, TABLE_BYTES, "no reference has").map_err(|e| e.of(&name))?;
+        let text = input::text(file, TABLE_BYTES, "no reference has")
+            .map_err(|why| TableError::unreadable(file, why))?;
         Reference::read(&name, &text, path)
     }
 
@@ -73,7 +74,13 @@ impl Reference {
     ///
     /// # Errors
     /// As [`Reference::open`].
-    pub fn read(name: &str, text: &str, path: &[f64]) -> Result<Reference, String> {
+    pub fn read(name: &str, text: &str, path: &[f64]) -> Result<Reference, TableError> {
+        let wrong = |line: usize, column: usize, message: String| TableError::Wrong {
+            file: name.to_owned(),
+            line,
+            column,
+            message,
+        };
         let text = text.strip_prefix(MARK).unwrap_or(text);
         let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line));
         let about: Vec<&str> = text
@@ -84,12 +91,12 @@ impl Reference {
             lines.filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));
         let (first, header) = lines
             .next()
-            .ok_or_else(|| format!("{name}:1:1: there is no header"))?;
+            .ok_or_else(|| wrong(1, 1, "there is no header".into()))?;
         let heads: Vec<&str> = header.split(',').map(str::trim).collect();
         let place = |wanted: &str| heads.iter().position(|head| *head == wanted);
         let load = place("load").ok_or_else(|| {
             let header = quoted(header.trim());
-            format!("{name}:{first}:1: the header has no column load: {header}")
+            wrong(first, 1, format!("the header has no column load: {header}"))
         })?;
         let leg = place("leg");
         let words = ["load", "leg", "increment", "majors", "minors"];
@@ -102,21 +109,17 @@ impl Reference {
             let fields: Vec<&str> = text.split(',').map(str::trim).collect();
             if fields.len() != heads.len() {
                 let (has, wants) = (fields.len(), heads.len());
-                return Err(format!(
-                    "{name}:{line}:1: the row has {has} fields, the header {wants}"
-                ));
+                let message = format!("the row has {has} fields, the header {wants}");
+                return Err(wrong(line, 1, message));
             }
             let number = |k: usize| {
                 let value = fields[k].parse::<f64>().ok();
-                let wrong = || {
-                    format!(
-                        "{name}:{line}:{}: {} under {} is no number",
-                        column(text, k),
-                        quoted(fields[k]),
-                        shortened(heads[k])
-                    )
+                let none = || {
+                    let (word, head) = (quoted(fields[k]), shortened(heads[k]));
+                    let message = format!("{word} under {head} is no number");
+                    wrong(line, column(text, k), message)
                 };
-                value.filter(|v| v.is_finite()).ok_or_else(wrong)
+                value.filter(|v| v.is_finite()).ok_or_else(none)
             };
             let at = number(load)?;
             let leg = match leg {
@@ -134,7 +137,7 @@ impl Reference {
             });
         }
         if rows.is_empty() {
-            return Err(format!("{name}:{first}:1: it has no rows"));
+            return Err(wrong(first, 1, "it has no rows".into()));
         }
         Ok(Reference {
             source: [&[name], &about[..]].concat().join(" "),
@@ -241,7 +244,7 @@ mod tests {
             ("load,u\n1,a\n", "x:2:3: \"a\" under u"),
         ] {
             let error = Reference::read("x", text, &[0.0, 1.0]).unwrap_err();
-            assert!(error.contains(part), "{error}");
+            assert!(error.to_string().contains(part), "{error}");
         }
     }
 }

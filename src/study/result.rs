@@ -1,6 +1,6 @@
 //! What one run of a study came to.
 
-use super::read::Quantity;
+use super::read::AxisQuantity;
 use super::reason::Reason;
 use super::verdict::Verdict;
 
@@ -15,7 +15,7 @@ pub struct Run {
     pub rows: Vec<Row>,
     /// Major iterations that were begun in all, those of attempts that were cut or damped included.
     pub begun: u64,
-    pub end: End,
+    pub end: CaseEnd,
 }
 
 /// One accepted increment.
@@ -36,7 +36,7 @@ pub struct Row {
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq)]
-pub enum End {
+pub enum CaseEnd {
     /// At the end of the history.
     Finished,
     /// An increment failed.
@@ -63,13 +63,13 @@ pub struct Failed {
 
 impl Run {
     /// The value of a quantity in a row of this run; none where the scene has no such monitor.
-    pub fn value(&self, row: &Row, quantity: &Quantity) -> Option<f64> {
+    pub fn value(&self, row: &Row, quantity: &AxisQuantity) -> Option<f64> {
         match quantity {
-            Quantity::Increment => Some(f64::from(row.increment)),
-            Quantity::Load => Some(row.load),
-            Quantity::Majors => Some(f64::from(row.majors)),
-            Quantity::Minors => Some(row.minors as f64),
-            Quantity::Monitor(name) => {
+            AxisQuantity::Increment => Some(f64::from(row.increment)),
+            AxisQuantity::Load => Some(row.load),
+            AxisQuantity::Majors => Some(f64::from(row.majors)),
+            AxisQuantity::Minors => Some(row.minors as f64),
+            AxisQuantity::Monitor(name) => {
                 let k = self.monitors.iter().position(|monitor| monitor == name)?;
                 row.monitors.get(k).copied()
             }
@@ -84,7 +84,7 @@ impl Run {
     /// Where it failed, if it did.
     pub fn failed(&self) -> Option<&Failed> {
         match &self.end {
-            End::Failed(failed) => Some(failed),
+            CaseEnd::Failed(failed) => Some(failed),
             _ => None,
         }
     }

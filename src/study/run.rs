@@ -3,7 +3,7 @@
 use super::log::LogError;
 use super::plan::{Case, Plan};
 use super::reason::Reason;
-use super::result::{End, Failed, Row, Run};
+use super::result::{CaseEnd, Failed, Row, Run};
 use super::verdict::Verdict;
 use crate::scene::SceneError;
 use crate::step::event::Outcome;
@@ -72,25 +72,25 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
         start: row(&mut stepper, 0, 0, 0),
         rows: Vec::new(),
         begun: 0,
-        end: End::NotRun,
+        end: CaseEnd::NotRun,
     };
     let mut minors = 0;
     run.end = loop {
         if (watch.stop)() {
             break match run.rows.is_empty() && minors == 0 {
-                true => End::NotRun,
-                false => End::Interrupted,
+                true => CaseEnd::NotRun,
+                false => CaseEnd::Interrupted,
             };
         }
         let Some(event) = stepper.step() else {
-            break End::Finished;
+            break CaseEnd::Finished;
         };
         minors += 1;
         let (at, outcome) = (event.position, &event.outcome);
         run.begun += u64::from(!matches!(outcome, Outcome::Minor | Outcome::Climbed { .. }));
         match outcome {
             Outcome::Failed(failure) => {
-                break End::Failed(Failed {
+                break CaseEnd::Failed(Failed {
                     reason: Reason::from(failure),
                     verdict: Verdict::of(failure),
                     increment: at.increment,

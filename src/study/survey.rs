@@ -4,7 +4,7 @@ use super::log::{Found, Log, key};
 use super::origin;
 use super::random::Population;
 use super::run::{RunError, Watch, pool};
-use super::trial::{Judged, Trial, Variant, judge};
+use super::trial::{Judged, Trial, Variant, try_variants};
 use super::verdict::Verdict;
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -72,7 +72,7 @@ impl Survey {
             if (watch.stop)() {
                 return Ok(None);
             }
-            let judged = judge(&population, k, &variants, watch.stop)?;
+            let judged = try_variants(&population, k, &variants, watch.stop)?;
             if let (Some((log, _)), Some(judged)) = (&opened, &judged) {
                 log.keep(&key(k), judged)?;
             }

@@ -69,7 +69,7 @@ impl Judged {
 ///
 /// # Errors
 /// If a variant's settings will not do.
-pub fn judge(
+pub fn try_variants(
     population: &Population,
     k: usize,
     variants: &[Variant],

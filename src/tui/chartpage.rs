@@ -1,7 +1,21 @@
 //! What the work-precision page shows, and what keys do to it.
 
-use crate::study::precision::{self, Cost, Precision};
+use crate::study::csv::TableError;
+use crate::study::measuring::NotMeasured;
+use crate::study::precision::{Cost, Precision};
+use crate::study::precision_table;
 use std::path::Path;
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+pub enum NoPage {
+    #[error(transparent)]
+    Table(#[from] TableError),
+    #[error(transparent)]
+    NotMeasured(#[from] Box<NotMeasured>),
+    #[error("stopped before there was anything to compare")]
+    Empty,
+}
 
 /// What the page shows.
 #[derive(Debug, Clone)]
@@ -22,8 +36,8 @@ impl ChartPage {
     ///
     /// # Errors
     /// If it cannot be read.
-    pub fn open(file: &str) -> Result<ChartPage, String> {
-        let text = precision::open(Path::new(file))?;
+    pub fn open(file: &str) -> Result<ChartPage, NoPage> {
+        let text = precision_table::open(Path::new(file))?;
         ChartPage::of_table(file, text)
     }
 
@@ -31,17 +45,17 @@ impl ChartPage {
     ///
     /// # Errors
     /// If there is nothing in it to be shown.
-    pub fn of_chart(chart: Precision) -> Result<ChartPage, String> {
+    pub fn of_chart(chart: Precision) -> Result<ChartPage, NoPage> {
         if chart.points.is_empty() {
-            return Err("stopped before there was anything to compare".into());
+            return Err(NoPage::Empty);
         }
-        ChartPage::of_table("chart", precision::csv(&[chart]))
+        ChartPage::of_table("chart", precision_table::csv(&[chart]))
     }
 
-    fn of_table(name: &str, text: String) -> Result<ChartPage, String> {
+    fn of_table(name: &str, text: String) -> Result<ChartPage, NoPage> {
         let cost = Cost::default();
         Ok(ChartPage {
-            charts: precision::read(name, &text, cost, None)?,
+            charts: precision_table::read(name, &text, cost, None)?,
             name: name.to_owned(),
             text,
             chart: 0,
@@ -78,7 +92,7 @@ impl ChartPage {
             Cost::Minors => Cost::Time,
         };
         // It could be read before.
-        if let Ok(charts) = precision::read(&self.name, &self.text, self.cost, None) {
+        if let Ok(charts) = precision_table::read(&self.name, &self.text, self.cost, None) {
             self.charts = charts;
         }
     }

@@ -1,18 +1,27 @@
 //! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
 //! while.
 
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError};
 use crate::session::Session;
 use crate::teach::Lesson;
-use crate::tui::chartpage::ChartPage;
+use crate::tui::chartpage::{ChartPage, NoPage};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
+/// Why a scene or a lesson cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum NotLoaded {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error("reading it broke down")]
+    BrokeDown,
+}
+
 /// What was read, or why it cannot be had.
 pub enum Loaded {
-    Scene(Result<Box<Session>, String>),
-    Lesson(Result<Box<(Lesson, Session)>, String>),
-    Chart(Result<Box<ChartPage>, String>),
+    Scene(Result<Box<Session>, NotLoaded>),
+    Lesson(Result<Box<(Lesson, Session)>, NotLoaded>),
+    Chart(Result<Box<ChartPage>, NoPage>),
 }
 
 /// Something on its way; who drops it does not want it any more.
@@ -25,7 +34,7 @@ impl Loading {
     pub fn scene(name: &str) -> Loading {
         let name = name.to_owned();
         Loading::of(move || {
-            let scene = Scene::open(&name, &[]).map_err(|error| error.to_string());
+            let scene = Scene::open(&name, &[]).map_err(NotLoaded::from);
             Loaded::Scene(scene.map(|scene| Box::new(Session::new(scene))))
         })
     }
@@ -34,7 +43,7 @@ impl Loading {
     pub fn lesson(name: &str) -> Loading {
         let name = name.to_owned();
         Loading::of(move || {
-            let lesson = Lesson::open(&name).map_err(|error| error.to_string());
+            let lesson = Lesson::open(&name).map_err(NotLoaded::from);
             Loaded::Lesson(lesson.map(|lesson| {
                 let session = Session::new(lesson.scene.clone());
                 Box::new((lesson, session))
@@ -62,9 +71,7 @@ impl Loading {
         match self.result.try_recv() {
             Ok(loaded) => Some(loaded),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => {
-                Some(Loaded::Scene(Err("reading it broke down".into())))
-            }
+            Err(TryRecvError::Disconnected) => Some(Loaded::Scene(Err(NotLoaded::BrokeDown))),
         }
     }
 }

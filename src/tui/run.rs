@@ -10,7 +10,7 @@ use crate::session::{Reply, Session};
 use crate::study::measuring::Measuring;
 use crate::teach::{Lesson, Tutor};
 use crate::tui::app::{App, Effect, Offer, Overlay};
-use crate::tui::chartpage::ChartPage;
+use crate::tui::chartpage::{ChartPage, NoPage};
 use crate::tui::keys;
 use crate::tui::loading::{Loaded, Loading};
 use crate::tui::terminal::{self, Signals, Terminal};
@@ -312,9 +312,8 @@ impl Debugger {
                 self.app.say("");
                 self.app.overlay = Overlay::Chart(page);
             }
-            Loaded::Scene(Err(why)) | Loaded::Lesson(Err(why)) | Loaded::Chart(Err(why)) => {
-                self.app.complain(why);
-            }
+            Loaded::Scene(Err(why)) | Loaded::Lesson(Err(why)) => self.app.complain(why),
+            Loaded::Chart(Err(why)) => self.app.complain(why),
         }
         true
     }
@@ -451,7 +450,7 @@ impl Debugger {
             .say("measuring beside all else, and shown when it is done; Ctrl-C stops it");
     }
 
-    fn show_chart(&mut self, page: Result<ChartPage, String>) {
+    fn show_chart(&mut self, page: Result<ChartPage, NoPage>) {
         match page {
             Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
             Err(error) => self.app.complain(error),
@@ -474,7 +473,8 @@ impl Debugger {
         };
         (self.measuring, self.app.measuring) = (None, None);
         self.app.say("");
-        self.show_chart(result.and_then(ChartPage::of_chart));
+        let page = result.map_err(|why| NoPage::from(Box::new(why)));
+        self.show_chart(page.and_then(ChartPage::of_chart));
         true
     }
 

@@ -4,7 +4,7 @@ use crate::program::{code, err, interrupted, program, rows, well};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use stickslip::study::map::{Ended, Kind, Map, Seen, TOLERANCE};
+use stickslip::study::map::{Ended, Map, MonitorKind, Seen, TOLERANCE};
 use stickslip::study::verdict::Verdict;
 use stickslip::study::{Plan, Study, Vary};
 
@@ -261,8 +261,8 @@ fn ended(end: f64) -> Option<Ended> {
         jumped: 0,
         // The drift is a measure of error and may differ.
         monitors: vec![
-            seen("u_x", Kind::Length, end),
-            seen("d", Kind::Drift, 100.0 * end),
+            seen("u_x", MonitorKind::Length, end),
+            seen("d", MonitorKind::Drift, 100.0 * end),
         ],
     })
 }

@@ -7,7 +7,9 @@ use std::process::{Command, Output, Stdio};
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
-use stickslip::study::{self, Plan, Quantity, Reason, Run, Study, Vary, Watch, csv, figure, plot};
+use stickslip::study::{
+    self, AxisQuantity, Plan, Reason, Run, Study, Vary, Watch, csv, figure, plot,
+};
 
 const BEAM: &str = "01-pinned-beam-rough-floor";
 const ROUGH: &str = "02-two-cantilevers-rough";
@@ -275,7 +277,7 @@ fn charts_with_little_or_nothing_or_much_in_them_are_drawn() {
     let curve = |label: String, points: &[(f64, f64)]| plot::Curve {
         label,
         points: points.to_vec(),
-        end: plot::End::Failed("why".into()),
+        end: plot::CurveEnd::Failed("why".into()),
     };
     let mut chart = plot::Chart {
         title: "A title that is too long for one line ".repeat(9),
@@ -305,8 +307,8 @@ fn study_files_are_read_and_their_errors_have_a_place() {
     let read = Study::from_text("s.ron", text).unwrap();
     assert_eq!(read.vary[0].values, ["0.1", "2", "w", "true"]);
     assert_eq!(read.set, [("q".to_owned(), "-1e-9".to_owned())]);
-    assert_eq!(read.x, Some(Quantity::Monitor("u_x".into())));
-    assert_eq!(read.y, Some(Quantity::Minors));
+    assert_eq!(read.x, Some(AxisQuantity::Monitor("u_x".into())));
+    assert_eq!(read.y, Some(AxisQuantity::Minors));
     for (text, at, part) in [
         ("(title: \"T\",\n scens: \"a\")", (2, 2), "did you mean"),
         ("(title: \"T\",\n scene: 3)", (2, 9), "scene"),

@@ -36,6 +36,7 @@ use stickslip::session::Session;
 use stickslip::step::stepper::Stepper;
 use stickslip::study::chart_file::Chart;
 use stickslip::study::precision;
+use stickslip::study::precision_table;
 use stickslip::study::random::Population;
 use stickslip::study::reference::Reference;
 use stickslip::study::survey::Survey;
@@ -348,13 +349,13 @@ fn chart_tables() {
         "scene,series,run,status,error,seconds\nA,a,1,whole,0.1,1\nB,a,2,whole,,2\nB,b,3,failed,,3\n".to_owned(),
     ];
     fuzz("chart_tables", &corpus, |text| {
-        let charts = match precision::read("x.csv", text, precision::Cost::Time, Some(1e-2)) {
+        let charts = match precision_table::read("x.csv", text, precision::Cost::Time, Some(1e-2)) {
             Ok(charts) => charts,
-            Err(error) => return Took::Refused(error),
+            Err(error) => return Took::Refused(error.to_string()),
         };
-        let again = precision::csv(&charts);
-        let same = precision::read("y.csv", &again, precision::Cost::Minors, None);
-        assert_eq!(same.map(|c| c.len()), Ok(charts.len()), "{again}");
+        let again = precision_table::csv(&charts);
+        let same = precision_table::read("y.csv", &again, precision::Cost::Minors, None);
+        assert_eq!(same.ok().map(|c| c.len()), Some(charts.len()), "{again}");
         if charts.iter().map(|chart| chart.points.len()).sum::<usize>() < 12 {
             let svg = precision_figure::sheet(&charts).and_then(|sheet| sheet.svg());
             assert!(

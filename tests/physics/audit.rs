@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stickslip::contact::judge::Law;
 use stickslip::explain::audit::Audit;
-use stickslip::explain::remedies::{self, End};
+use stickslip::explain::remedies::{self, TrialEnd};
 use stickslip::model::Mode;
 use stickslip::model::{AtLimit, SlipCount, Sticking, Ties};
 use stickslip::scene::{Scene, builtin};
@@ -193,7 +193,7 @@ fn no_remedy_that_ends_against_a_law_is_called_converged() {
             let verdict = stepper.state().start.verdict;
             let broken = verdict.is_some_and(|verdict| verdict.broken().next().is_some());
             assert!(
-                !broken || matches!(trial.end, End::Against(_)),
+                !broken || matches!(trial.end, TrialEnd::Against(_)),
                 "{name}: {trial:?}"
             );
             sound += u32::from(verdict.is_some() && !broken);

@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
-use stickslip::explain::remedies::End;
+use stickslip::explain::remedies::TrialEnd;
 use stickslip::history::verdicts::Verdict;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
@@ -223,19 +223,19 @@ fn remedies_are_measured_and_the_chosen_one_is_done_again_in_a_branch_of_its_own
         let found = trials.find(|trial| trial.label.starts_with(label));
         found.unwrap_or_else(|| panic!("{label}")).end.clone()
     };
-    assert_eq!(ends("answer 1: beam.5 sliding"), End::Converged);
+    assert_eq!(ends("answer 1: beam.5 sliding"), TrialEnd::Converged);
     for label in [
         "enter contact as sliding",
-        "the same, entering",
+        "enter as sliding, one chan",
         "block",
         "semismooth Newton",
         "Lemke",
         "the ladder",
     ] {
-        assert_eq!(ends(label), End::Converged, "{label}");
+        assert_eq!(ends(label), TrialEnd::Converged, "{label}");
     }
     for label in ["one change", "hysteresis", "t_max", "residual", "half"] {
-        assert!(matches!(ends(label), End::Failed(_)), "{label}");
+        assert!(matches!(ends(label), TrialEnd::Failed(_)), "{label}");
     }
     let best = &tried.trials[0];
     let left = best.left.unwrap();
@@ -267,7 +267,7 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
     let (_, step) = session.place();
     let trials = session.background().tried().unwrap().trials.clone();
     let mut good = 0;
-    for trial in trials.into_iter().filter(|t| t.end == End::Converged) {
+    for trial in trials.into_iter().filter(|t| t.end == TrialEnd::Converged) {
         solve(&mut session, Command::Goto { step });
         let (label, steps) = (trial.label.clone(), trial.steps);
         solve(&mut session, Command::Follow { label, steps });

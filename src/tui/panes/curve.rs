@@ -1,10 +1,10 @@
 //! The load factor over a monitor, at the end of every accepted increment up to the shown frame.
 
-use crate::explain::number;
 use crate::explain::number::{plain, short};
 use crate::history::frame;
 use crate::tui::app::App;
 use crate::tui::canvas::Canvas;
+use crate::tui::chartframe::ChartFrame;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::theme::Theme;
@@ -12,7 +12,6 @@ use crate::tui::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
-use ratatui::widgets::Widget;
 
 /// Width of the labels at the axis, the axis included.
 const LABELS: u16 = 9;
@@ -76,12 +75,8 @@ fn span(points: &[[f64; 2]], axis: usize) -> [f64; 2] {
 }
 
 fn chart(buffer: &mut Buffer, area: Rect, points: &[[f64; 2]], known: &[[f64; 2]], theme: &Theme) {
-    let field = Rect {
-        x: area.x + LABELS,
-        width: area.width - LABELS - 1,
-        height: area.height - 1,
-        ..area
-    };
+    let frame = ChartFrame::within(area, LABELS);
+    let field = frame.field;
     let (x, y) = (span(known, 0), span(known, 1));
     let mut canvas = Canvas::new(field);
     let [width, height] = canvas.size();
@@ -108,36 +103,27 @@ fn chart(buffer: &mut Buffer, area: Rect, points: &[[f64; 2]], known: &[[f64; 2]
     if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
         cell.set_symbol("●").set_style(theme.strong);
     }
-    axes(buffer, area, field, x, y, theme);
+    axes(buffer, frame, x, y, theme);
 }
 
 /// The two axes, each with the numbers at its ends.
-fn axes(buffer: &mut Buffer, area: Rect, field: Rect, x: [f64; 2], y: [f64; 2], theme: &Theme) {
+fn axes(buffer: &mut Buffer, frame: ChartFrame, x: [f64; 2], y: [f64; 2], theme: &Theme) {
     let label = |value: f64| match value {
         0.0 => "0".into(),
         _ => format!("{value:.1e}"),
     };
-    for row in field.rows() {
-        let text = match row.y {
-            top if top == field.y => format!("{:>7} ┤", label(y[1])),
-            low if low + 1 == field.bottom() => format!("{:>7} ┤", label(y[0])),
-            _ => format!("{:>7} │", ""),
-        };
-        let place = Rect {
-            x: area.x,
-            width: LABELS,
-            ..row
-        };
-        Line::styled(text, theme.faint).render(place, buffer);
-    }
-    let below = Rect {
-        y: field.bottom(),
-        height: 1,
-        ..field
-    };
-    let (left, right) = (number::short(x[0]), number::short(x[1]));
-    let room = (field.width as usize).saturating_sub(left.len());
-    Line::styled(format!("{left}{right:>room$}"), theme.faint).render(below, buffer);
+    frame.axis(buffer, theme.faint);
+    let low = frame.field.height.saturating_sub(1);
+    frame.tick(buffer, low, &label(y[0]), theme.faint);
+    frame.tick(buffer, 0, &label(y[1]), theme.faint);
+    let (left, right) = (short(x[0]), short(x[1]));
+    let width = frame.field.width as usize;
+    let room = width.saturating_sub(left.len());
+    let text: String = format!("{left}{right:>room$}")
+        .chars()
+        .take(width)
+        .collect();
+    frame.below(buffer, frame.field.x, &text, theme.faint);
 }
 
 #[cfg(test)]

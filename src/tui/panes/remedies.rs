@@ -1,6 +1,6 @@
 //! The remedies that were tried: what each costs and what it leaves; one of them selected, to be taken.
 
-use crate::explain::remedies::{self, CLEAN, COLUMNS, End, Trial};
+use crate::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEnd};
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
@@ -45,7 +45,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             let good = tried
                 .trials
                 .iter()
-                .filter(|t| t.end == End::Converged)
+                .filter(|t| t.end == TrialEnd::Converged)
                 .count();
             format!("{good} of {count} converge; Enter takes the selected one, in a new branch")
         }
@@ -123,9 +123,11 @@ fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
 fn mark(trial: &Trial, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
     match (&trial.end, &trial.left) {
-        (End::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => ("~", theme.warning),
-        (End::Converged, _) => ("✓", theme.good),
-        (End::Against(_), _) => ("~", theme.warning),
+        (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => {
+            ("~", theme.warning)
+        }
+        (TrialEnd::Converged, _) => ("✓", theme.good),
+        (TrialEnd::Against(_), _) => ("~", theme.warning),
         _ => ("✗", theme.bad),
     }
 }

@@ -5,6 +5,7 @@ use crate::explain::number::short;
 use crate::linear::norms::Norms;
 use crate::tui::app::App;
 use crate::tui::canvas::Canvas;
+use crate::tui::chartframe::ChartFrame;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::theme::Theme;
@@ -12,7 +13,6 @@ use crate::tui::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
-use ratatui::widgets::Widget;
 
 /// Width of the labels at the axis, the axis included.
 const LABELS: u16 = 7;
@@ -132,19 +132,20 @@ impl Scale {
 }
 
 fn chart(buffer: &mut Buffer, area: Rect, values: &[(u32, Norms)], theme: &Theme) {
-    let rows = area.height - 1;
-    let field = Rect {
-        x: area.x + LABELS,
-        y: area.y,
-        width: area.width - LABELS - 1,
-        height: rows,
-    };
+    let frame = ChartFrame::within(area, LABELS);
+    let field = frame.field;
     let shown = &values[values.len().saturating_sub(field.width as usize / 2)..];
-    let scale = Scale::new(shown, rows);
+    let scale = Scale::new(shown, field.height);
     let spread = (field.width as usize / shown.len().max(6)).clamp(2, SPREAD);
     let column = |index: usize| index * spread + spread / 2;
 
-    axis(buffer, area, &scale, theme);
+    // What is drawn stands on faint ground.
+    let ground = Rect {
+        height: field.height,
+        ..area
+    };
+    buffer.set_style(ground, theme.faint);
+    axis(buffer, frame, &scale, theme);
     let dot =
         |index: usize, value: f64| [column(index) as f64 * 2.0 + 0.5, scale.height(value) * 4.0];
     let mut canvas = Canvas::new(field);
@@ -156,141 +157,57 @@ fn chart(buffer: &mut Buffer, area: Rect, values: &[(u32, Norms)], theme: &Theme
     canvas.polyline(&line, theme.faint);
     canvas.render(buffer);
     for (index, (major, norms)) in shown.iter().enumerate() {
-        limit(
-            buffer,
-            field,
-            column(index),
-            spread,
-            scale.height(norms.limit),
-            theme,
-        );
-        mark(
-            buffer,
-            field,
-            column(index),
-            scale.height(norms.interface),
-            "○",
-            theme.faint,
-        );
+        let at = |value: f64| (column(index), scale.height(value));
+        limit(buffer, frame, at(norms.limit), spread, theme);
+        frame.mark(buffer, at(norms.interface), "○", theme.faint);
         let good = norms.relative <= norms.limit;
         let style = if good { theme.good } else { theme.strong };
-        mark(
-            buffer,
-            field,
-            column(index),
-            scale.height(norms.relative),
-            "●",
-            style,
-        );
-        number(
-            buffer,
-            area,
-            field.x as usize + column(index),
-            *major,
-            index == 0 || spread > 3,
-            theme,
-        );
+        frame.mark(buffer, at(norms.relative), "●", style);
+        // The number of an iteration under its column, where it fits.
+        let text = major.to_string();
+        let middle = field.x as usize + column(index);
+        let start = middle.saturating_sub(text.len() / 2);
+        let wanted = index == 0 || spread > 3 || major.is_multiple_of(5);
+        if wanted && start + text.len() <= area.right() as usize {
+            frame.below(buffer, start as u16, &text, theme.faint);
+        }
     }
 }
 
 /// Decades at the axis.
-fn axis(buffer: &mut Buffer, area: Rect, scale: &Scale, theme: &Theme) {
+fn axis(buffer: &mut Buffer, frame: ChartFrame, scale: &Scale, theme: &Theme) {
     let decades = (scale.top - scale.bottom) as usize;
     let every = decades
         .div_ceil((scale.rows as usize).saturating_sub(1).max(1))
         .max(1);
-    let label = |row: u16, text: String, buffer: &mut Buffer| {
-        let line = Line::styled(format!("{text:>5} ┤"), theme.faint);
-        line.render(
-            Rect {
-                y: area.y + row,
-                height: 1,
-                ..area
-            },
-            buffer,
-        );
-    };
-    for row in 0..scale.rows {
-        Line::styled("      │", theme.faint).render(
-            Rect {
-                y: area.y + row,
-                height: 1,
-                ..area
-            },
-            buffer,
-        );
-    }
+    frame.axis(buffer, theme.faint);
     for decade in (0..=decades).step_by(every) {
         let power = scale.top as i32 - decade as i32;
         let row = scale.height(10f64.powi(power)).floor() as u16;
-        label(row.min(scale.rows - 1), format!("1e{power}"), buffer);
+        let row = row.min(scale.rows - 1);
+        frame.tick(buffer, row, &format!("1e{power}"), theme.faint);
     }
     if scale.zero {
-        label(scale.rows, "0".into(), buffer);
+        frame.tick(buffer, scale.rows, "0", theme.faint);
     }
 }
 
 /// The limit, as far as one iteration reaches.
 fn limit(
     buffer: &mut Buffer,
-    field: Rect,
-    column: usize,
+    frame: ChartFrame,
+    (column, height): (usize, f64),
     spread: usize,
-    height: f64,
     theme: &Theme,
 ) {
     let from = column.saturating_sub(spread / 2);
     for x in from..from + spread {
-        let taken = field_cell(buffer, field, x, height).is_some_and(|cell| cell.symbol() != " ");
+        let taken = frame
+            .cell(buffer, x, height)
+            .is_some_and(|cell| cell.symbol() != " ");
         if !taken {
-            mark(buffer, field, x, height, "┄", theme.warning);
+            frame.mark(buffer, (x, height), "┄", theme.warning);
         }
-    }
-}
-
-fn field_cell(
-    buffer: &mut Buffer,
-    field: Rect,
-    column: usize,
-    height: f64,
-) -> Option<&mut ratatui::buffer::Cell> {
-    let (x, y) = (
-        field.x as usize + column,
-        f64::from(field.y) + height.floor(),
-    );
-    let inside = x < field.right() as usize && y < f64::from(field.bottom());
-    if inside {
-        buffer.cell_mut((x as u16, y as u16))
-    } else {
-        None
-    }
-}
-
-fn mark(
-    buffer: &mut Buffer,
-    field: Rect,
-    column: usize,
-    height: f64,
-    glyph: &str,
-    style: ratatui::style::Style,
-) {
-    if let Some(cell) = field_cell(buffer, field, column, height) {
-        cell.set_symbol(glyph).set_style(style);
-    }
-}
-
-/// Number of an iteration under its column, where it fits.
-fn number(buffer: &mut Buffer, area: Rect, middle: usize, major: u32, wanted: bool, theme: &Theme) {
-    let text = major.to_string();
-    let start = middle.saturating_sub(text.len() / 2);
-    if (wanted || major.is_multiple_of(5)) && start + text.len() <= area.right() as usize {
-        let place = Rect {
-            x: start as u16,
-            y: area.bottom() - 1,
-            width: text.len() as u16,
-            height: 1,
-        };
-        Line::styled(text, theme.faint).render(place, buffer);
     }
 }
 

@@ -7,6 +7,7 @@
 use crate::explain::number;
 use crate::study::precision::{Point, Precision};
 use crate::study::precision_figure::{Decades, NOTHING, power};
+use crate::tui::chartframe::ChartFrame;
 use crate::tui::chartpage::ChartPage;
 use crate::tui::paint;
 use crate::tui::theme::Theme;
@@ -88,25 +89,20 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
         let part = 1.0 - y.part(error.max(NOTHING));
         plot.y + (part * f64::from(plot.height - 1)).round() as u16
     };
-    let mut put = |x: u16, y: u16, text: &str, style: Style| {
-        buffer.set_string(x, y, text, style);
-    };
+    let frame = ChartFrame::around(plot, LEFT);
     for decade in y.low..=y.high {
         let at = row(10f64.powi(decade));
-        put(
-            plot.x - LEFT,
-            at,
-            &format!("{:>5}", power(decade)),
-            theme.faint,
-        );
-        put(plot.x - 1, at, "┤", theme.faint);
+        frame.tick(buffer, at - plot.y, &power(decade), theme.faint);
     }
     for decade in x.low..=x.high {
         let (at, words) = (column(10f64.powi(decade)), power(decade));
         let left = at.saturating_sub(words.len() as u16 / 2);
         let left = left.min(plot.right().saturating_sub(words.len() as u16));
-        put(left, plot.bottom(), &words, theme.faint);
+        frame.below(buffer, left, &words, theme.faint);
     }
+    let mut put = |x: u16, y: u16, text: &str, style: Style| {
+        buffer.set_string(x, y, text, style);
+    };
     for dot in (plot.x..plot.right()).step_by(2) {
         put(dot, plot.y - 1, "┄", theme.faint);
     }

@@ -1,0 +1,31 @@
+//! What solves are checked by.
+
+/// Why a system could not be solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolveError {
+    /// A pivot vanished, or the solution is not finite or does not satisfy the equations.
+    Singular,
+    /// No memory for the factors.
+    OutOfMemory,
+}
+
+/// A fixed vector of all frequencies, with entries between 1 and 2 in size.
+pub(super) fn fill_probe(probe: &mut [f64]) {
+    for (i, p) in probe.iter_mut().enumerate() {
+        *p = 1.0 + (1.618_033_988_749_895 * i as f64).fract();
+        if i % 2 == 1 {
+            *p = -*p;
+        }
+    }
+}
+
+/// Largest size of an entry; infinite where one is not finite.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |m, v| {
+        if v.is_finite() {
+            m.max(v.abs())
+        } else {
+            f64::INFINITY
+        }
+    })
+}

@@ -1,0 +1,113 @@
+//! Patterns of sparse matrices, and products with them.
+
+use faer::sparse::SymbolicSparseColMatRef;
+
+/// Where a square sparse matrix has entries: compressed columns, rows ascending in each.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pattern {
+    pub(super) n: usize,
+    pub(super) col_ptr: Vec<usize>,
+    pub(super) row_idx: Vec<usize>,
+}
+
+impl Pattern {
+    /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, repeated or not.
+    pub fn new(n: usize, mut entries: Vec<(usize, usize)>) -> Self {
+        entries.sort_unstable_by_key(|&(row, col)| (col, row));
+        entries.dedup();
+        let mut col_ptr = vec![0; n + 1];
+        for &(_, col) in &entries {
+            col_ptr[col + 1] += 1;
+        }
+        for col in 0..n {
+            col_ptr[col + 1] += col_ptr[col];
+        }
+        Pattern {
+            n,
+            col_ptr,
+            row_idx: entries.into_iter().map(|(row, _)| row).collect(),
+        }
+    }
+
+    /// Number of rows and of columns.
+    pub fn size(&self) -> usize {
+        self.n
+    }
+
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.row_idx.len()
+    }
+
+    /// Index of an entry in the array of values, if the pattern has it.
+    pub fn slot(&self, row: usize, col: usize) -> Option<usize> {
+        let start = self.col_ptr[col];
+        self.row_idx[start..self.col_ptr[col + 1]]
+            .binary_search(&row)
+            .ok()
+            .map(|k| start + k)
+    }
+
+    /// All entries as `(row, column)`, in the order of the values.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (0..self.n).flat_map(move |col| {
+            self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]]
+                .iter()
+                .map(move |&row| (row, col))
+        })
+    }
+
+    /// y = A x.
+    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for (col, &xc) in x.iter().enumerate() {
+            for k in self.col_ptr[col]..self.col_ptr[col + 1] {
+                y[self.row_idx[k]] += values[k] * xc;
+            }
+        }
+    }
+
+    /// y = A x for a symmetric A of which this is the upper half.
+    pub fn multiply_half(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        self.add_up(values, x, y, true, |value, x| value * x);
+    }
+
+    /// y = |A| |x|: the size of the terms that a product adds up, the scale of its round-off. Where this is the upper
+    /// `half` of a symmetric A, that of the whole.
+    pub fn multiply_abs(&self, values: &[f64], x: &[f64], y: &mut [f64], half: bool) {
+        self.add_up(values, x, y, half, |value, x| (value * x).abs());
+    }
+
+    fn add_up(
+        &self,
+        values: &[f64],
+        x: &[f64],
+        y: &mut [f64],
+        half: bool,
+        term: impl Fn(f64, f64) -> f64,
+    ) {
+        y.fill(0.0);
+        for (col, &xc) in x.iter().enumerate() {
+            let range = self.col_ptr[col]..self.col_ptr[col + 1];
+            let mut own = 0.0;
+            for (&value, &row) in values[range.clone()].iter().zip(&self.row_idx[range]) {
+                y[row] += term(value, xc);
+                if half && row != col {
+                    own += term(value, x[row]);
+                }
+            }
+            y[col] += own;
+        }
+    }
+}
+
+/// The pattern as faer takes it.
+pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
+    SymbolicSparseColMatRef::new_checked(
+        pattern.n,
+        pattern.n,
+        &pattern.col_ptr,
+        None,
+        &pattern.row_idx,
+    )
+}

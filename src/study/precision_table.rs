@@ -1,0 +1,203 @@
+//! Work-precision charts as tables: written, and read again.
+
+use super::csv::TableError;
+use super::precision::{Cost, Point, Precision, mark_front};
+use crate::outside::input::{self, MARK, TABLE_BYTES};
+use crate::outside::shown;
+use crate::scene::error::quoted;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Most characters of a name in a table that is read.
+const MOST_NAME: usize = 200;
+/// Most comments of a table that are kept, and most characters of one.
+const MOST_COMMENTS: usize = 40;
+const MOST_COMMENT: usize = 2000;
+/// Most runs of a table that is read.
+const MOST_RUNS: usize = 20_000;
+/// The text of a table, for [`read`].
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn open(file: &Path) -> Result<String, TableError> {
+    input::text(file, TABLE_BYTES, "no table of a chart has")
+        .map_err(|why| TableError::unreadable(file, why))
+}
+
+/// Charts from a table as [`csv`] writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
+/// missing, and the runs need not be of this program.
+///
+/// # Errors
+/// If it cannot be read: file, line, column, what is wrong.
+pub fn read(
+    name: &str,
+    text: &str,
+    cost: Cost,
+    target: Option<f64>,
+) -> Result<Vec<Precision>, TableError> {
+    let wrong = |line: usize, column: usize, message: String| TableError::Wrong {
+        file: name.to_owned(),
+        line,
+        column,
+        message,
+    };
+    let text = text.strip_prefix(MARK).unwrap_or(text);
+    let comments = text.lines().filter_map(|line| line.strip_prefix('#'));
+    let about = comments.map(|line| shown::cut(line.trim(), MOST_COMMENT));
+    let about: Vec<String> = about.take(MOST_COMMENTS).collect();
+    let lines = text
+        .lines()
+        .enumerate()
+        .map(|(k, line)| (k + 1, line.trim_end()));
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (first, header) = lines
+        .next()
+        .ok_or_else(|| wrong(1, 1, "there is no header".into()))?;
+    let heads = super::csv::split(header);
+    for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
+        if !heads.iter().any(|head| head == wanted) {
+            let message = format!("it is no table of a chart: it has no column {wanted}");
+            return Err(wrong(first, 1, message));
+        }
+    }
+    let mut charts: Vec<Precision> = Vec::new();
+    let mut runs = 0;
+    for (line, text) in lines {
+        let fields = super::csv::split(text);
+        if fields.len() != heads.len() {
+            let (has, wants) = (fields.len(), heads.len());
+            let message = format!("the row has {has} fields, the header {wants}");
+            return Err(wrong(line, 1, message));
+        }
+        let place = |head: &str| heads.iter().position(|own| own == head);
+        let word = |head: &str| place(head).map_or("", |k| fields[k].as_str());
+        let at = |head: &str| place(head).map_or(1, |k| super::csv::column(text, k));
+        for head in ["scene", "series", "run", "status"] {
+            let letters = word(head).chars().count();
+            if letters > MOST_NAME {
+                let message = format!(
+                    "the text under {head} has {letters} characters; it must have {MOST_NAME} at most"
+                );
+                return Err(wrong(line, at(head), message));
+            }
+        }
+        let number = |head: &str| match word(head) {
+            "" => Ok(None),
+            word => {
+                let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
+                let none = || {
+                    let word = quoted(word);
+                    let message = format!("{word} under {head} is no number that can be drawn");
+                    wrong(line, at(head), message)
+                };
+                value.map(Some).ok_or_else(none)
+            }
+        };
+        let count = |head: &str| number(head).map(|value| value.unwrap_or(0.0) as u64);
+        runs += 1;
+        if runs > MOST_RUNS {
+            let message = format!(
+                "the table has more than {MOST_RUNS} runs; no chart of so many can be read"
+            );
+            return Err(wrong(line, 1, message));
+        }
+        let (scene, own) = (word("scene"), word("series"));
+        if charts.last().is_none_or(|chart| chart.scene != scene) {
+            charts.push(Precision {
+                scene: scene.to_owned(),
+                title: scene.to_owned(),
+                monitors: Vec::new(),
+                about: Vec::new(),
+                series: Vec::new(),
+                points: Vec::new(),
+                cost,
+                target,
+                planned: 0,
+            });
+        }
+        let Some(chart) = charts.last_mut() else {
+            continue;
+        };
+        let series = chart.series.iter().position(|name| name == own);
+        let series = series.unwrap_or_else(|| {
+            chart.series.push(own.to_owned());
+            chart.series.len() - 1
+        });
+        let status = word("status");
+        chart.points.push(Point {
+            series,
+            name: word("run").to_owned(),
+            settings: Vec::new(),
+            seconds: number("seconds")?.unwrap_or(0.0),
+            repeats: count("repeats")? as usize,
+            factorizations: count("factorizations")?,
+            majors: count("majors")?,
+            minors: count("minors")?,
+            increments: count("increments")?,
+            unknowns: count("unknowns")? as usize,
+            failed: (!["whole", "reference"].contains(&status)).then(|| status.to_owned()),
+            unsettled: count("unsettled")? as usize,
+            error: number("error")?,
+            reference: status == "reference",
+            front: false,
+        });
+    }
+    for chart in &mut charts {
+        chart.planned = chart.points.len();
+        mark_front(&mut chart.points, cost);
+    }
+    let last = charts
+        .last_mut()
+        .ok_or_else(|| wrong(first, 1, "it has no rows".into()))?;
+    last.about = about;
+    Ok(charts)
+}
+
+/// A row for each run of some charts, after lines that say what they are.
+pub fn csv(charts: &[Precision]) -> String {
+    let mut text = super::csv::comments(charts.iter().flat_map(|chart| &chart.about));
+    text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\
+             unsettled,front\n";
+    for (chart, point) in charts
+        .iter()
+        .flat_map(|c| c.points.iter().map(move |p| (c, p)))
+    {
+        let settings: Vec<String> = point
+            .settings
+            .iter()
+            .map(|(p, v)| format!("{p}={v}"))
+            .collect();
+        let status = match (&point.failed, point.reference) {
+            (Some(why), _) => why.as_str(),
+            (None, true) => "reference",
+            (None, false) => "whole",
+        };
+        let words = [
+            &chart.scene,
+            &chart.series[point.series],
+            &point.name,
+            &settings.join(" "),
+            status,
+        ];
+        let words: Vec<String> = words.into_iter().map(super::csv::field).collect();
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{},{},{:?},{},{},{},{},{},{},{},{}",
+            words.join(","),
+            point
+                .error
+                .map_or_else(String::new, |error| format!("{error:?}")),
+            point.seconds,
+            point.repeats,
+            point.factorizations,
+            point.majors,
+            point.minors,
+            point.increments,
+            point.unknowns,
+            point.unsettled,
+            point.front
+        );
+    }
+    text
+}
