@@ -10,8 +10,10 @@ use crate::explain::report;
 use crate::model::Model;
 use crate::record::snapshot::{Applied, Snapshot};
 use crate::scene::Scene;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -72,34 +74,48 @@ fn open(input: &str, args: &Args) -> Result<Course, Error> {
 fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     let mut stepper = Stepper::new(Arc::new(course.scene.model.clone()));
     let (mut audit, mut applied) = (Audit::default(), course.applied.iter().peekable());
-    let mut failed = None;
-    for done in 0_u64.. {
-        if interrupt.came() {
-            tell(&format!("{}: interrupted", course.scene.name));
-            return Ok(Exit::Interrupted);
-        }
+    let name = &course.scene.name;
+    let mut intervene = |stepper: &mut Stepper, done: u64| {
         while let Some(next) = applied.next_if(|a| a.step == done) {
-            let name = &course.scene.name;
             stepper
                 .intervene(&next.intervention)
                 .map_err(|e| Error::Usage(format!("{name}: after step {done}: {e}")))?;
         }
-        if course.steps == Some(done) {
-            break;
+        Ok(())
+    };
+    intervene(&mut stepper, 0)?;
+    let came = || interrupt.came();
+    let until = Until::end().interrupted_by(&came);
+    // A snapshot goes on from a failure, as its user did.
+    let until = match course.steps {
+        Some(steps) => until.minors(steps).past_failures(),
+        None => until,
+    };
+    let mut done = 0;
+    let end = stepper.drive(until, |stepper| {
+        done += 1;
+        let failed = matches!(stepper.event().outcome, Outcome::Failed(_));
+        if !failed || course.steps.is_some() {
+            audit.take(stepper);
         }
-        let Some(event) = stepper.step() else { break };
-        // A snapshot goes on from a failure, as its user did.
-        if let Outcome::Failed(failure) = &event.outcome
-            && course.steps.is_none()
-        {
-            failed = Some((event.position, event.load_factor, failure.clone()));
+        match intervene(stepper, done) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => ControlFlow::Break(error),
         }
-        if failed.is_some() {
-            break;
+    });
+    let failed = match end {
+        RunEnd::Stopped(error) => return Err(error),
+        RunEnd::Interrupted => {
+            tell(&format!("{name}: interrupted"));
+            return Ok(Exit::Interrupted);
         }
-        audit.take(&stepper);
-    }
-    let (name, model) = (&course.scene.name, &course.scene.model);
+        RunEnd::Failed(failure) => {
+            let event = stepper.event();
+            Some((event.position, event.load_factor, failure))
+        }
+        RunEnd::Finished | RunEnd::Spent => None,
+    };
+    let model = &course.scene.model;
     say(&table(name, model, &audit))?;
     if let Some((position, load, failure)) = failed {
         let last = stepper.state().start.load_factor;

@@ -12,8 +12,11 @@ use crate::model::{AtCycle, AtLimit, Strategy};
 use crate::outside::files::{self, Output};
 use crate::record::export::{self, NoExport, Origin};
 use crate::scene::Scene;
-use crate::step::event::{Failure, Outcome};
+use crate::step::drive::{RunEnd, Until};
+use crate::step::event::Failure;
 use crate::step::stepper::Stepper;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -80,23 +83,18 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
     }
     let passes = model.settings.at_minor_limit == AtLimit::Accept;
     let mut stepper = Stepper::new(Arc::new(model));
-    let cycle = loop {
-        let Some(event) = stepper.step() else {
-            let hint = if passes {
-                "; settings.at_minor_limit: accept passes over cycles, and stop would not"
-            } else {
-                ""
-            };
-            return Err(NoCore::Converges(hint));
+    let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
+    let RunEnd::Failed(failure) = end else {
+        let hint = if passes {
+            "; settings.at_minor_limit: accept passes over cycles, and stop would not"
+        } else {
+            ""
         };
-        match &event.outcome {
-            Outcome::Failed(Failure::Cycle(cycle)) => break cycle.clone(),
-            Outcome::Failed(_) => {
-                let told = report::outcome(&scene.model, event);
-                return Err(NoCore::OtherFailure(told));
-            }
-            _ => {}
-        }
+        return Err(NoCore::Converges(hint));
+    };
+    let Failure::Cycle(cycle) = failure else {
+        let told = report::outcome(&scene.model, stepper.event());
+        return Err(NoCore::OtherFailure(told));
     };
     if scene.model.settings.at_cycle != AtCycle::Stop {
         tell("settings.at_cycle was put aside; with it the scene may get past this cycle");

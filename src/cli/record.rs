@@ -7,10 +7,12 @@ use crate::explain::report;
 use crate::outside::files::{self, Output};
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::stepper::Stepper;
 use std::fmt;
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -152,23 +154,26 @@ enum Missed {
 /// Steps to a place; the number of minor iterations that it took.
 fn seek(stepper: &mut Stepper, at: At, interrupt: &Interrupt) -> Result<u64, Missed> {
     let mut steps = 0;
-    while stepper.step().is_some() {
+    let end = stepper.drive(Until::end(), |stepper| {
         steps += 1;
         if interrupt.came() {
-            return Err(Missed::Interrupted);
+            return ControlFlow::Break(Err(Missed::Interrupted));
         }
         let event = stepper.event();
+        let failed = matches!(event.outcome, Outcome::Failed(_));
         if at.is(event) {
-            return Ok(steps);
+            ControlFlow::Break(Ok(()))
+        } else if at.is_past(event) && !failed {
+            ControlFlow::Break(Err(Missed::Absent))
+        } else {
+            ControlFlow::Continue(())
         }
-        if let Outcome::Failed(failure) = &event.outcome {
-            return Err(Missed::Failed(failure.clone()));
-        }
-        if at.is_past(event) {
-            return Err(Missed::Absent);
-        }
+    });
+    match end {
+        RunEnd::Stopped(place) => place.map(|()| steps),
+        RunEnd::Failed(failure) => Err(Missed::Failed(failure)),
+        RunEnd::Finished | RunEnd::Spent | RunEnd::Interrupted => Err(Missed::Absent),
     }
-    Err(Missed::Absent)
 }
 
 fn tell_missed(scene: &Scene, stepper: &Stepper, at: At, missed: Missed) -> Exit {

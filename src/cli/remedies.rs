@@ -4,8 +4,10 @@
 use super::base::{Error, Exit, SceneArgs, say, tell};
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
-use crate::step::event::Outcome;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::stepper::Stepper;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
@@ -17,20 +19,12 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
-    let failed = loop {
-        match stepper.step() {
-            None => break None,
-            Some(event) if matches!(event.outcome, Outcome::Failed(_)) => {
-                break Some(event.clone());
-            }
-            Some(_) => {}
-        }
-    };
-    let Some(failed) = failed else {
+    let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
+    let RunEnd::Failed(_) = end else {
         tell("it converges; there is nothing to remedy");
         return Ok(Exit::Good);
     };
-    tell(&report::outcome(stepper.model(), &failed));
+    tell(&report::outcome(stepper.model(), stepper.event()));
     let state = stepper.state().clone();
     let mut trials = Vec::new();
     for remedy in remedies::all(&mut stepper, &state) {

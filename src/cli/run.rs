@@ -14,9 +14,11 @@ use crate::model::Model;
 use crate::outside::files::Output;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::stepper::Stepper;
 use std::io::{self, IsTerminal, Write};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -54,7 +56,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut outputs = Outputs::open(args)?;
     let mut run = Run::new(&scene, args.quiet);
     let end = run.go(&mut outputs, &interrupt)?;
-    run.progress.clear();
+    run.tally.progress.clear();
     let snapshot = outputs.close()?;
     if let Some(output) = snapshot {
         write_snapshot(output, &run)?;
@@ -120,8 +122,9 @@ fn first_closed(a: Sent, b: Sent) -> Sent {
 }
 
 fn write_snapshot(mut output: Output, run: &Run) -> Result<(), Error> {
-    let event = (run.steps > 0).then(|| run.stepper.event());
-    let snapshot = Snapshot::take(run.scene, &[], run.steps, run.stepper.state(), event);
+    let (scene, steps) = (run.tally.scene, run.tally.steps);
+    let event = (steps > 0).then(|| run.stepper.event());
+    let snapshot = Snapshot::take(scene, &[], steps, run.stepper.state(), event);
     output
         .write_all(snapshot.to_text()?.as_bytes())
         .map_err(|e| output.failed(e))?;
@@ -130,8 +133,13 @@ fn write_snapshot(mut output: Output, run: &Run) -> Result<(), Error> {
 
 /// A run, as far as it has come.
 struct Run<'a> {
-    scene: &'a Scene,
     stepper: Stepper,
+    tally: Tally<'a>,
+}
+
+/// What is counted and told of a run.
+struct Tally<'a> {
+    scene: &'a Scene,
     progress: Progress,
     /// Minor iterations in all, and in the present increment.
     steps: u64,
@@ -150,147 +158,85 @@ struct Run<'a> {
     monitors: Vec<f64>,
 }
 
-/// How a run ended.
-enum Ended {
-    Finished,
-    Failed(Failure),
-    Interrupted,
-    /// Nobody reads on.
-    Closed,
-}
+/// How a run ended; it is stopped where nobody reads on.
+type Ended = RunEnd<Closed>;
+
+/// Nobody reads on.
+struct Closed;
 
 impl<'a> Run<'a> {
     fn new(scene: &'a Scene, quiet: bool) -> Self {
         Run {
-            scene,
             stepper: Stepper::new(Arc::new(scene.model.clone())),
-            progress: Progress::new(quiet),
-            steps: 0,
-            minors: 0,
-            accepted: 0,
-            majors: 0,
-            doubtful: 0,
-            notes: 0,
-            noisiest: Norms::default(),
-            quiet,
-            monitors: Vec::new(),
+            tally: Tally {
+                scene,
+                progress: Progress::new(quiet),
+                steps: 0,
+                minors: 0,
+                accepted: 0,
+                majors: 0,
+                doubtful: 0,
+                notes: 0,
+                noisiest: Norms::default(),
+                quiet,
+                monitors: Vec::new(),
+            },
         }
     }
 
     fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<Ended, Error> {
-        if outputs.headers(&self.scene.model)? == Sent::Closed {
-            return Ok(Ended::Closed);
+        let Run { stepper, tally } = self;
+        if outputs.headers(&tally.scene.model)? == Sent::Closed {
+            return Ok(RunEnd::Stopped(Closed));
         }
-        while !interrupt.came() {
-            if self.stepper.step().is_none() {
-                return Ok(Ended::Finished);
-            }
-            (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
-            self.progress.show(self.stepper.event(), self.steps);
-            let (model, event) = (&self.scene.model, self.stepper.event());
-            let mut sent = send(&mut outputs.trace, || table::trace_rows(model, event))?;
-            if let Outcome::Failed(failure) = &event.outcome {
-                return Ok(Ended::Failed(failure.clone()));
-            }
-            if matches!(
-                event.outcome,
-                Outcome::Climbed { .. }
-                    | Outcome::Cut { .. }
-                    | Outcome::Leaps { .. }
-                    | Outcome::Damped { .. }
-                    | Outcome::Refused { .. }
-            ) {
-                self.note();
-            }
-            if matches!(self.stepper.event().outcome, Outcome::Increment { .. }) {
-                sent = first_closed(sent, self.accept(outputs)?);
-            }
-            if sent == Sent::Closed {
-                return Ok(Ended::Closed);
-            }
-        }
-        Ok(Ended::Interrupted)
-    }
-
-    fn accept(&mut self, outputs: &mut Outputs) -> Result<Sent, Error> {
-        self.monitors.clear();
-        self.stepper.monitors(&mut self.monitors);
-        self.warn();
-        let event = self.stepper.event();
-        let (minors, monitors) = (self.minors, &self.monitors);
-        let sent = send(&mut outputs.csv, || table::csv_row(event, minors, monitors));
-        self.accepted += 1;
-        self.majors += u64::from(event.position.major);
-        self.minors = 0;
-        sent
-    }
-
-    /// Tells how the strategy went on where it could not go on as it was.
-    fn note(&mut self) {
-        self.notes += 1;
-        if self.notes <= MOST_WARNINGS && !self.quiet {
-            self.progress.clear();
-            let told = report::outcome(&self.scene.model, self.stepper.event());
-            tell(&format!("note: {told}"));
-        }
-    }
-
-    /// Tells what the last increment was accepted in spite of.
-    fn warn(&mut self) {
-        let event = self.stepper.event();
-        let Outcome::Increment { after, .. } = event.outcome else {
-            return;
-        };
-        if after.noise > self.noisiest.noise {
-            self.noisiest = after;
-        }
-        let although = report::reservations(&self.scene.model, event);
-        if although.is_empty() {
-            return;
-        }
-        self.doubtful += 1;
-        if self.doubtful <= MOST_WARNINGS {
-            let (increment, load) = (event.position.increment, event.load_factor);
-            self.progress.clear();
-            tell(&format!(
-                "warning: increment {increment} (load {load}) was accepted{although}"
-            ));
-        }
+        let came = || interrupt.came();
+        let until = Until::end().interrupted_by(&came);
+        let end = stepper.drive(until, |stepper| match tally.see(stepper, outputs) {
+            Ok(Sent::Well) => ControlFlow::Continue(()),
+            Ok(Sent::Closed) => ControlFlow::Break(Ok(Closed)),
+            Err(error) => ControlFlow::Break(Err(error)),
+        });
+        Ok(match end {
+            RunEnd::Stopped(stopped) => RunEnd::Stopped(stopped?),
+            RunEnd::Failed(failure) => RunEnd::Failed(failure),
+            RunEnd::Interrupted => RunEnd::Interrupted,
+            RunEnd::Finished | RunEnd::Spent => RunEnd::Finished,
+        })
     }
 
     /// Tells how the run ended.
     fn tell(&mut self, end: &Ended, args: &Args) -> Exit {
-        if self.doubtful > MOST_WARNINGS {
+        if self.tally.doubtful > MOST_WARNINGS {
             tell(&format!(
                 "warning: {} increments in all were accepted like this",
-                self.doubtful
+                self.tally.doubtful
             ));
         }
-        if let Some(left) = report::accuracy(&self.noisiest) {
+        if let Some(left) = report::accuracy(&self.tally.noisiest) {
             tell(&format!("warning: {left}"));
         }
-        if self.notes > MOST_WARNINGS && !args.quiet {
+        if self.tally.notes > MOST_WARNINGS && !args.quiet {
             tell(&format!(
                 "note: {} times in all the strategy went on like this",
-                self.notes
+                self.tally.notes
             ));
         }
         if !args.quiet {
             self.tell_summary(args.csv.is_none());
         }
-        let name = &self.scene.name;
+        let name = &self.tally.scene.name;
         match end {
-            Ended::Finished => Exit::Good,
-            Ended::Closed => Exit::Interrupted,
-            Ended::Interrupted => {
+            RunEnd::Finished | RunEnd::Spent => Exit::Good,
+            RunEnd::Stopped(Closed) => Exit::Interrupted,
+            RunEnd::Interrupted => {
                 let at = names::position(self.stepper.state().next);
                 tell(&format!("{name}: interrupted before {at}"));
                 Exit::Interrupted
             }
-            Ended::Failed(failure) => {
+            RunEnd::Failed(failure) => {
                 let (event, state) = (self.stepper.event(), self.stepper.state());
                 let told = report::failure(
-                    &self.scene.model,
+                    &self.tally.scene.model,
                     event.position,
                     event.load_factor,
                     state.start.load_factor,
@@ -337,7 +283,7 @@ impl<'a> Run<'a> {
         let Some(diagnosis) = Diagnosis::of(&problem) else {
             return false;
         };
-        for line in diagnosis::words(&self.scene.model, &problem, &diagnosis) {
+        for line in diagnosis::words(&self.tally.scene.model, &problem, &diagnosis) {
             tell(&format!("  {line}"));
         }
         diagnosis.cause == Cause::NoAnswer
@@ -346,17 +292,95 @@ impl<'a> Run<'a> {
     fn tell_summary(&self, monitors: bool) {
         tell(&format!(
             "{}: {} increments accepted, up to load {}; {} major iterations for them, {} minor ones in all",
-            self.scene.name,
-            self.accepted,
+            self.tally.scene.name,
+            self.tally.accepted,
             self.stepper.state().start.load_factor,
-            self.majors,
-            self.steps,
+            self.tally.majors,
+            self.tally.steps,
         ));
         if !monitors {
             return;
         }
-        for (monitor, value) in self.scene.model.monitors.iter().zip(&self.monitors) {
+        for (monitor, value) in self
+            .tally
+            .scene
+            .model
+            .monitors
+            .iter()
+            .zip(&self.tally.monitors)
+        {
             tell(&format!("  {:<12} {value:?}", monitor.name));
+        }
+    }
+}
+
+impl Tally<'_> {
+    /// Writes and tells what a minor iteration did.
+    fn see(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
+        let event = stepper.event();
+        (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
+        self.progress.show(event, self.steps);
+        let sent = send(&mut outputs.trace, || {
+            table::trace_rows(&self.scene.model, event)
+        })?;
+        match event.outcome {
+            // That it failed is told, whether anybody reads the trace or not.
+            Outcome::Failed(_) => return Ok(Sent::Well),
+            Outcome::Climbed { .. }
+            | Outcome::Cut { .. }
+            | Outcome::Leaps { .. }
+            | Outcome::Damped { .. }
+            | Outcome::Refused { .. } => self.note(event),
+            Outcome::Increment { .. } => {
+                return Ok(first_closed(sent, self.accept(stepper, outputs)?));
+            }
+            Outcome::Minor | Outcome::Major { .. } => {}
+        }
+        Ok(sent)
+    }
+
+    fn accept(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
+        self.monitors.clear();
+        stepper.monitors(&mut self.monitors);
+        let event = stepper.event();
+        self.warn(event);
+        let (minors, monitors) = (self.minors, &self.monitors);
+        let sent = send(&mut outputs.csv, || table::csv_row(event, minors, monitors));
+        self.accepted += 1;
+        self.majors += u64::from(event.position.major);
+        self.minors = 0;
+        sent
+    }
+
+    /// Tells how the strategy went on where it could not go on as it was.
+    fn note(&mut self, event: &Event) {
+        self.notes += 1;
+        if self.notes <= MOST_WARNINGS && !self.quiet {
+            self.progress.clear();
+            let told = report::outcome(&self.scene.model, event);
+            tell(&format!("note: {told}"));
+        }
+    }
+
+    /// Tells what the last increment was accepted in spite of.
+    fn warn(&mut self, event: &Event) {
+        let Outcome::Increment { after, .. } = event.outcome else {
+            return;
+        };
+        if after.noise > self.noisiest.noise {
+            self.noisiest = after;
+        }
+        let although = report::reservations(&self.scene.model, event);
+        if although.is_empty() {
+            return;
+        }
+        self.doubtful += 1;
+        if self.doubtful <= MOST_WARNINGS {
+            let (increment, load) = (event.position.increment, event.load_factor);
+            self.progress.clear();
+            tell(&format!(
+                "warning: increment {increment} (load {load}) was accepted{although}"
+            ));
         }
     }
 }

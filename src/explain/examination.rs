@@ -9,10 +9,12 @@ use crate::interface::census::{Census, MOST, census};
 use crate::interface::minor_history::Cycle;
 use crate::interface::problem::InterfaceProblem;
 use crate::model::Model;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Failure, Outcome};
 use crate::step::intervene::Start;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
+use std::ops::ControlFlow;
 
 /// What is said where there is no small problem.
 pub const NOT_CONDENSED: &str =
@@ -181,12 +183,12 @@ pub fn going_round(
 }
 
 fn step_to_cycle(stepper: &mut Stepper) -> Option<Cycle> {
-    while let Some(event) = stepper.step() {
-        match &event.outcome {
-            Outcome::Minor => {}
-            Outcome::Failed(Failure::Cycle(cycle)) => return Some(cycle.clone()),
-            _ => return None,
-        }
+    let end = stepper.drive(Until::end(), |stepper| match stepper.event().outcome {
+        Outcome::Minor | Outcome::Failed(_) => ControlFlow::Continue(()),
+        _ => ControlFlow::Break(()),
+    });
+    match end {
+        RunEnd::Failed(Failure::Cycle(cycle)) => Some(cycle),
+        _ => None,
     }
-    None
 }

@@ -13,11 +13,13 @@ use crate::interface::method::NotFound;
 use crate::linear::norms::Norms;
 use crate::model::Settings;
 use crate::model::{AtCycle, BoundUpdate, ResidualMethod, Sticking, Strategy};
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::Intervention;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::cmp::Ordering;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Most minor iterations of a trial.
@@ -197,49 +199,46 @@ pub fn attempt(
     for first in &remedy.first {
         change(stepper, &mut trial, first.clone());
     }
-    while trial.minors < BUDGET {
-        if stop() {
-            return None;
-        }
-        let began = Instant::now();
-        let Some(event) = stepper.step().cloned() else {
-            trial.end = TrialEnd::Converged;
-            break;
-        };
+    let until = Until::end().minors(BUDGET.into()).interrupted_by(stop);
+    let mut began = Instant::now();
+    let end = stepper.drive(until, |stepper| {
         trial.seconds += began.elapsed().as_secs_f64();
         trial.minors += 1;
         trial.steps.push(None);
-        let uncondensed = !stepper.condenses();
-        let ends = ends_major(&event.outcome);
+        let event = stepper.event();
+        let ends = event.outcome.ends_major();
         trial.majors += u32::from(ends);
-        trial.factorizations += u32::from(ends || uncondensed);
+        trial.factorizations += u32::from(ends || !stepper.condenses());
         match &event.outcome {
-            Outcome::Failed(failure) => {
-                trial.end = TrialEnd::Failed(failure.clone());
-                break;
-            }
             Outcome::Increment {
                 after,
                 marked: Some(found),
                 ..
             } => {
-                trial.end = TrialEnd::Against(found.law);
-                trial.left = Some(left(stepper, &event, after));
-                break;
+                trial.left = Some(left(stepper, event, after));
+                return ControlFlow::Break(TrialEnd::Against(found.law));
             }
-            Outcome::Increment { after, .. } if is_there(stepper.state(), &event, target) => {
-                trial.end = TrialEnd::Converged;
-                trial.left = Some(left(stepper, &event, after));
-                break;
+            Outcome::Increment { after, .. } if is_there(stepper.state(), event, target) => {
+                trial.left = Some(left(stepper, event, after));
+                return ControlFlow::Break(TrialEnd::Converged);
             }
             Outcome::Minor if remedy.hysteresis => {
-                for what in hysteresis(stepper, &event) {
+                for what in hysteresis(stepper, event) {
                     change(stepper, &mut trial, what);
                 }
             }
             _ => {}
         }
-    }
+        began = Instant::now();
+        ControlFlow::Continue(())
+    });
+    trial.end = match end {
+        RunEnd::Interrupted => return None,
+        RunEnd::Stopped(end) => end,
+        RunEnd::Failed(failure) => TrialEnd::Failed(failure),
+        RunEnd::Finished => TrialEnd::Converged,
+        RunEnd::Spent => TrialEnd::Budget,
+    };
     // The last major iteration, where the trial ended within it.
     if trial.end == TrialEnd::Budget {
         trial.factorizations += 1;
@@ -384,12 +383,4 @@ pub fn row(trial: &Trial) -> [String; 10] {
         number(|left| left.residual),
         trial.left.map_or("-".into(), |left| left.held.to_string()),
     ]
-}
-
-/// Whether a major iteration ended with a minor one, well or not.
-fn ends_major(outcome: &Outcome) -> bool {
-    !matches!(
-        outcome,
-        Outcome::Minor | Outcome::Damped { .. } | Outcome::Climbed { .. }
-    )
 }

@@ -25,10 +25,12 @@ use crate::model::InitialState;
 use crate::model::{Mode, Model, Settings};
 use crate::scene::condensed::{Contact, Matrix, Problem, at_once};
 use crate::scene::{Scene, SceneError, limits};
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
 use crate::step::event::{Failure, Position};
 use crate::step::stepper::Stepper;
 use crate::strategy::method;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// From this size on of the inverse (relative to the springs) that makes one of the two matrices, too many digits are
@@ -495,34 +497,40 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let mut trials = Trials::new(problem).ok_or(Parted::Memory)?;
     let mut nodes = problem.states();
-    let mut worst = 0.0_f64;
-    for minor in 1..=COMPARED {
-        let wanted = trials.minor(&mut nodes, method(problem.settings.strategy));
-        let Some(event) = stepper.step() else {
-            return Err(Parted::Done(minor));
-        };
+    let (mut worst, mut minor) = (0.0_f64, 0);
+    let until = Until::end().minors(COMPARED.into()).past_failures();
+    let end = stepper.drive(until, |stepper| {
+        minor += 1;
+        let event = stepper.event();
         let failed = matches!(event.outcome, Outcome::Failed(_));
+        let wanted = trials.minor(&mut nodes, method(problem.settings.strategy));
         let Some((records, settled)) = wanted else {
             let singular = matches!(event.outcome, Outcome::Failed(Failure::Singular(_)));
-            return if singular {
-                Ok(worst)
+            return ControlFlow::Break(if singular {
+                Ok(())
             } else {
                 Err(Parted::Singular(minor))
-            };
+            });
         };
         if event.nodes.len() != records.len() {
-            return Err(Parted::Unsolved(minor));
+            return ControlFlow::Break(Err(Parted::Unsolved(minor)));
         }
         for (found, wanted) in event.nodes.iter().zip(&records) {
             let modes = |r: &ContactRecord| (r.decision.before, r.decision.next);
             worst = worst.max(difference(problem, found, wanted));
             if modes(found) != modes(wanted) || worst > CLOSE {
-                return Err(Parted::Apart { minor, by: worst });
+                return ControlFlow::Break(Err(Parted::Apart { minor, by: worst }));
             }
         }
-        if settled || failed {
-            break;
+        match settled || failed {
+            true => ControlFlow::Break(Ok(())),
+            false => ControlFlow::Continue(()),
         }
+    });
+    match end {
+        RunEnd::Stopped(parted) => parted?,
+        RunEnd::Finished => return Err(Parted::Done(minor + 1)),
+        RunEnd::Spent | RunEnd::Failed(_) | RunEnd::Interrupted => {}
     }
     Ok(worst)
 }

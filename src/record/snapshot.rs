@@ -11,11 +11,13 @@ use crate::model::{Mode, Model};
 use crate::outside::files::{self, FileError};
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::scene::{Scene, SceneError, Spec, read};
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervene::Intervention;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -256,13 +258,28 @@ impl Snapshot {
         let scene = Scene::from_spec(&self.name, self.scene.clone())?;
         let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
         let mut applied = self.interventions.iter().peekable();
-        for done in 0..=self.steps {
+        let mut intervene = |stepper: &mut Stepper, done: u64| {
             while let Some(next) = applied.next_if(|a| a.step == done) {
                 stepper
                     .intervene(&next.intervention)
                     .map_err(|e| SnapshotError::Replay(format!("after step {done}: {e}")))?;
             }
-            if done < self.steps && stepper.step().is_none() {
+            Ok(())
+        };
+        intervene(&mut stepper, 0)?;
+        let mut done = 0;
+        let until = Until::end().minors(self.steps).past_failures();
+        let end = stepper.drive(until, |stepper| {
+            done += 1;
+            match intervene(stepper, done) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => ControlFlow::Break(error),
+            }
+        });
+        match end {
+            RunEnd::Stopped(error) => return Err(error),
+            RunEnd::Spent => {}
+            RunEnd::Finished | RunEnd::Failed(_) | RunEnd::Interrupted => {
                 return Err(SnapshotError::Replay(format!(
                     "the history ends after {done} minor iterations, and the snapshot was taken after {}",
                     self.steps

@@ -5,10 +5,12 @@ use crate::history::frame::Frame;
 use crate::history::strip::Strip;
 use crate::model::Model;
 use crate::record::command::Unit;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Event;
 use crate::step::intervene::Intervention;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -170,34 +172,38 @@ fn run(
     news: &Sender<Message>,
     stop: &AtomicBool,
 ) -> Option<()> {
-    let mut left = count;
-    let mut interrupted = false;
-    let mut hits = Vec::new();
-    while left > 0 && hits.is_empty() {
-        if stop.load(Ordering::Relaxed) {
-            interrupted = true;
-            break;
-        }
-        let Some((frame, strip)) = step(stepper, &before) else {
-            break;
-        };
+    let (mut left, mut hits) = (count, Vec::new());
+    let interrupted = || stop.load(Ordering::Relaxed);
+    let most = if count == 0 { 0 } else { u64::MAX };
+    let until = Until::end().minors(most).past_failures();
+    let until = until.interrupted_by(&interrupted);
+    let mut began = Instant::now();
+    let end = stepper.drive(until, |stepper| {
+        let (frame, strip) = seen(stepper, &before, began);
         left -= u32::from(unit.ends(strip.kind));
         if strip.kind.is_failure() {
             left = 0;
         }
         hits = breakpoints::hits(breakpoints, &before, &strip);
         before = strip.clone();
-        news.send(Message::Made(Box::new(frame), Box::new(strip)))
-            .ok()?;
+        let heard = news.send(Message::Made(Box::new(frame), Box::new(strip)));
+        if heard.is_err() || left == 0 || !hits.is_empty() {
+            return ControlFlow::Break(heard.ok());
+        }
+        began = Instant::now();
+        ControlFlow::Continue(())
+    });
+    if let RunEnd::Stopped(heard) = end {
+        heard?;
     }
+    let interrupted = matches!(end, RunEnd::Interrupted);
     news.send(Message::Done { interrupted, hits }).ok()
 }
 
-/// One minor iteration as a frame and its strip; none where the history is done.
-fn step(stepper: &mut Stepper, before: &Strip) -> Option<(Frame, Strip)> {
-    let began = Instant::now();
-    let event = Arc::new(stepper.step()?.clone());
+/// The last minor iteration, which began then, as a frame and its strip.
+fn seen(stepper: &mut Stepper, before: &Strip, began: Instant) -> (Frame, Strip) {
     let seconds = began.elapsed().as_secs_f32();
+    let event = Arc::new(stepper.event().clone());
     let strip = Strip::of(
         stepper.model(),
         stepper.state(),
@@ -215,7 +221,7 @@ fn step(stepper: &mut Stepper, before: &Strip) -> Option<(Frame, Strip)> {
             Arc::new(values)
         }),
     };
-    Some((frame, strip))
+    (frame, strip)
 }
 
 /// Takes given steps, as far as they can be taken; none if nobody listens any more.
@@ -242,9 +248,11 @@ fn follow(
                 news.send(Message::Changed(state, intervention)).ok()?;
             }
             None => {
-                let Some((frame, strip)) = step(stepper, &before) else {
+                let began = Instant::now();
+                if stepper.step().is_none() {
                     break;
-                };
+                }
+                let (frame, strip) = seen(stepper, &before, began);
                 before = strip.clone();
                 news.send(Message::Made(Box::new(frame), Box::new(strip)))
                     .ok()?;

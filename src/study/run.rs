@@ -6,10 +6,13 @@ use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
 use super::verdict::Verdict;
 use crate::scene::SceneError;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
 use rayon::prelude::*;
+use std::convert::Infallible;
 use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A scene is read by recursion; as much stack as a program starts with is enough for all that it accepts.
@@ -75,43 +78,41 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
         end: CaseEnd::NotRun,
     };
     let mut minors = 0;
-    run.end = loop {
-        if (watch.stop)() {
-            break match run.rows.is_empty() && minors == 0 {
-                true => CaseEnd::NotRun,
-                false => CaseEnd::Interrupted,
-            };
-        }
-        let Some(event) = stepper.step() else {
-            break CaseEnd::Finished;
-        };
+    let until = Until::end().interrupted_by(watch.stop);
+    let end = stepper.drive(until, |stepper| {
         minors += 1;
+        let event = stepper.event();
         let (at, outcome) = (event.position, &event.outcome);
         run.begun += u64::from(!matches!(outcome, Outcome::Minor | Outcome::Climbed { .. }));
-        match outcome {
-            Outcome::Failed(failure) => {
-                break CaseEnd::Failed(Failed {
-                    reason: Reason::from(failure),
-                    verdict: Verdict::of(failure),
-                    increment: at.increment,
-                    load: event.load_factor,
-                    major: at.major,
-                    minors,
-                    unsettled: stepper.state().unsettled,
-                });
-            }
-            Outcome::Increment {
-                unsettled, jumped, ..
-            } => {
-                let (unsettled, jumped) = (*unsettled, *jumped);
-                let mut row = row(&mut stepper, at.major, minors, unsettled);
-                (row.increment, row.jumped) = (at.increment, jumped);
-                run.rows.push(row);
-                minors = 0;
-                (watch.done)(1);
-            }
-            _ => {}
+        if let Outcome::Increment {
+            unsettled, jumped, ..
+        } = *outcome
+        {
+            let mut row = row(stepper, at.major, minors, unsettled);
+            (row.increment, row.jumped) = (at.increment, jumped);
+            run.rows.push(row);
+            minors = 0;
+            (watch.done)(1);
         }
+        ControlFlow::<Infallible>::Continue(())
+    });
+    run.end = match end {
+        RunEnd::Failed(failure) => {
+            let event = stepper.event();
+            CaseEnd::Failed(Failed {
+                reason: Reason::from(&failure),
+                verdict: Verdict::of(&failure),
+                increment: event.position.increment,
+                load: event.load_factor,
+                major: event.position.major,
+                minors,
+                unsettled: stepper.state().unsettled,
+            })
+        }
+        RunEnd::Interrupted if run.rows.is_empty() && minors == 0 => CaseEnd::NotRun,
+        RunEnd::Interrupted => CaseEnd::Interrupted,
+        RunEnd::Finished | RunEnd::Spent => CaseEnd::Finished,
+        RunEnd::Stopped(never) => match never {},
     };
     (watch.done)(case.increments.saturating_sub(run.rows.len() as u64));
     Ok(run)

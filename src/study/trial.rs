@@ -16,9 +16,11 @@ use super::verdict::Verdict;
 use crate::interface::census::census;
 use crate::scene::condensed::{Matrix, Problem};
 use crate::scene::{Scene, SceneError, increments, paths};
-use crate::step::event::Outcome;
+use crate::step::drive::{RunEnd, Until};
 use crate::step::stepper::Stepper;
 use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A run whose end breaks a condition by more than this, relatively, is no answer. It is far above what the solver leaves
@@ -121,27 +123,24 @@ fn one(problem: &Problem, scene: Scene) -> Trial {
         minors: 0,
         violation: f64::INFINITY,
     };
-    while trial.minors < MOST_MINORS {
-        let Some(event) = stepper.step() else {
+    let until = Until::end().minors(MOST_MINORS);
+    let end = stepper.drive(until, |stepper| {
+        trial.minors += 1;
+        let ends = stepper.event().outcome.ends_major();
+        trial.majors += u64::from(ends);
+        ControlFlow::<Infallible>::Continue(())
+    });
+    match end {
+        RunEnd::Finished => {
             trial.violation = violation(problem, &stepper);
             trial.verdict = match trial.violation <= TOLERANCE {
                 true => Verdict::Right,
                 false => Verdict::Wrong,
             };
-            break;
-        };
-        trial.minors += 1;
-        match &event.outcome {
-            Outcome::Failed(failure) => {
-                trial.majors += 1;
-                trial.verdict = Verdict::of(failure);
-                break;
-            }
-            Outcome::Major { .. } | Outcome::Refused { .. } | Outcome::Increment { .. } => {
-                trial.majors += 1;
-            }
-            _ => {}
         }
+        RunEnd::Failed(failure) => trial.verdict = Verdict::of(&failure),
+        RunEnd::Spent | RunEnd::Interrupted => {}
+        RunEnd::Stopped(never) => match never {},
     }
     trial
 }

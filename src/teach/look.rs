@@ -6,8 +6,11 @@ use crate::history::frame::Frame;
 use crate::interface::census::census;
 use crate::interface::minor_history::Cycle;
 use crate::model::{Mode, Model};
+use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::stepper::Stepper;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Minor iterations after which an increment counts as endless.
@@ -42,10 +45,12 @@ impl Look {
             return Ok(look);
         }
         let mut stepper = self.stepper();
-        for _ in 0..minors {
-            let event = stepper.step().ok_or(Unknown::Done)?;
-            look.frame.event = Some(Arc::new(event.clone()));
+        let until = Until::end().minors(minors.into()).past_failures();
+        let end = stepper.drive(until, |_| ControlFlow::<Infallible>::Continue(()));
+        if end == RunEnd::Finished {
+            return Err(Unknown::Done);
         }
+        look.frame.event = Some(Arc::new(stepper.event().clone()));
         look.frame.state = stepper.state().clone();
         look.frame.intervention = None;
         Ok(look)
@@ -57,21 +62,26 @@ impl Look {
     /// Where it does not within reason.
     pub fn end(&self) -> Result<IncrementEnd, Unknown> {
         let mut stepper = self.stepper();
-        for minors in 1..=ENDLESS {
-            let event = stepper.step().ok_or(Unknown::Done)?;
-            let (accepted, cycle) = match &event.outcome {
-                Outcome::Increment { .. } => (true, None),
-                Outcome::Failed(Failure::Cycle(cycle)) => (false, Some(cycle.clone())),
-                Outcome::Failed(_) => (false, None),
-                _ => continue,
-            };
-            return Ok(IncrementEnd {
-                minors,
-                accepted,
-                cycle,
-            });
-        }
-        Err(Unknown::Endless(ENDLESS))
+        let mut minors = 0;
+        let end = stepper.drive(Until::end().minors(ENDLESS.into()), |stepper| {
+            minors += 1;
+            match stepper.event().outcome {
+                Outcome::Increment { .. } => ControlFlow::Break(()),
+                _ => ControlFlow::Continue(()),
+            }
+        });
+        let (accepted, cycle) = match end {
+            RunEnd::Stopped(()) => (true, None),
+            RunEnd::Failed(Failure::Cycle(cycle)) => (false, Some(cycle)),
+            RunEnd::Failed(_) => (false, None),
+            RunEnd::Finished | RunEnd::Interrupted => return Err(Unknown::Done),
+            RunEnd::Spent => return Err(Unknown::Endless(ENDLESS)),
+        };
+        Ok(IncrementEnd {
+            minors,
+            accepted,
+            cycle,
+        })
     }
 
     /// Consistent states of the frozen problem of this major iteration.

@@ -16,16 +16,7 @@
 //! (standard node-to-curve kinematics, for example Wriggers, *Computational Contact Mechanics*). At a node where two
 //! elements meet, S* and the normal are held by both of them and none of this applies.
 
-use crate::contact::projection::{Projection, tangent};
-
-/// Derivatives of the master element's curve at S*.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Curve {
-    /// dx/dξ.
-    pub slope: [f64; 2],
-    /// d²x/dξ².
-    pub bend: [f64; 2],
-}
+use crate::contact::projection::{Curve, Projection, tangent};
 
 /// What the motion of one degree of freedom does at S*.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

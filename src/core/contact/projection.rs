@@ -6,7 +6,6 @@
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
 use crate::contact::corner;
-use crate::contact::geometric_tangent::Curve;
 use crate::fem::lagrange::{MAX_NODES, samples, shape};
 use crate::model::Surface;
 
@@ -43,6 +42,15 @@ pub struct Projection {
     pub shape_slope: [f64; MAX_NODES],
     /// Derivatives of the element's curve. `None` if S* lies on an end of the element.
     pub curve: Option<Curve>,
+}
+
+/// Derivatives of the master element's curve at S*.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curve {
+    /// dx/dξ.
+    pub slope: [f64; 2],
+    /// d²x/dξ².
+    pub bend: [f64; 2],
 }
 
 /// n turned 90 degrees anticlockwise.

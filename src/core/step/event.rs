@@ -69,6 +69,16 @@ pub enum Outcome {
     Failed(Failure),
 }
 
+impl Outcome {
+    /// Whether a major iteration ends here, settled or not.
+    pub fn ends_major(&self) -> bool {
+        !matches!(
+            self,
+            Outcome::Minor | Outcome::Damped { .. } | Outcome::Climbed { .. }
+        )
+    }
+}
+
 /// Why an increment failed. The state is that in which it failed; stepping on from it is allowed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Failure {

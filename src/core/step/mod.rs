@@ -6,8 +6,9 @@
 //! - [`sub_increment`]: increments whole and cut; [`jump`]: those that end on another branch of equilibrium; `verdict`:
 //!   what becomes of a state that the judge refuses.
 //! - [`major_history`]: cycles of major iterations.
-//! - [`intervene`]: what a user changes in between.
+//! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
+pub mod drive;
 pub mod event;
 mod increment;
 pub mod intervene;
@@ -21,6 +22,7 @@ pub mod stepper;
 pub mod sub_increment;
 mod verdict;
 
+pub use drive::{RunEnd, Until};
 pub use event::{Event, Failure, Outcome};
 pub use state::{State, Status};
 pub use stepper::Stepper;
