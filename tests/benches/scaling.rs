@@ -8,7 +8,8 @@
 use std::fs;
 use std::sync::Arc;
 use std::time::Instant;
-use stickslip::fem::assembly::{Assembled, Assembly, Moved};
+use stickslip::fem::assembly::{Assembly, Moved};
+use stickslip::fem::element::Assembled;
 use stickslip::linalg::{Pattern, SymmetricFactors};
 use stickslip::model::Model;
 use stickslip::scene::Scene;

@@ -3,33 +3,18 @@
 //! Where every entry of every element goes is found once; assembling then only adds.
 
 use crate::fem::beam::{self, Section};
+use crate::fem::continuum;
+use crate::fem::element::{Assembled, Element, Past};
 use crate::fem::material::Material;
 use crate::fem::matrix;
-use crate::fem::quad8::{self, Past};
 use crate::linalg::Pattern;
 use crate::model::Model;
-use crate::model::Update;
 use crate::model::{Beam, Body, BodyKind, Dofs, Solid};
 use std::ops::Range;
 
-/// An entry of an element's matrix that has no place in the system, since it is restrained.
-pub(crate) const NOWHERE: u32 = u32::MAX;
-/// Most degrees of freedom of any element.
-const MAX_DOFS: usize = if beam::MAX_DOFS > quad8::DOFS {
-    beam::MAX_DOFS
-} else {
-    quad8::DOFS
-};
-
-/// An element of either kind.
-enum Element {
-    Beam(beam::Element),
-    Quad(quad8::Element),
-}
-
 /// An element and where it stands.
 struct Placed {
-    element: Element,
+    element: Box<dyn Element>,
     /// Degrees of freedom of the scene, in the element's order.
     dofs: Vec<usize>,
     /// Entries of the element's matrix that have a place, by number (row by row), and their places in the array of
@@ -50,10 +35,12 @@ pub struct Assembly {
     half: bool,
     /// Numbers that the elements placed so far remember.
     history_len: usize,
-    force: [f64; MAX_DOFS],
+    /// Room for the largest element.
+    force: Vec<f64>,
     tangent: Vec<f64>,
-    u: [f64; MAX_DOFS],
-    before: [f64; MAX_DOFS],
+    u: Vec<f64>,
+    before: Vec<f64>,
+    memory: Vec<f64>,
 }
 
 /// How the degrees of freedom have moved.
@@ -69,19 +56,6 @@ pub struct Moved<'a> {
     pub history: &'a [f64],
 }
 
-/// What [`Assembly::assemble`] fills, all of it overwritten.
-pub struct Assembled<'a> {
-    /// Internal force at each degree of freedom, restrained ones included (there it is what the support carries).
-    /// Infinite at an element that has no answer to its displacements.
-    pub force: &'a mut [f64],
-    /// Sum of the sizes of the element forces at each degree of freedom: the scale of `force`.
-    pub size: &'a mut [f64],
-    /// Values of the tangent stiffness in the bound pattern.
-    pub values: &'a mut [f64],
-    /// Force at each equation due to `step` of the degrees of freedom that have none.
-    pub coupling: &'a mut [f64],
-}
-
 impl Assembly {
     /// Lays out the elements of a scene.
     pub fn new(model: &Model) -> Self {
@@ -90,10 +64,11 @@ impl Assembly {
             matrices: Vec::new(),
             half: false,
             history_len: 0,
-            force: [0.0; MAX_DOFS],
-            tangent: vec![0.0; MAX_DOFS * MAX_DOFS],
-            u: [0.0; MAX_DOFS],
-            before: [0.0; MAX_DOFS],
+            force: Vec::new(),
+            tangent: Vec::new(),
+            u: Vec::new(),
+            before: Vec::new(),
+            memory: Vec::new(),
         };
         for body in &model.bodies {
             match &body.kind {
@@ -122,23 +97,33 @@ impl Assembly {
                 let points = element.gauss_points();
                 dofs.extend((0..points).map(|p| first + e * points + p));
             }
-            self.place(Element::Beam(element), dofs, 0);
+            self.place(Box::new(element), dofs);
         }
     }
 
     fn add_solid(&mut self, model: &Model, solid: &Solid) {
         for (nodes, &material) in solid.elements.iter().zip(&solid.material_of) {
             let elastic = &solid.materials[material];
-            let positions = nodes.map(|n| model.nodes[n].at);
-            let element = quad8::Element::new(positions, Material::new(elastic), elastic.update);
-            let history = element.history_len();
-            self.place(Element::Quad(element), dofs_of(model, nodes, 2), history);
+            let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
+            let material = Material::new(elastic);
+            let element = continuum::element(solid.kind, &positions, material, elastic.update);
+            if let Some(element) = element {
+                self.place(element, dofs_of(model, nodes, 2));
+            }
         }
     }
 
-    fn place(&mut self, element: Element, dofs: Vec<usize>, history: usize) {
+    fn place(&mut self, element: Box<dyn Element>, dofs: Vec<usize>) {
         let first = self.history_len;
-        self.history_len += history;
+        let remembered = element.history_len();
+        self.history_len += remembered;
+        let size = self.force.len().max(dofs.len());
+        for buffer in [&mut self.force, &mut self.u, &mut self.before] {
+            buffer.resize(size, 0.0);
+        }
+        self.tangent.resize(size * size, 0.0);
+        let most = self.memory.len().max(remembered);
+        self.memory.resize(most, 0.0);
         self.elements.push(Placed {
             element,
             dofs,
@@ -186,22 +171,17 @@ impl Assembly {
             placed.gather(moved.u, u);
             force.fill(0.0);
             tangent.fill(0.0);
-            match &placed.element {
-                Element::Beam(element) => element.add(u, force, tangent),
-                Element::Quad(element) => {
-                    let history = &moved.history[placed.history.clone()];
-                    if !history.is_empty() {
-                        placed.gather(moved.before, before);
-                    }
-                    let past = Past { u: before, history };
-                    if !element.add(&past, u, force, tangent) {
-                        placed.give_up(&mut out);
-                        continue;
-                    }
-                    if placed.held || !self.half {
-                        quad8::mirror(tangent);
-                    }
-                }
+            let history = &moved.history[placed.history.clone()];
+            if !history.is_empty() {
+                placed.gather(moved.before, before);
+            }
+            let past = Past { u: before, history };
+            if !placed.element.add(&past, u, force, tangent) {
+                placed.give_up(&mut out);
+                continue;
+            }
+            if placed.held || !self.half {
+                placed.element.mirror(tangent);
             }
             placed.scatter(force, tangent, &mut out);
             if placed.held {
@@ -215,21 +195,18 @@ impl Assembly {
 
     /// Renews what the elements remember, once displacements `u` are accepted; `before` are those accepted last.
     pub fn advance(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {
-        let mut old = [0.0; quad8::MEMORY * quad8::POINTS];
         for placed in self.elements.iter().filter(|p| !p.history.is_empty()) {
-            let Element::Quad(element) = &placed.element else {
-                continue;
-            };
             let n = placed.dofs.len();
             placed.gather(u, &mut self.u[..n]);
             placed.gather(before, &mut self.before[..n]);
             let history = &mut history[placed.history.clone()];
+            let old = &mut self.memory[..history.len()];
             old.copy_from_slice(history);
             let past = Past {
                 u: &self.before[..n],
-                history: &old,
+                history: old,
             };
-            element.advance(&past, &self.u[..n], history);
+            placed.element.advance(&past, &self.u[..n], history);
         }
     }
 }
@@ -239,8 +216,8 @@ pub fn history_len(model: &Model) -> usize {
     let of = |body: &Body| match &body.kind {
         BodyKind::Beam(_) | BodyKind::Linear(_) => 0,
         BodyKind::Solid(solid) => {
-            let remembers = |m: &&usize| solid.materials[**m].update == Update::Updated;
-            quad8::MEMORY * quad8::POINTS * solid.material_of.iter().filter(remembers).count()
+            let of = |&m: &usize| continuum::history_len(solid.kind, solid.materials[m].update);
+            solid.material_of.iter().map(of).sum()
         }
     };
     model.bodies.iter().map(of).sum()

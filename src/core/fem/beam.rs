@@ -14,11 +14,9 @@
 //!
 //! The degrees of freedom of an element are ordered x, y, θ of node 1, of node 2, …, then Q at the Gauss points.
 
+use crate::fem::element::{self, Element as _, Past};
 use crate::fem::lagrange::{MAX_NODES, gauss, shape};
 use nalgebra::Vector3;
-
-/// Most degrees of freedom of one element: 3 per node, and a shear force per Gauss point.
-pub const MAX_DOFS: usize = 3 * MAX_NODES + MAX_NODES - 1;
 
 /// Section stiffnesses.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,16 +89,6 @@ impl Element {
         self.points.len()
     }
 
-    /// Number of degrees of freedom.
-    pub fn dofs(&self) -> usize {
-        3 * self.nodes
-            + if self.section.ga.is_none() {
-                self.points.len()
-            } else {
-                0
-            }
-    }
-
     /// Strains and forces at Gauss point p, for displacements `u` of the element.
     pub fn section_state(&self, p: usize, u: &[f64]) -> SectionState {
         let (point, m) = (&self.points[p], self.nodes);
@@ -124,32 +112,6 @@ impl Element {
         SectionState {
             strain: Vector3::new(axial, shear, kappa),
             force: Vector3::new(self.section.ea * axial, q, self.section.ei * kappa),
-        }
-    }
-
-    /// Internal forces f = ∂Π/∂u, added to `force`, and the exact tangent ∂f/∂u, added to `tangent` (row by row,
-    /// [`Element::dofs`] squared entries), for displacements `u` of the element.
-    pub fn add(&self, u: &[f64], force: &mut [f64], tangent: &mut [f64]) {
-        let (m, size) = (self.nodes, self.dofs());
-        for (p, point) in self.points.iter().enumerate() {
-            let state = self.section_state(p, u);
-            let theta: f64 = (0..m).map(|i| point.n[i] * u[3 * i + 2]).sum();
-            let moduli = self.moduli(point, theta, &state);
-            let (n, d) = (&point.n[..m], &point.d[..m]);
-            for i in 0..m {
-                let (n_i, d_i) = (n[i], d[i]);
-                let [x, y, turn] = &mut force[3 * i..3 * i + 3] else {
-                    continue;
-                };
-                *x += d_i * moduli.resultant[0];
-                *y += d_i * moduli.resultant[1];
-                *turn += d_i * moduli.moment + n_i * moduli.couple;
-                let rows = &mut tangent[3 * i * size..(3 * i + 3) * size];
-                moduli.add_rows(n_i, d_i, (n, d), rows);
-            }
-            if self.section.ga.is_none() {
-                self.add_constraint(p, &moduli, state.strain.y, force, tangent);
-            }
         }
     }
 
@@ -209,6 +171,42 @@ impl Element {
     }
 }
 
+impl element::Element for Element {
+    fn dofs(&self) -> usize {
+        3 * self.nodes
+            + if self.section.ga.is_none() {
+                self.points.len()
+            } else {
+                0
+            }
+    }
+
+    fn add(&self, _past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
+        let (m, size) = (self.nodes, self.dofs());
+        for (p, point) in self.points.iter().enumerate() {
+            let state = self.section_state(p, u);
+            let theta: f64 = (0..m).map(|i| point.n[i] * u[3 * i + 2]).sum();
+            let moduli = self.moduli(point, theta, &state);
+            let (n, d) = (&point.n[..m], &point.d[..m]);
+            for i in 0..m {
+                let (n_i, d_i) = (n[i], d[i]);
+                let [x, y, turn] = &mut force[3 * i..3 * i + 3] else {
+                    continue;
+                };
+                *x += d_i * moduli.resultant[0];
+                *y += d_i * moduli.resultant[1];
+                *turn += d_i * moduli.moment + n_i * moduli.couple;
+                let rows = &mut tangent[3 * i * size..(3 * i + 3) * size];
+                moduli.add_rows(n_i, d_i, (n, d), rows);
+            }
+            if self.section.ga.is_none() {
+                self.add_constraint(p, &moduli, state.strain.y, force, tangent);
+            }
+        }
+        true
+    }
+}
+
 /// Force and tangent of a Gauss point but for the shape functions.
 struct Moduli {
     /// N t + Q n (force).
@@ -258,93 +256,11 @@ impl Moduli {
 #[cfg(test)]
 mod tests {
     use super::*;
-
     const SECTION: Section = Section {
         ea: 100.0,
         ei: 8.0,
         ga: Some(30.0),
     };
-
-    fn curved(m: usize) -> Vec<[f64; 2]> {
-        (0..m)
-            .map(|i| i as f64 / (m - 1) as f64)
-            .map(|t| [2.0 * t, 0.5 * (2.0 * t).sin()])
-            .collect()
-    }
-
-    fn displaced(element: &Element, m: usize) -> Vec<f64> {
-        (0..element.dofs())
-            .map(|k| {
-                if k < 3 * m {
-                    0.4 * ((k * 7 % 11) as f64 / 11.0 - 0.5)
-                } else {
-                    3.0 - k as f64 % 5.0
-                }
-            })
-            .collect()
-    }
-
-    fn evaluate(element: &Element, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let n = element.dofs();
-        let (mut f, mut k) = (vec![0.0; n], vec![0.0; n * n]);
-        element.add(u, &mut f, &mut k);
-        (f, k)
-    }
-
-    #[test]
-    fn the_tangent_is_the_derivative_of_the_force_and_symmetric() {
-        for m in 2..=MAX_NODES {
-            for ga in [Some(30.0), None] {
-                let element = Element::new(&curved(m), Section { ga, ..SECTION });
-                let u = displaced(&element, m);
-                let (_, k) = evaluate(&element, &u);
-                let n = element.dofs();
-                let scale = k.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-                for j in 0..n {
-                    let h = 1e-5;
-                    let mut moved = u.clone();
-                    moved[j] += h;
-                    let (plus, _) = evaluate(&element, &moved);
-                    moved[j] -= 2.0 * h;
-                    let (minus, _) = evaluate(&element, &moved);
-                    for i in 0..n {
-                        let difference = (plus[i] - minus[i]) / (2.0 * h);
-                        assert!(
-                            (difference - k[i * n + j]).abs() < 1e-8 * scale,
-                            "m {m} entry {i} {j}"
-                        );
-                        assert!((k[i * n + j] - k[j * n + i]).abs() < 1e-13 * scale);
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_rigid_motion_strains_nothing() {
-        for m in 2..=MAX_NODES {
-            let x = curved(m);
-            let element = Element::new(&x, SECTION);
-            for angle in [0.3_f64, 2.5, -7.0] {
-                let (s, c) = angle.sin_cos();
-                let u: Vec<f64> = x
-                    .iter()
-                    .flat_map(|p| {
-                        [
-                            c * p[0] - s * p[1] - p[0] + 3.0,
-                            s * p[0] + c * p[1] - p[1] - 1.0,
-                            angle,
-                        ]
-                    })
-                    .collect();
-                let (f, _) = evaluate(&element, &u);
-                assert!(
-                    f.iter().all(|f| f.abs() < 1e-12 * SECTION.ea),
-                    "m {m} angle {angle}: {f:?}"
-                );
-            }
-        }
-    }
 
     #[test]
     fn small_strains_of_a_stiff_beam_are_free_of_cancellation() {

@@ -8,9 +8,12 @@
 //! W may be singular, so its forces y stay unknowns beside the displacements. The right-hand side `free λ` is a load on
 //! their equations.
 
-use crate::fem::assembly::{Assembled, NOWHERE};
+use crate::fem::element::Assembled;
 use crate::linalg::Pattern;
 use crate::model::{Body, Dofs, Form, Linear};
+
+/// Place of an entry that has none in the system, since it is restrained.
+const NOWHERE: u32 = u32::MAX;
 
 /// The matrix, in degrees of freedom of the scene.
 pub struct Element {

@@ -19,6 +19,7 @@
 //!
 //! Either way force and tangent are a pure function of (shape, [`Past`], displacements now), and the tangent is exact.
 
+use crate::fem::element::{self, Past};
 use crate::fem::lagrange::gauss;
 use crate::fem::material::{Material, Response};
 use crate::model::{Law, Update};
@@ -50,15 +51,6 @@ pub struct Element {
 struct Gradients {
     grad: [[f64; 2]; NODES],
     area: f64,
-}
-
-/// What an element remembers of the last accepted increment. The total-Lagrangian update looks at none of it.
-#[derive(Debug, Clone, Copy)]
-pub struct Past<'a> {
-    /// Displacements of the element there.
-    pub u: &'a [f64],
-    /// [`Element::history_len`] numbers.
-    pub history: &'a [f64],
 }
 
 /// State of a Gauss point, to look at.
@@ -94,7 +86,7 @@ static RULE: LazyLock<Vec<Parent>> = LazyLock::new(|| {
 });
 
 /// Places of the nodes in the parent square.
-const PLACES: [[f64; 2]; NODES] = [
+pub const PLACES: [[f64; 2]; NODES] = [
     [-1.0, -1.0],
     [1.0, -1.0],
     [1.0, 1.0],
@@ -206,14 +198,6 @@ impl Element {
         }
     }
 
-    /// How many numbers it remembers from increment to increment.
-    pub fn history_len(&self) -> usize {
-        match self.update {
-            Update::Total => 0,
-            Update::Updated => MEMORY * POINTS,
-        }
-    }
-
     fn reference(&self, past: &Past<'_>, u: &[f64]) -> Reference {
         let mut reference = Reference {
             at: self.at,
@@ -260,10 +244,31 @@ impl Element {
         })
     }
 
-    /// Internal forces at displacements `u`, added to `force`, and their exact derivative, added to `tangent` (row by
-    /// row, [`DOFS`] squared entries): in each row from the node's own block on, unless [`mirror`] fills in the others.
-    /// False, with parts of the sums missing, where there are none.
-    pub fn add(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
+    /// State of Gauss point p; none where the material has no answer.
+    pub fn point_state(&self, past: &Past<'_>, u: &[f64], p: usize) -> Option<PointState> {
+        let point = self.point(&self.reference(past, u), past, p)?;
+        let mut at = [0.0; 2];
+        for (n, x) in RULE[p].n.iter().zip(&self.at) {
+            at = [at[0] + n * x[0], at[1] + n * x[1]];
+        }
+        Some(PointState {
+            at,
+            gradient: plus_identity(&slope(&self.points[p].grad, u)),
+            cauchy: point.cauchy(),
+        })
+    }
+}
+
+impl element::Element for Element {
+    fn dofs(&self) -> usize {
+        DOFS
+    }
+
+    fn history_len(&self) -> usize {
+        history_len(self.update)
+    }
+
+    fn add(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let reference = self.reference(past, u);
         let mut terms = [Terms::default(); POINTS];
         let mut grad = [[[0.0; 2]; NODES]; POINTS];
@@ -303,8 +308,7 @@ impl Element {
         true
     }
 
-    /// What to remember once `u` is accepted.
-    pub fn advance(&self, past: &Past<'_>, u: &[f64], history: &mut [f64]) {
+    fn advance(&self, past: &Past<'_>, u: &[f64], history: &mut [f64]) {
         if self.update == Update::Total {
             return;
         }
@@ -323,18 +327,20 @@ impl Element {
         }
     }
 
-    /// State of Gauss point p; none where the material has no answer.
-    pub fn point_state(&self, past: &Past<'_>, u: &[f64], p: usize) -> Option<PointState> {
-        let point = self.point(&self.reference(past, u), past, p)?;
-        let mut at = [0.0; 2];
-        for (n, x) in RULE[p].n.iter().zip(&self.at) {
-            at = [at[0] + n * x[0], at[1] + n * x[1]];
+    fn mirror(&self, tangent: &mut [f64]) {
+        for i in 2..DOFS {
+            for j in 0..i & !1 {
+                tangent[i * DOFS + j] = tangent[j * DOFS + i];
+            }
         }
-        Some(PointState {
-            at,
-            gradient: plus_identity(&slope(&self.points[p].grad, u)),
-            cauchy: point.cauchy(),
-        })
+    }
+}
+
+/// How many numbers an element remembers from increment to increment.
+pub fn history_len(update: Update) -> usize {
+    match update {
+        Update::Total => 0,
+        Update::Updated => MEMORY * POINTS,
     }
 }
 
@@ -402,18 +408,10 @@ impl Point {
     }
 }
 
-/// Fills in the entries of a tangent below the diagonal blocks: it is symmetric.
-pub fn mirror(tangent: &mut [f64]) {
-    for i in 2..DOFS {
-        for j in 0..i & !1 {
-            tangent[i * DOFS + j] = tangent[j * DOFS + i];
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::element::Element as _;
     use crate::model::Elastic;
     use crate::model::Plane;
 
@@ -471,7 +469,7 @@ mod tests {
     fn evaluate(element: &Element, past: &Past<'_>, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut f, mut k) = (vec![0.0; DOFS], vec![0.0; DOFS * DOFS]);
         assert!(element.add(past, u, &mut f, &mut k));
-        mirror(&mut k);
+        element.mirror(&mut k);
         (f, k)
     }
 
@@ -501,34 +499,6 @@ mod tests {
                 let by_eta = (f(xi, eta + h) - f(xi, eta - h)) / (2.0 * h);
                 assert!((sum(&|i| d[i][0]) - by_xi).abs() < 1e-9);
                 assert!((sum(&|i| d[i][1]) - by_eta).abs() < 1e-9);
-            }
-        }
-    }
-
-    #[test]
-    fn the_tangent_is_the_derivative_of_the_force_and_symmetric() {
-        let (before, history) = past();
-        let past = Past {
-            u: &before,
-            history: &history,
-        };
-        for kind in kinds() {
-            let element = element(&kind);
-            let u: Vec<f64> = (0..DOFS).map(|k| noise(k, 0.6)).collect();
-            let (_, k) = evaluate(&element, &past, &u);
-            let scale = k.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-            let h = 1e-5;
-            for j in 0..DOFS {
-                let mut moved = u.clone();
-                moved[j] += h;
-                let (plus, _) = evaluate(&element, &past, &moved);
-                moved[j] -= 2.0 * h;
-                let (minus, _) = evaluate(&element, &past, &moved);
-                for i in 0..DOFS {
-                    let error = (plus[i] - minus[i]) / (2.0 * h) - k[i * DOFS + j];
-                    assert!(error.abs() < 1e-8 * scale, "{kind:?} {i} {j}: {error:e}");
-                    assert!((k[i * DOFS + j] - k[j * DOFS + i]).abs() < 1e-14 * scale);
-                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What deforms: beams, continua of elements, and bodies that are given by a matrix.
 
 use super::documented::documented;
+use super::mesh::ElementKind;
 use serde::{Deserialize, Serialize};
 
 /// A deformable body.
@@ -52,16 +53,18 @@ pub struct Beam {
     pub first_shear: Option<usize>,
 }
 
-/// A continuum of 8-node quadrilaterals.
+/// A continuum of elements of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// Nodes of each element: the corners anticlockwise, then the middles of the sides that start at them.
-    pub elements: Vec<[usize; 8]>,
+    /// What its elements are.
+    pub kind: ElementKind,
+    /// Node numbers of each element, in the order that [`ElementKind`] says.
+    pub elements: Vec<Vec<usize>>,
     /// What it is made of.
     pub materials: Vec<Elastic>,
     /// Index into `materials` of each element.
     pub material_of: Vec<usize>,
-    /// Elements of 3 nodes around it, anticlockwise from the lower left corner.
+    /// The faces around it ([`ElementKind::boundary`]).
     pub edges: Vec<Vec<usize>>,
 }
 

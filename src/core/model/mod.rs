@@ -15,6 +15,7 @@ mod contact;
 mod dofs;
 mod friction;
 mod load;
+mod mesh;
 mod settings;
 
 pub use body::{Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, Update};
@@ -22,6 +23,7 @@ pub use contact::{Contact, Surface};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, least};
+pub use mesh::ElementKind;
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, ResidualMethod, Settings, SlipCount, Solver, Sticking,
     Strategy, Ties, Touch,

@@ -7,7 +7,7 @@ use super::super::limits;
 use super::super::nodes::{Mesh, Names, unique};
 use super::super::spec::{BodySpec, Material, Point, Region, Spec};
 use super::linear;
-use crate::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
+use crate::model::{Beam, Body, BodyKind, Elastic, ElementKind, Node, Solid};
 use crate::model::{Law, Update};
 use std::collections::HashSet;
 
@@ -210,11 +210,13 @@ fn solid(
     else {
         return Err(Fault::new(here.clone(), "the body is no solid"));
     };
+    let elements: Vec<Vec<usize>> = mesh.elements.iter().map(|nodes| nodes.to_vec()).collect();
     let mut made = Solid {
         material_of: vec![0; mesh.elements.len()],
         materials: vec![continuum(&here.then("material"), spec, of)?],
-        edges: mesh.edges,
-        elements: mesh.elements,
+        edges: ElementKind::Quad8.boundary(&elements),
+        kind: ElementKind::Quad8,
+        elements,
     };
     for (k, region) in regions.iter().enumerate() {
         apply(
@@ -253,7 +255,7 @@ fn apply(
     }
     let mut none = true;
     for (element, own) in solid.elements.iter().zip(&mut solid.material_of) {
-        if contains((*from, *to), middle(nodes, element)) {
+        if contains((*from, *to), middle(nodes, solid.kind, element)) {
             (*own, none) = (number, false);
         }
     }
@@ -268,9 +270,10 @@ fn apply(
 }
 
 /// Mean of an element's corners.
-fn middle(nodes: &[Node], element: &[usize; 8]) -> [f64; 2] {
-    let sum = |k: usize| element[..4].iter().map(|&n| nodes[n].at[k]).sum::<f64>();
-    [sum(0) / 4.0, sum(1) / 4.0]
+fn middle(nodes: &[Node], kind: ElementKind, element: &[usize]) -> [f64; 2] {
+    let at = |place: usize| nodes[element[place]].at;
+    let count = kind.corners().count() as f64;
+    [0, 1].map(|k| kind.corners().map(|place| at(place)[k]).sum::<f64>() / count)
 }
 
 fn contains((from, to): (Point, Point), [x, y]: [f64; 2]) -> bool {

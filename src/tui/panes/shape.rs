@@ -237,17 +237,19 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
 
 /// Lines between the elements of a solid, where there is room, and between its materials.
 fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: &View) {
-    let sides = |element: &[usize; 8]| {
-        let e = *element;
-        [0, 1, 2, 3].map(|k| [e[k], e[k + 4], e[(k + 1) % 4]])
+    let kind = solid.kind;
+    let draw = |canvas: &mut Canvas, face: &[usize], style| {
+        let now: Vec<Point> = face.iter().map(|&node| view.place(node)).collect();
+        draw_curve(canvas, window, &now, style);
     };
+    let corners: Vec<usize> = kind.corners().collect();
     for element in &solid.elements {
-        let (a, b) = (view.place(element[0]), view.place(element[2]));
+        let across = corners[corners.len() / 2];
+        let (a, b) = (view.place(element[0]), view.place(element[across]));
         let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
         if size >= ELEMENT && window.sees(a, size) {
-            for side in sides(element) {
-                let now = side.map(|node| view.place(node));
-                draw_curve(canvas, window, &now, app.theme.faint);
+            for face in kind.faces_of(element) {
+                draw(canvas, &face, app.theme.faint);
             }
         }
     }
@@ -256,13 +258,12 @@ fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: 
     }
     let mut other = HashMap::new();
     for (element, material) in solid.elements.iter().zip(&solid.material_of) {
-        for side in sides(element) {
-            // Neighbours share the node in the middle of their side.
-            match other.insert(side[1], material) {
-                Some(across) if across != material => {
-                    let now = side.map(|node| view.place(node));
-                    draw_curve(canvas, window, &now, app.theme.text);
-                }
+        for face in kind.faces_of(element) {
+            // Neighbours share a face, and walk it each its own way.
+            let mut ends = [face.first().copied(), face.last().copied()];
+            ends.sort_unstable();
+            match other.insert(ends, material) {
+                Some(across) if across != material => draw(canvas, &face, app.theme.text),
                 _ => {}
             }
         }

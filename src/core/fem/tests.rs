@@ -1,0 +1,291 @@
+//! What must hold for every element: run over all of them by a list.
+
+use super::beam::{self, Section};
+use super::continuum;
+use super::element::{Element, Past};
+use super::lagrange::MAX_NODES;
+use super::material::Material;
+use crate::model::{Elastic, ElementKind, Law, Plane, Update};
+
+/// An element in a shape that is nothing special.
+struct Specimen {
+    name: String,
+    element: Box<dyn Element>,
+    /// Undeformed position of every node.
+    at: Vec<[f64; 2]>,
+    /// Degrees of freedom of a node: x, y and, of a beam, the rotation.
+    per_node: usize,
+    /// Size of its forces.
+    stiffness: f64,
+}
+
+/// Every element that there is, with every choice that it has. A new one is entered here.
+fn specimens() -> Vec<Specimen> {
+    let mut all = Vec::new();
+    for m in 2..=MAX_NODES {
+        for ga in [Some(30.0), None] {
+            all.push(beam(m, ga));
+        }
+    }
+    for kind in ElementKind::ALL {
+        for plane in [Plane::Strain, Plane::Stress] {
+            all.push(solid(kind, Law::Svk, plane, Update::Total));
+            all.push(solid(kind, Law::NeoHookean, plane, Update::Total));
+            all.push(solid(kind, Law::Svk, plane, Update::Updated));
+        }
+    }
+    all
+}
+
+fn beam(m: usize, ga: Option<f64>) -> Specimen {
+    let along = |i: usize| 2.0 * i as f64 / (m - 1) as f64;
+    let at: Vec<[f64; 2]> = (0..m).map(|i| [along(i), 0.5 * along(i).sin()]).collect();
+    let section = Section {
+        ea: 100.0,
+        ei: 8.0,
+        ga,
+    };
+    Specimen {
+        name: format!("beam of {m} nodes, GA {ga:?}"),
+        element: Box::new(beam::Element::new(&at, section)),
+        at,
+        per_node: 3,
+        stiffness: 100.0,
+    }
+}
+
+/// The parent element, stretched, sheared and bent.
+fn solid(kind: ElementKind, law: Law, plane: Plane, update: Update) -> Specimen {
+    let bent = |[x, y]: [f64; 2]| [1.2 * x + 0.2 * y + 0.1 * x * y, 0.8 * y - 0.1 * x * x];
+    let at: Vec<[f64; 2]> = continuum::places(kind).into_iter().map(bent).collect();
+    let elastic = Elastic {
+        young: 100.0,
+        poisson: 0.3,
+        law,
+        plane,
+        thickness: 0.7,
+        update,
+    };
+    let element = continuum::element(kind, &at, Material::new(&elastic), update);
+    Specimen {
+        name: format!("{kind:?} {law:?} {plane:?} {update:?}"),
+        element: element.expect("as many places as nodes"),
+        at,
+        per_node: 2,
+        stiffness: 100.0,
+    }
+}
+
+fn noise(k: usize, size: f64) -> f64 {
+    size * ((k * 7 % 11) as f64 / 11.0 - 0.5)
+}
+
+impl Specimen {
+    /// Displacements of its nodes, then nothing for what is its own.
+    fn displaced(&self, of: impl Fn(usize, [f64; 2]) -> Vec<f64>) -> Vec<f64> {
+        let nodes = self.at.iter().enumerate();
+        let mut u: Vec<f64> = nodes.flat_map(|(i, &at)| of(i, at)).collect();
+        u.resize(self.element.dofs(), 0.0);
+        u
+    }
+
+    /// A rigid motion: turned, then shifted.
+    fn rigid(&self, angle: f64) -> Vec<f64> {
+        let (s, c) = angle.sin_cos();
+        self.displaced(|_, [x, y]| {
+            let moved = [c * x - s * y - x + 3.0, s * x + c * y - y - 1.0, angle];
+            moved[..self.per_node].to_vec()
+        })
+    }
+
+    fn evaluate(&self, past: &Past<'_>, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let n = self.element.dofs();
+        let (mut force, mut tangent) = (vec![0.0; n], vec![0.0; n * n]);
+        let answers = self.element.add(past, u, &mut force, &mut tangent);
+        assert!(answers, "{}", self.name);
+        self.element.mirror(&mut tangent);
+        (force, tangent)
+    }
+
+    fn at_rest(&self) -> (Vec<f64>, Vec<f64>) {
+        let history = vec![0.0; self.element.history_len()];
+        (vec![0.0; self.element.dofs()], history)
+    }
+}
+
+#[test]
+fn a_rigid_motion_strains_no_element() {
+    for specimen in specimens() {
+        let (u, history) = specimen.at_rest();
+        let past = Past {
+            u: &u,
+            history: &history,
+        };
+        for angle in [0.3, 2.5, -7.0] {
+            let (force, _) = specimen.evaluate(&past, &specimen.rigid(angle));
+            let most = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            assert!(
+                most < 1e-12 * specimen.stiffness,
+                "{}: {most}",
+                specimen.name
+            );
+        }
+    }
+}
+
+#[test]
+fn the_tangent_of_every_element_is_the_derivative_of_its_force_and_symmetric() {
+    for specimen in specimens() {
+        let n = specimen.element.dofs();
+        let before: Vec<f64> = (0..n).map(|k| noise(k + 3, 0.1)).collect();
+        let history: Vec<f64> = (0..specimen.element.history_len())
+            .map(|k| noise(k, 0.1))
+            .collect();
+        let past = Past {
+            u: &before,
+            history: &history,
+        };
+        let u: Vec<f64> = (0..n).map(|k| noise(k, 0.3)).collect();
+        let (_, tangent) = specimen.evaluate(&past, &u);
+        let scale = tangent.iter().fold(0.0_f64, |m, k| m.max(k.abs()));
+        let h = 1e-5;
+        for j in 0..n {
+            let moved = |by: f64| {
+                let mut u = u.clone();
+                u[j] += by;
+                specimen.evaluate(&past, &u).0
+            };
+            let (plus, minus) = (moved(h), moved(-h));
+            for i in 0..n {
+                let error = (plus[i] - minus[i]) / (2.0 * h) - tangent[i * n + j];
+                assert!(
+                    error.abs() < 1e-8 * scale,
+                    "{} {i} {j}: {error:e}",
+                    specimen.name
+                );
+                let skew = tangent[i * n + j] - tangent[j * n + i];
+                assert!(skew.abs() < 1e-13 * scale, "{} {i} {j}", specimen.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_shape_functions_of_every_kind_are_one_at_their_node_and_one_together() {
+    for kind in ElementKind::ALL {
+        let places = continuum::places(kind);
+        assert_eq!(places.len(), kind.nodes(), "{kind:?}");
+        for (i, [xi, eta]) in places.iter().enumerate() {
+            let (n, _) = continuum::shape(kind, *xi, *eta);
+            for (j, n) in n.iter().enumerate() {
+                let expected = if i == j { 1.0 } else { 0.0 };
+                assert!((n - expected).abs() < 1e-15, "{kind:?} {i} {j}");
+            }
+        }
+        for (xi, eta) in [(0.3, -0.8), (-0.5, 0.1), (0.2, 0.2)] {
+            let (n, d) = continuum::shape(kind, xi, eta);
+            assert!((n.iter().sum::<f64>() - 1.0).abs() < 1e-15, "{kind:?}");
+            for k in 0..2 {
+                let sum: f64 = d.iter().map(|d| d[k]).sum();
+                assert!(sum.abs() < 1e-15, "{kind:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_nodes_of_every_face_lie_on_the_boundary_of_the_parent_element_in_order() {
+    for kind in ElementKind::ALL {
+        let places = continuum::places(kind);
+        for face in kind.faces() {
+            let (first, last) = (places[face[0]], places[face[face.len() - 1]]);
+            for (k, &node) in face.iter().enumerate() {
+                let part = k as f64 / (face.len() - 1) as f64;
+                for axis in 0..2 {
+                    let expected = first[axis] + part * (last[axis] - first[axis]);
+                    assert!(
+                        (places[node][axis] - expected).abs() < 1e-15,
+                        "{kind:?} {face:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The patch test: under displacements that are linear in the position, every distorted element of a kind has the forces of
+/// one and the same stress, so that these are the tractions on its faces: Σ f_i = 0, and Σ f_i ⊗ X_i is the stress times the
+/// volume, whatever its shape.
+#[test]
+fn every_kind_of_continuum_element_passes_the_patch_test() {
+    for kind in ElementKind::ALL {
+        for plane in [Plane::Strain, Plane::Stress] {
+            let per_volume = |stretch: f64| -> [[f64; 2]; 2] {
+                let mut specimen = solid(kind, Law::Svk, plane, Update::Total);
+                let distort = |[x, y]: [f64; 2]| [stretch * x + 0.1 * y, y - 0.1 * stretch * x];
+                specimen.at = specimen.at.iter().map(|&at| distort(at)).collect();
+                let elastic = Elastic {
+                    young: 100.0,
+                    poisson: 0.3,
+                    law: Law::Svk,
+                    plane,
+                    thickness: 0.7,
+                    update: Update::Total,
+                };
+                let material = Material::new(&elastic);
+                let element = continuum::element(kind, &specimen.at, material, Update::Total);
+                specimen.element = element.expect("as many places as nodes");
+                let u =
+                    specimen.displaced(|_, [x, y]| vec![0.03 * x - 0.02 * y, 0.01 * x - 0.025 * y]);
+                let (rest, history) = specimen.at_rest();
+                let past = Past {
+                    u: &rest,
+                    history: &history,
+                };
+                let (force, _) = specimen.evaluate(&past, &u);
+                let mut moment = [[0.0; 2]; 2];
+                for axis in 0..2 {
+                    let total: f64 = force.iter().skip(axis).step_by(2).sum();
+                    assert!(total.abs() < 1e-13 * specimen.stiffness, "{kind:?}");
+                }
+                for (f, at) in force.chunks_exact(2).zip(&specimen.at) {
+                    for a in 0..2 {
+                        for b in 0..2 {
+                            moment[a][b] += f[a] * at[b];
+                        }
+                    }
+                }
+                moment.map(|row| row.map(|m| m / area(kind, &specimen.at)))
+            };
+            let (one, other) = (per_volume(1.0), per_volume(1.7));
+            for a in 0..2 {
+                for b in 0..2 {
+                    assert!(
+                        (one[a][b] - other[a][b]).abs() < 1e-12 * 100.0,
+                        "{kind:?} {plane:?}"
+                    );
+                    assert!(one[a][b].abs() > 1e-3, "the patch is under stress");
+                }
+            }
+        }
+    }
+}
+
+/// Area of an element by Green's theorem over its faces, independent of its quadrature.
+fn area(kind: ElementKind, at: &[[f64; 2]]) -> f64 {
+    let face = |places: &&[usize]| -> f64 {
+        let m = places.len();
+        super::lagrange::gauss(m)
+            .into_iter()
+            .map(|(xi, weight)| {
+                let s = super::lagrange::shape(m, xi);
+                let of = |w: &[f64], k: usize| -> f64 {
+                    places.iter().zip(w).map(|(&p, w)| w * at[p][k]).sum()
+                };
+                let (x, dy) = (of(&s.n, 0), of(&s.d, 1));
+                weight * x * dy
+            })
+            .sum()
+    };
+    kind.faces().iter().map(face).sum()
+}
