@@ -112,6 +112,8 @@
 //! slave node are F_n along n, where compression is positive, and F_t along t. A gap is positive where the node is outside.
 //! Slip is u_tS* − u_tS: how far the point of the surface has gone ahead of the node.
 
+#![forbid(unsafe_code)]
+
 pub mod contact;
 pub mod fem;
 pub mod interface;

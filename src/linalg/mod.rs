@@ -6,6 +6,8 @@
 //!
 //! faer reports a singular matrix as success and returns infinities, so every solve is checked (`check`).
 
+#![forbid(unsafe_code)]
+
 mod check;
 mod dense;
 mod fronts;

@@ -12,15 +12,20 @@ const INDENT: usize = 4;
 /// How a piece of a line is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Style {
+    /// As text.
     Plain,
+    /// A heading.
     Heading,
+    /// Emphasised.
     Strong,
+    /// What is typed, or stands in a file.
     Code,
 }
 
 /// A line of a page.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Line {
+    /// Pieces of text, each in its style.
     pub pieces: Vec<(Style, String)>,
 }
 
@@ -46,6 +51,7 @@ impl Line {
         }
     }
 
+    /// Whether it is a heading.
     pub fn is_heading(&self) -> bool {
         self.pieces
             .iter()

@@ -15,10 +15,17 @@ use tempfile::NamedTempFile;
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
+    /// There is a file of that name.
     #[error("{}: the file exists already, and nothing is overwritten unasked", .0.display())]
     Exists(PathBuf),
+    /// It cannot be written.
     #[error("{}: it cannot be written: {source}", path.display())]
-    Failed { path: PathBuf, source: io::Error },
+    Failed {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
 }
 
 /// A file in the making. It appears under its name when it is finished, and leaves nothing behind when it is not.

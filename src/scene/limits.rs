@@ -1,7 +1,7 @@
 //! How large a scene may be, and checks of single numbers.
 //!
 //! The limits keep a slip of the finger (`elements: 100000000`) from taking the machine. What a large scene may have is a
-//! matter of the memory that it takes ([`super::memory`], [`super::effort`]).
+//! matter of the memory that it takes ([`super::memory`], [`crate::linear::estimate`]).
 
 use super::error::{Fault, Path};
 use crate::linear::estimate::bytes;

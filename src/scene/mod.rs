@@ -4,7 +4,7 @@
 //! - [`described`]: the types of the file, described once for [`paths`] and for the manual.
 //! - [`paths`]: every scalar of a scene by its path, to list and to set.
 //! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
-//! - [`cost`]: what a scene costs, and what it does without; [`effort`]: its time and memory, estimated; [`memory`]: what
+//! - [`cost`]: what a scene costs, and what it does without; [`crate::linear::estimate`]: its time and memory, estimated; [`memory`]: what
 //!   there is of that.
 //! - [`condensed`]: interface problems without bodies, as scenes; [`siconos`]: those of another code.
 //! - [`builtin`]: the scenes that the program carries.

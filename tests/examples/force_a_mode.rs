@@ -10,11 +10,12 @@ use std::error::Error;
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use stickslip::linear::singular::{RigidMotion, Singular};
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::drive::{RunEnd, Until};
 use stickslip::step::intervene::Intervention;
-use stickslip::step::{Outcome, Stepper};
+use stickslip::step::{Failure, Outcome, Stepper};
 
 fn main() -> Result<(), Box<dyn Error>> {
     run(&mut std::io::stdout())
@@ -26,10 +27,13 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     let set = set.map(|(path, value)| (path.to_owned(), value.to_owned()));
     let scene = Scene::open("01-pinned-beam-rough-floor", &set)?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
-    let RunEnd::Failed(why) = to_the_end(&mut stepper).1 else {
-        return Err("the scene was to fail".into());
+    let end = to_the_end(&mut stepper).1;
+    let RunEnd::Failed(Failure::Singular(Singular::Rigid { motions })) = end else {
+        return Err(format!("{end:?}").into());
     };
-    writeln!(out, "free: {why:?}")?;
+    for RigidMotion { body, .. } in motions {
+        writeln!(out, "free: nothing holds {body}")?;
+    }
     // For the next minor iteration only; with `hold` until it is released.
     stepper.intervene(&Intervention::Force {
         slave: 0,

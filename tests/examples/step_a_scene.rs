@@ -15,7 +15,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Writes a line for every accepted increment.
 pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     // A built-in scene or the path of a file, with settings as `--set` takes them.
-    let set = [("history.increment".to_owned(), "0.125".to_owned())];
+    let set = [
+        ("history.increment", "0.0625"),
+        ("settings.t_max", "consistent"),
+    ];
+    let set = set.map(|(path, value)| (path.to_owned(), value.to_owned()));
     let scene = Scene::open("01-pinned-beam-rough-floor", &set)?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let mut minors = 0;
@@ -29,7 +33,7 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
                 stepper.monitors(&mut monitors);
                 writeln!(
                     out,
-                    "P = {load:.3}: {:?}, F_n = {:.5}, F_t = {:.5}, u_x = {:.6}, after {minors} minor iterations",
+                    "P = {load:.4}: {:?}, F_n = {:.5}, F_t = {:.5}, u_x = {:.6}, after {minors} minor iterations",
                     node.decision.next, node.f_n, node.f_t, monitors[0],
                 )?;
                 minors = 0;

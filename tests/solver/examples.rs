@@ -25,10 +25,61 @@ macro_rules! written {
 }
 
 #[test]
-fn x() {
-    println!("{}", written!(force_a_mode));
-    println!("{}", written!(interface_problem));
-    println!("{}", written!(step_a_scene));
-    println!("{}", written!(strategy));
-    println!("{}", written!(study));
+fn a_scene_is_stepped_to_its_end() {
+    let out = written!(step_a_scene);
+    let lines: Vec<&str> = out.lines().collect();
+    assert_eq!(lines.len(), 8, "{out}");
+    assert_eq!(
+        lines[3],
+        "P = 0.2500: Sliding, F_n = 0.15895, F_t = -0.09177, u_x = -0.012701, after 3 minor iterations"
+    );
+    assert_eq!(
+        lines[5],
+        "P = 0.1250: Fixed, F_n = 0.15895, F_t = 0.03323, u_x = -0.012701, after 1 minor iterations"
+    );
+    assert!(lines[7].starts_with("P = 0.0000: Sliding"), "{out}");
+}
+
+#[test]
+fn an_interface_problem_without_bodies_has_one_consistent_state() {
+    let friction = 20_f64.to_radians().tan() * 20.0;
+    // K u = P + F along t, node 1 stuck: 120 slip = 30 − friction.
+    let slip = (30.0 - friction) / 120.0;
+    let expected = format!(
+        "XX: node 0 breaks WithinLimit by {:.3}\n\
+         16 assumptions tried, 1 consistent\n\
+         +X: node 0 has F_n = 20.0000, F_t = {friction:.4}, slip = {slip:.5}\n\
+         +X: node 1 has F_n = 20.0000, F_t = {:.4}, slip = 0.00000\n",
+        30.0 - friction,
+        20.0 * slip,
+    );
+    assert_eq!(written!(interface_problem), expected);
+}
+
+#[test]
+fn a_strategy_of_ones_own_settles_where_table_2_cycles() {
+    assert_eq!(
+        written!(strategy),
+        "Table 2: Failed(Cycle(Cycle { start: 1, period: 2, members: [(0, [Free, Fixed])] }))\n\
+         Free -> Fixed\nFixed -> Sliding\nSliding -> Sliding\n\
+         the stepper goes on: Stopped(0.05)\n"
+    );
+}
+
+#[test]
+fn a_forced_mode_carries_a_scene_over_a_singular_start() {
+    assert_eq!(
+        written!(force_a_mode),
+        "free: nothing holds beam\nsliding: Finished after 50 increments\n"
+    );
+}
+
+#[test]
+fn a_study_runs_a_scene_with_several_frictions() {
+    assert_eq!(
+        written!(study),
+        "20 degrees: u_x = -0.014700 at P = 0.250, Finished\n\
+         30 degrees: u_x = -0.012701 at P = 0.250, Finished\n\
+         40 degrees: u_x = -0.010887 at P = 0.250, Finished\n"
+    );
 }

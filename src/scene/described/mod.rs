@@ -4,7 +4,7 @@
 //! - `described!` defines a struct, or an enum whose variants have fields. After a field's type may stand
 //!   `=> name` (lists call their entries by it; no value to set), `=> skip` (no value to set), `=> given` (an optional
 //!   value that can be set where there is one).
-//! - `fields!` describes a struct that is defined elsewhere with [`documented!`](super::documented), all of whose
+//! - `fields!` describes a struct that is defined elsewhere with [`documented!`](crate::model::documented), all of whose
 //!   fields may be left out. It names them all: one that is forgotten does not compile.
 //! - `words!` describes enums of plain words that are defined elsewhere. The words are those that serde reads, so
 //!   that none can be forgotten.
