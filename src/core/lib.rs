@@ -1,16 +1,116 @@
 //! stickslip-core: the two-level iteration for contact and friction of El-Sawy & Moore (1996), as a resumable stepper.
 //!
-//! It knows no file format, no terminal and no threads. The map of the house, from the ground up: each line uses those
-//! above it and none below.
+//! A call of [`Stepper::step`] does one minor iteration and returns what it did as an [`Event`]: every number that was
+//! compared, every mode that changed, and why. Between two calls a program may look at everything, change the modes of
+//! nodes ([`Stepper::intervene`]), keep the [`State`] and come back to it. The package reads no files, writes nothing, and
+//! starts no threads.
 //!
-//! - [`model`]: what to solve: bodies, surfaces, contacts, loads, and the choices of the method.
-//! - [`fem`]: elements, materials, and their assembly.
-//! - [`contact`]: one slave node and its surface: projection, Table 1, T_max, Table 2, and the judge of the laws.
-//! - [`interface`]: all contacts of one major iteration, the bodies frozen to a response: minor iterations, pivoting,
-//!   census.
-//! - [`linear`]: the linearised equations behind the seam [`linear::source::Source`].
-//! - [`strategy`]: how the next modes are chosen, one file a strategy.
-//! - [`step`]: the stepper: increments, major iterations, minor iterations, one per call.
+//! # Example
+//!
+//! A node on two springs is pressed onto a rough floor and pushed along it. The floor is one endless line, walked from right
+//! to left, since the outward side is on the right of the walk.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use stickslip_core::model::{
+//!     Body, BodyKind, Contact, Dofs, Factor, Form, Friction, InitialState, Jumps, Linear, Load, Model, Node, Settings,
+//!     Surface,
+//! };
+//! use stickslip_core::{Mode, Outcome, Stepper};
+//!
+//! let (spring, gap, push, press) = (100.0, 0.1, 30.0, 30.0);
+//! let node = |name: &str, at| Node { name: name.into(), at };
+//! let load = |dof, value| Load { dof, value, scale: Factor::default() };
+//! let model = Model {
+//!     title: "A node on two springs".into(),
+//!     about: String::new(),
+//!     nodes: vec![
+//!         node("slave", [0.0, gap]),
+//!         node("floor.1", [1.0, 0.0]),
+//!         node("floor.2", [-1.0, 0.0]),
+//!     ],
+//!     // f = K u, with K = spring times the unit matrix.
+//!     bodies: vec![Body {
+//!         name: "springs".into(),
+//!         nodes: vec![0],
+//!         kind: BodyKind::Linear(Linear {
+//!             form: Form::Stiffness,
+//!             entries: vec![(0, 0, spring), (1, 1, spring)],
+//!             bars: Vec::new(),
+//!         }),
+//!     }],
+//!     surfaces: vec![Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true }],
+//!     contacts: vec![Contact {
+//!         node: 0,
+//!         surfaces: vec![0],
+//!         friction: Friction { angle: 20.0, cohesion: 0.0 },
+//!         start: Mode::Free,
+//!         state: InitialState::default(),
+//!     }],
+//!     // Only the slave node has unknowns: its x and its y.
+//!     dofs: Dofs {
+//!         first: vec![0, 2, 4],
+//!         count: vec![2, 2, 2],
+//!         equation: vec![Some(0), Some(1), None, None, None, None],
+//!         equations: 2,
+//!         inner: 0,
+//!     },
+//!     loads: vec![load(0, push), load(1, -press)],
+//!     prescribed: Vec::new(),
+//!     path: vec![0.0, 1.0],
+//!     increment: 0.5,
+//!     least: None,
+//!     jumps: Jumps::default(),
+//!     settings: Settings::default(),
+//!     monitors: Vec::new(),
+//!     budget: f64::INFINITY,
+//!     length: 1.0,
+//! };
+//!
+//! let mut stepper = Stepper::new(Arc::new(model));
+//! while let Some(event) = stepper.step() {
+//!     match &event.outcome {
+//!         Outcome::Failed(why) => panic!("{why:?}"),
+//!         Outcome::Increment { .. } => println!("load factor {} is done", event.load_factor),
+//!         _ => {}
+//!     }
+//! }
+//!
+//! // It slides: F_t = −tan φ F_n, and the spring along the floor takes the rest.
+//! let state = stepper.state();
+//! let f_n = press - spring * gap;
+//! let friction = 20_f64.to_radians().tan() * f_n;
+//! assert_eq!(state.nodes[0].mode, Mode::Sliding);
+//! assert!((state.nodes[0].f_n - f_n).abs() < 1e-9);
+//! assert!((state.u[0] - (push - friction) / spring).abs() < 1e-9);
+//! ```
+//!
+//! A scene file is a shorter way to a model; the package `stickslip` reads those. Its examples show how to step a scene,
+//! how to pose an interface problem without bodies, how to write a strategy, how to force a mode, and how to run a study
+//! (`tests/examples` in its sources).
+//!
+//! # The rooms
+//!
+//! - [`linalg`]: patterns, factors, checked solves; a package of its own.
+//! - [`model`]: what is solved, as plain data: nodes, bodies, surfaces, contacts, loads, settings.
+//! - [`fem`]: an element is a small file here: shape functions, internal forces and their tangent. [`fem::assembly`] adds
+//!   the elements of all bodies up.
+//! - [`contact`]: one slave node: projection on its surface, Table 1's equations, Table 2's decision, and the judge of the
+//!   laws that every accepted state obeys.
+//! - [`interface`]: the interface problem of a major iteration, by itself: geometry and stiffness frozen, no bodies.
+//! - [`strategy`]: the strategies, one file each. A strategy is a [`Method`]: it says which mode a node takes next, which
+//!   nodes may change at once, or what all nodes do together. Whatever it leaves out is done as in Table 2.
+//! - [`linear`]: the linearised equations. [`linear::source::Source`] is the seam: what the stepper needs of what deforms.
+//!   It linearises at a state, solves for the modes of the nodes, takes the forces back, and says where the nodes are then.
+//!   [`linear::bodies`] is the source of our own bodies; a source of your own goes into [`Stepper::with_source`].
+//! - [`step`]: increments, major and minor iterations: the algorithm box.
+//!
+//! # Conventions
+//!
+//! Units are the user's: any consistent set of force and length; angles of friction are in degrees, rotations in radians.
+//! The outward normal n of a surface is on the right of its walk, and t is n turned 90 degrees anticlockwise. Forces on a
+//! slave node are F_n along n, where compression is positive, and F_t along t. A gap is positive where the node is outside.
+//! Slip is u_tS* − u_tS: how far the point of the surface has gone ahead of the node.
 
 pub mod contact;
 pub mod fem;
@@ -20,4 +120,10 @@ pub mod model;
 pub mod step;
 pub mod strategy;
 
+pub use interface::method::Method;
+pub use interface::problem::{InterfaceProblem, Trials};
+pub use linear::source::Source;
+pub use model::{Mode, Model, Settings, Strategy};
+pub use step::intervene::Intervention;
+pub use step::{Event, Failure, Outcome, State, Status, Stepper};
 pub use stickslip_linalg as linalg;

@@ -23,7 +23,7 @@ pub struct DenseFactors {
 }
 
 impl DenseFactors {
-    /// Room for an n by n matrix, and for solving with this many right-hand sides at a time.
+    /// Room for an n by n matrix, and for solving with `columns` right-hand sides at a time.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
@@ -42,7 +42,7 @@ impl DenseFactors {
         })
     }
 
-    /// Takes another size from now on, at most the one that there is room for.
+    /// Takes another size n from now on, at most that of [`DenseFactors::new`].
     pub fn resize(&mut self, n: usize) {
         self.n = n;
         self.values.resize(n * n, 0.0);
@@ -123,8 +123,8 @@ impl DenseFactors {
     }
 }
 
-/// C = C − A B, C of as many rows as A and as many columns as B; each stored column by column, the columns this far
-/// apart.
+/// C = C − A B. Each matrix is stored column by column and given with the distance between its columns; the sizes are
+/// [rows of A and C, columns of A and rows of B, columns of B and C].
 pub fn subtract_product(
     c: (&mut [f64], usize),
     a: (&[f64], usize),

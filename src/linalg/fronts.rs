@@ -8,20 +8,22 @@
 //! F = [F_11 F_12; F_21 F_22],      P F_11 Q = L_11 U_11,      F_22 − F_21 F_11⁻¹ F_12  goes to the parent.
 //! ```
 //!
-//! Pivots are sought inside F_11, where saddle points that are whole in their group find theirs. They must not be much
-//! smaller than what they eliminate; where none is, the matrix is one for [`super::Factors`]' general method.
+//! Pivots are sought inside F_11 only; a saddle point whose unknowns are in one group finds its pivots there. A pivot must
+//! not be much smaller than what it eliminates; if there is none, the general method of [`super::Factors`] takes over.
 //!
-//! A front is factored again only if its own entries, or a child's remainder, have changed since the last time: so the
-//! minor iterations of a major one repeat what depends on the modes that changed, and have the same bits all the same.
+//! A front is factored again only if its own entries, or a child's remainder, have changed since the last time. So the
+//! minor iterations of a major one repeat only what depends on the modes that changed, with the same bits as a full
+//! factorization.
 
 use super::check::SolveError;
 use super::pattern::Pattern;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A pivot must have this part of the largest entry in its column.
+/// A pivot must be larger than this part of the largest entry below in its column.
 const THRESHOLD: f64 = 1e-6;
-/// Largest front that is worth its plain loops, and the most unknowns that are worth their plain order.
+/// Largest size of a front for which these plain loops are fast enough.
 const LARGEST: usize = 160;
+/// Largest number of unknowns for which this plain way of finding an order is fast enough.
 const MOST: usize = 4000;
 
 /// A front; its matrix is stored column by column.
@@ -53,15 +55,15 @@ pub struct Fronts {
     /// Children before parents.
     fronts: Vec<Front>,
     store: Vec<f64>,
-    /// What was factored last; none of it if that failed.
+    /// The values that were factored last; only meaningful if `ready`.
     values: Vec<f64>,
     ready: bool,
     work: Vec<f64>,
 }
 
 impl Fronts {
-    /// Finds an order for a pattern with a symmetric structure; `groups` says which group each unknown is in. None where
-    /// the fronts would be large.
+    /// Finds an order for a pattern with a symmetric structure; `groups` is the number of each unknown's group.
+    /// `None` if the fronts would be too large for this method.
     pub fn new(pattern: &Pattern, groups: &[usize]) -> Option<Self> {
         if groups.len() > MOST {
             return None;

@@ -2,8 +2,8 @@
 //!
 //! The augmented system of eqn (9) mixes stiffnesses of very different size with constraint rows of size one and,
 //! where friction stands in the matrix, is unsymmetric. So it is scaled, rows and columns, by powers of two, which cost no
-//! digits. Where matrices differ in their last rows only (a major iteration's differ in the equations of the interface), one
-//! scale serves all, but for these rows. Small systems whose groups of unknowns are known are factored front by
+//! digits. The matrices of a major iteration differ only in their last rows, the equations of the interface; one scale
+//! serves them all, except for these rows. Small systems whose groups of unknowns are known are factored front by
 //! front ([`super::fronts`]); others, and those that find no pivots there, by faer with partial pivoting. The symbolic
 //! part is kept as long as the pattern stands.
 
@@ -16,7 +16,7 @@ use faer::sparse::linalg::lu::{LuRef, NumericLu, SymbolicLu, factorize_symbolic_
 use faer::{Conj, MatMut, Par};
 use std::sync::Arc;
 
-/// Number of equilibration sweeps; each takes the square root out of the spread of the rows' and columns' sizes.
+/// Number of equilibration sweeps; each replaces the ratio of the largest to the smallest row by about its square root.
 const SWEEPS: usize = 3;
 
 /// Backward error above which a solution is not believed.
@@ -68,7 +68,8 @@ impl Factors {
         Ok(Factors::with(pattern, None, Some(general)))
     }
 
-    /// Analyses a pattern of symmetric structure whose unknowns are in these groups, within which saddle points are whole.
+    /// Analyses a pattern of symmetric structure; `groups` is the number of each unknown's group, and no saddle point is
+    /// spread over several groups.
     ///
     /// # Errors
     /// As [`Factors::new`].
@@ -103,11 +104,12 @@ impl Factors {
         &self.pattern
     }
 
-    /// Scales for all matrices to come, until the next call, that differ from this one only in the rows from `first` on. The
-    /// rows before these are taken to be about as large as their columns: the matrix is nearly symmetric there.
+    /// Finds the scale of all matrices to come that differ from this one only in the rows from `first` on. The rows before
+    /// `first` must be about as large as their columns (the matrix is nearly symmetric there).
     ///
-    /// `units` are the sizes of the unknowns, powers of two. What is balanced is not the same for every start: where a
-    /// saddle point's constraints are of size one and its stiffness is tiny, equal rows still leave it nearly singular.
+    /// `units` are the sizes of the unknowns (powers of two), with which the sweeps start. The start matters: in a saddle
+    /// point whose constraints are of size one and whose stiffness is tiny, rows of equal size may still be nearly
+    /// singular.
     pub fn scale(&mut self, values: &[f64], first: usize, units: &[f64]) {
         self.used = Used::Neither;
         self.values.copy_from_slice(values);
@@ -191,8 +193,8 @@ impl Factors {
         }
     }
 
-    /// Solves A X = B for at most [`Factors::BLOCK`] columns of B, one after the other in `x`; X replaces B. Neither
-    /// refined nor checked but for being finite: meant for the many columns of a response, beside one checked solve.
+    /// Solves A X = B for at most [`Factors::BLOCK`] columns of B, one after the other in `x`; X replaces B. The solution is
+    /// not refined, and only checked to be finite: meant for the many columns of a response, beside one checked solve.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if X is not finite.
@@ -208,8 +210,8 @@ impl Factors {
         }
     }
 
-    /// A lower bound of the norm of the inverse of the scaled matrix (whose entries are at most one), from one
-    /// solve with a fixed vector of all frequencies; near 1e16 where the matrix is singular.
+    /// A lower bound of the norm of the inverse of the scaled matrix (whose entries are at most one), from one solve with a
+    /// fixed vector of all frequencies; near 1e16 if the matrix is singular, and infinite without factors.
     pub fn inverse_norm(&mut self) -> f64 {
         if self.used == Used::Neither {
             return f64::INFINITY;
@@ -229,7 +231,7 @@ impl Factors {
         let (mut error, mut size) = (0.0_f64, 0.0_f64);
         for ((b, product), scale) in b.iter().zip(&self.residual).zip(&self.row_scale) {
             let apart = ((b - product) * scale).abs();
-            // Not max, which takes no notice of what is no number.
+            // `max` would ignore what is not a number.
             error = if apart <= error { error } else { apart };
             size = size.max((b * scale).abs());
         }
@@ -359,7 +361,7 @@ fn inverse(size: f64) -> f64 {
     exponent(size).map_or(1.0, |exponent| power_of_two(-exponent))
 }
 
-/// Exponent of a size; none of zero and of what is no number.
+/// Exponent of a size. `None` for zero and for what is not a number.
 fn exponent(size: f64) -> Option<i64> {
     let exponent = || i64::try_from(size.to_bits() >> 52).unwrap_or(1023) - 1023;
     (size > 0.0 && size.is_finite()).then(exponent)

@@ -7,11 +7,11 @@
 //! K = L D Lᵀ,      S = K_cc − K_ci K_ii⁻¹ K_ic = L_cc D_c L_ccᵀ,
 //! ```
 //!
-//! so condensing (eqn 6) costs no more than factoring. A body that is free to move as a whole has a singular S: the
-//! `shift` is added to K_cc's diagonal before, and to S with it, and is the caller's to take off again.
+//! so condensing (eqn 6) costs no more than factoring. A body that is free to move as a whole has a singular S; therefore a
+//! `shift` is added to the diagonal of K_cc, and so to that of S, and the caller subtracts it again.
 //!
-//! Only the upper half is looked at. There is no pivoting. Where a pivot is too small to go on, the check of the solution says so, and the matrix is one
-//! for [`super::Factors`].
+//! Only the upper half of the matrix is read. There is no pivoting. If a pivot is too small, the check of the solution fails,
+//! and the caller turns to [`super::Factors`].
 
 use super::check::{SolveError, largest};
 use super::pattern::{Pattern, symbolic_view};
@@ -110,7 +110,7 @@ impl SymmetricFactors {
         for &k in &self.diagonal {
             self.values[k] += shift;
         }
-        // What is no number shows in the check of the solution.
+        // The check of the solution finds what is not a number.
         self.size = self.values.iter().fold(0.0, |m, v| m.max(v.abs()));
         self.symbolic
             .factorize_numeric_ldlt(

@@ -28,3 +28,5 @@ mod loose;
 mod jumps;
 // Answers of zero, other units, stiffnesses that round-off spoils, scenes near the limits of memory.
 mod scales;
+// The examples of the library run, and write what they promise.
+mod examples;

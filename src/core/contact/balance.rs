@@ -1,8 +1,8 @@
 //! Whether forces are in balance: at every node, and on the bodies as a whole with their reactions.
 //!
-//! What a node must bear is internal force − load − contact force. Where it is free to move that vanishes; where it is
-//! held, it is the reaction. Internal forces of bodies that know nothing of where they are add up to nothing, moments
-//! included; so reactions and loads do, too.
+//! At every node, r = internal force − load − contact force. At a free degree of freedom r = 0; at a restrained one, r is
+//! the reaction. Internal forces do not depend on where a body is, so their sum and the sum of their moments vanish; the
+//! same then holds for the reactions and the loads together.
 
 use crate::contact::judge::{Finding, Law, Numbers, Scales, Verdict};
 use crate::model::{BodyKind, Model};
@@ -10,12 +10,16 @@ use crate::model::{BodyKind, Model};
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
 #[derive(Debug, Clone, Copy)]
 pub struct Forces<'a> {
+    /// Forces with which the elements resist, equal to the loads in equilibrium.
     pub internal: &'a [f64],
+    /// Loads at the present load factor.
     pub load: &'a [f64],
+    /// Interaction forces on each node, slave or master (x, y).
     pub contact: &'a [[f64; 2]],
 }
 
-/// Adds to a verdict what is not in balance; `now` are the positions of all nodes.
+/// Adds to `verdict` the worst node of [`Law::Balance`] and the sum of [`Law::Moments`]; `now` are the positions of all
+/// nodes. Bodies that are given by a matrix are not judged as a whole, since the matrix may hold supports.
 pub fn check(
     model: &Model,
     forces: &Forces,

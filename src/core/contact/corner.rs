@@ -9,8 +9,8 @@
 //! |F_t| <= tan(φ + h) F_n + c cos φ / cos(φ + h)
 //! ```
 //!
-//! as long as φ + h < 90 degrees and the cohesion of the side that is left does not count: at that limit the node leaves the
-//! corner along one side. On a convex vertex the node stays as long as it slides down neither side.
+//! This holds for φ + h < 90 degrees, and only the side along which the node leaves the corner contributes cohesion. On a
+//! convex vertex the node stays as long as it slides down neither of the two sides.
 
 use crate::model::Friction;
 
@@ -31,7 +31,7 @@ const STEEPEST: f64 = 89.999;
 const PERPENDICULAR: f64 = 1e-12;
 
 /// Half the angle between two sides where they form a concave corner, in radians, from their tangents along the walk (of
-/// any length); none where they are straight or convex.
+/// any length). `None` if they are straight or convex.
 pub fn concave(before: [f64; 2], behind: [f64; 2]) -> Option<f64> {
     let turn = cross(before, behind).atan2(dot(before, behind));
     // Outside lies on the right of the walk.
@@ -47,8 +47,9 @@ pub fn widened(friction: &Friction, half: f64) -> Friction {
     }
 }
 
-/// By how much a force (on the node) is beyond what two sides can give together: a sum of one force from each. Negative
-/// or zero where they can. `mobilised` says of each whether its friction is at the limit, and in which direction of its t.
+/// By how much a force on the node exceeds what two sides can give together, as a sum of one force from each (force; zero
+/// or negative if they can give it). `mobilised` is, for each side whose friction is at its limit, the direction of that
+/// friction along the side's t (±1).
 pub fn beyond_sum(force: [f64; 2], sides: [&Side; 2], mobilised: [Option<f64>; 2]) -> f64 {
     let mut rays = [[0.0; 2]; 4];
     // Segments ±c t, or the point that is left of one.
@@ -80,8 +81,9 @@ pub fn beyond_sum(force: [f64; 2], sides: [&Side; 2], mobilised: [Option<f64>; 2
     })
 }
 
-/// By how much a force is beyond what keeps a node on a convex vertex: it must press on both sides (`tension`), and slide
-/// down neither, which is what the friction of each can hinder (`cone`). `before` is the side that the walk comes along.
+/// By how much a force exceeds what keeps a node on a convex vertex: it must press on both sides (`tension`), and the
+/// friction of each side must keep it from sliding down there (`cone`). `before` is the side that comes first along the
+/// walk.
 pub fn beyond_vertex(force: [f64; 2], before: &Side, behind: &Side) -> Beyond {
     let mut beyond = Beyond::default();
     for (side, away) in [(before, -1.0), (behind, 1.0)] {
@@ -97,10 +99,12 @@ pub fn beyond_vertex(force: [f64; 2], before: &Side, behind: &Side) -> Beyond {
     beyond
 }
 
-/// Amounts by which a force is beyond two laws (force, not negative).
+/// By how much a force breaks two laws (force, not negative; 0 where it obeys).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Beyond {
+    /// By how much it pulls on one of the sides.
     pub tension: f64,
+    /// By how much it exceeds the friction of one of the sides.
     pub cone: f64,
 }
 

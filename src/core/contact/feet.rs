@@ -1,8 +1,8 @@
 //! Where the points of a chain are that lie closest to a given point: all of them, found anew.
 //!
-//! [`super::projection`] follows one S* from iteration to iteration and starts where it was; whoever checks a state must
-//! not. Here every element is searched: the derivative of half the squared distance, (x − p) · x', changes its sign from
-//! minus to plus at a closest point, and at an end of an element it points past the end.
+//! [`super::projection`] follows one S* from iteration to iteration and starts where it was. A check of a state must not
+//! depend on that, so here every element is searched. With x(ξ) the curve and p the point, the derivative of half the
+//! squared distance, (x − p) · x', changes its sign from minus to plus at a closest point inside an element.
 
 use crate::contact::projection::SurfacePoint;
 use crate::fem::lagrange::{MAX_NODES, Shape, shape};
@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 const INTERVALS: usize = 2;
 /// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
 const STEPS: u32 = 60;
-/// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
+/// Lagrange curves leave the bounding box of their nodes by less than this, relative to the size of the box.
 const BULGE: f64 = 0.5;
 
 /// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
@@ -28,7 +28,7 @@ static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
         .collect()
 });
 
-/// Makes what every search uses, so that none of them has to.
+/// Makes the table that every search uses, so that the first search does not allocate.
 pub fn prepare() {
     LazyLock::force(&GRID);
 }
@@ -36,6 +36,7 @@ pub fn prepare() {
 /// A point of a surface that is closer than its neighbours on the same element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Foot {
+    /// Where on the surface it is.
     pub spot: SurfacePoint,
     /// Its position.
     pub at: [f64; 2],
@@ -43,8 +44,8 @@ pub struct Foot {
     pub distance: f64,
 }
 
-/// Leaves in `feet` all closest points of the surfaces `candidates` whose distance from `point` exceeds the least by no more
-/// than `slack` (length), the closest first. A border between two elements counts for each of them.
+/// Fills `feet` with all closest points of the surfaces `candidates` whose distance from `point` exceeds the smallest by at
+/// most `slack` (length), the closest first. A border between two elements is listed for each of them.
 pub fn find(
     point: [f64; 2],
     surfaces: &[Surface],
@@ -178,7 +179,7 @@ pub fn place(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
     blend(nodes, positions, &shape(nodes.len(), xi).n)
 }
 
-/// Unit tangent along the walk at a point of an element; none where its curve stands still.
+/// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
 pub fn direction(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
     let d = blend(nodes, positions, &shape(nodes.len(), xi).d);
     let size = length(d);

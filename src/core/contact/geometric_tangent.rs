@@ -1,8 +1,8 @@
 //! How the interaction force turns and travels with the surface: the geometric part of the contact tangent.
 //!
-//! The paper freezes normal, projection and gap during a major iteration and leaves their change out of the tangent.
-//! Here it is: the second variation of gap and slip at the closest point S*, with the force components F_n and F_t
-//! constant in the frame that turns with the surface. With τ = dx/dξ, m = τ·τ, k = n · d²x/dξ², and for the motion of
+//! The paper freezes normal, projection and gap during a major iteration, and its tangent leaves out how they change. This
+//! module adds that part: the second variation of gap and slip at the closest point S*, for force components F_n and F_t
+//! that are constant in the frame that turns with the surface. With τ = dx/dξ, m = τ·τ, k = n · d²x/dξ², and for the motion of
 //! one degree of freedom
 //!
 //! ```text
@@ -32,8 +32,8 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// Of the displacement along an axis of a node that has the share `weight` in u_S* − u_S (−1 for the slave, N_i for
-    /// master nodes) and the derivative `slope` of that share by ξ (0 for the slave).
+    /// The variation for the displacement along `axis` (0 x, 1 y) of a node. `weight` is the node's share in u_S* − u_S (−1
+    /// for the slave, N_i for master nodes), and `slope` the derivative of that share by ξ (0 for the slave).
     pub fn new(footing: &Projection, curve: &Curve, axis: usize, weight: f64, slope: f64) -> Self {
         let (n, t) = (footing.normal, tangent(footing.normal));
         let tilt = n[axis] * slope;
@@ -59,8 +59,8 @@ fn bend(footing: &Projection, curve: &Curve) -> f64 {
     footing.normal[0] * curve.bend[0] + footing.normal[1] * curve.bend[1]
 }
 
-/// Derivative of the interaction force at degree of freedom i by degree of freedom j, the components F_n and F_t
-/// staying (`force`): F_n Δδg + F_t Δδg_t.
+/// Derivative of the interaction force at degree of freedom i by degree of freedom j, with constant components F_n and F_t
+/// (`force`): F_n Δδg + F_t Δδg_t.
 pub fn turning(
     footing: &Projection,
     curve: &Curve,

@@ -1,18 +1,18 @@
 //! Whether a state that is to be accepted obeys the laws of contact and friction, and of balance.
 //!
-//! It is judged from positions and forces alone, now and in the state that was accepted last, whatever the iterations in
-//! between did; nothing of their bookkeeping is used (modes, S*, anchors, counted slip). The laws:
+//! A state is judged from positions and forces alone, now and in the last accepted state. Nothing of the iterations'
+//! bookkeeping (modes, S*, anchors, counted slip) is used. The laws:
 //!
-//! - no node is inside, none is pressed over a gap, none is pulled; |F_t| <= tan φ F_n + c (eqn 20);
-//! - a node that touches in both states has a net slip along the surface from foot to foot, across the borders of
-//!   elements. Where it has one, friction opposes it at the limit; where friction is within the limit, it has none;
-//! - one that was open, or on another surface, may have touched anywhere on its way. Only friction at its limit that drives
-//!   the whole of the way is against the law: no place of touching explains it;
-//! - in a corner between two sides the force is what both give together ([`super::corner`]);
+//! - g >= 0; no force acts across a gap; F_n >= 0; |F_t| <= tan φ F_n + c (eqn 20);
+//! - a node that touches in both states has a net slip: the way along the surface from foot to foot, across the borders of
+//!   elements. If it is not zero, friction opposes it and is at its limit;
+//! - a node that was open, or on another surface, may have touched anywhere on its way. Only friction that is at its limit
+//!   and drives the whole of this way breaks the law, since no place of touching explains it;
+//! - in a corner between two sides the force is a sum of what each of them can give ([`super::corner`]);
 //! - every node is in balance, and so are the bodies as a whole with the reactions ([`super::balance`]).
 //!
-//! All amounts are relative to the scene's length or force. Lengths and forces have a tolerance each: where stiffnesses leave
-//! forces less exact, places stay as exact as ever.
+//! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, since very stiff
+//! bodies make forces less exact and positions not.
 
 use crate::contact::corner::{Side, beyond_sum, beyond_vertex, concave};
 use crate::contact::feet::{self, Foot, direction, place};
@@ -26,7 +26,9 @@ use serde::{Deserialize, Serialize};
 /// What is judged: an interface, now and in the last accepted state.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
+    /// Master surfaces of the scene.
     pub surfaces: &'a [Surface],
+    /// Slave nodes of the scene.
     pub contacts: &'a [Contact],
     /// Friction in force, by slave.
     pub friction: &'a [Friction],
@@ -36,20 +38,25 @@ pub struct Seen<'a> {
     pub now: &'a [[f64; 2]],
     /// Interaction force on each slave node now (Cartesian).
     pub forces: &'a [[f64; 2]],
-    /// Slip u_tS* − u_tS that each slave node brought into the last accepted state, where that is the scene's start; else 0.
+    /// Slip u_tS* − u_tS that each slave node brought into the scene, if the last accepted state is the scene's start; else
+    /// 0.
     pub brought: &'a [f64],
     /// Tangential force F_t on each slave node in the last accepted state.
     pub earlier: &'a [f64],
+    /// Units of amounts, and tolerances.
     pub scales: Scales,
 }
 
 /// What amounts are relative to, and how large they may be.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
+    /// Unit of lengths: the size of the scene.
     pub length: f64,
+    /// Unit of forces: the size of the forces at work.
     pub force: f64,
-    /// Largest amounts that are nothing: of lengths over `length`, and of forces over `force`.
+    /// Tolerance of lengths, relative to `length`.
     pub lengths: f64,
+    /// Tolerance of forces, relative to `force`.
     pub forces: f64,
 }
 
@@ -72,16 +79,15 @@ impl Scales {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
-    /// No slave node is inside a master (length).
+    /// g >= 0: no slave node is inside a master (length).
     Penetration,
-    /// A force acts only where nodes touch (length).
+    /// A force acts only where nodes touch: F = 0 or g = 0 (length).
     Gap,
     /// F_n >= 0 (force).
     Tension,
     /// |F_t| <= tan φ F_n + c (force).
     Cone,
-    /// A net slip is opposed by friction at its limit; without that there is none (force that friction is short of its limit,
-    /// where there is a slip).
+    /// A net slip is opposed by friction at its limit. The amount is the force that friction lacks to that limit.
     Slip,
     /// Friction opposes the slip of a node that was open before, wherever it touched (force).
     Touch,
@@ -89,13 +95,13 @@ pub enum Law {
     Balance,
     /// Forces and moments on the bodies as a whole, with the reactions, add up to nothing (force; a moment over the length).
     Moments,
-    /// Friction takes work and gives none, by the mean of its forces in both states (force times length). No law of a single
-    /// increment: a node that turns round within one may break it.
+    /// Friction dissipates: mean tangential force of both states times slip <= 0 (force times length). This is reported and
+    /// not required, since a node that reverses within an increment may break it.
     Work,
 }
 
 impl Law {
-    /// Those that every accepted state obeys.
+    /// The laws that every accepted state obeys.
     pub const ALL: [Law; 8] = [
         Law::Penetration,
         Law::Gap,
@@ -126,12 +132,16 @@ impl Law {
 /// How far a state is from one law, at its worst place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
+    /// The law.
     pub law: Law,
-    /// Where (slave number); none of the whole scene, or of a node that is no slave.
+    /// Slave number. `None` if the finding is about the scene as a whole, or about a node that is not a slave.
     pub slave: Option<usize>,
-    /// How much, relative to the scene's length or force, and how much is allowed.
+    /// How far the state is from the law, relative to [`Scales::length`] or [`Scales::force`]; infinite where a force has
+    /// nothing to act on.
     pub amount: f64,
+    /// The tolerance of `amount`.
     pub allowed: f64,
+    /// Gap, forces and slip of the node; zeros if there is no slave.
     pub numbers: Numbers,
 }
 
@@ -140,21 +150,22 @@ pub struct Finding {
 pub struct Numbers {
     /// Distance from the surface (length), negative inside.
     pub gap: f64,
-    /// Force along the normal and along the tangent of the surface.
+    /// Force on the node along the normal; compression positive.
     pub f_n: f64,
+    /// Force on the node along the tangent t.
     pub f_t: f64,
-    /// tan φ F_n + c.
+    /// Friction bound, tan φ F_n + c (eqn 20).
     pub limit: f64,
-    /// How far the node has gone along t from where it touched in the last accepted state, or was over (length).
+    /// Way of the node's foot along t since the last accepted state (length).
     pub slip: f64,
 }
 
 /// A state judged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The worst place for every law, in the order of [`Law::ALL`]; none where the law applied nowhere.
+    /// The worst place for every law, in the order of [`Law::ALL`]. `None` if the law applied nowhere.
     pub worst: [Option<Finding>; 8],
-    /// Where friction gave the most work, if it did.
+    /// The node at which friction did the most positive work. `None` if there is no such node.
     pub work: Option<Finding>,
 }
 
@@ -167,7 +178,7 @@ impl Verdict {
         }
     }
 
-    /// Takes a finding in, where it is worse than what there is.
+    /// Keeps `finding` if it is worse than what is known of its law.
     pub fn add(&mut self, finding: Finding) {
         let worst = match finding.law {
             Law::Work => &mut self.work,
@@ -178,7 +189,7 @@ impl Verdict {
         }
     }
 
-    /// The largest violation, within what is allowed or not.
+    /// The finding with the largest amount relative to its tolerance. `None` if no law applied anywhere.
     pub fn largest(&self) -> Option<Finding> {
         let all = self.worst.iter().flatten().copied();
         all.reduce(|worst, next| {
@@ -190,7 +201,7 @@ impl Verdict {
         })
     }
 
-    /// The laws that are broken: amounts that are not within what is allowed.
+    /// The findings whose amount exceeds its tolerance.
     pub fn broken(&self) -> impl Iterator<Item = &Finding> {
         self.worst
             .iter()
@@ -200,12 +211,12 @@ impl Verdict {
 }
 
 impl Finding {
-    /// Whether the amount is more than is allowed.
+    /// Whether the amount exceeds its tolerance, or is not a number.
     pub fn is_broken(&self) -> bool {
         self.times().is_nan() || self.times() > 1.0
     }
 
-    /// How many times what is allowed the amount is.
+    /// Amount over tolerance; more than 1 is broken.
     pub fn times(&self) -> f64 {
         self.amount / self.allowed
     }
@@ -320,8 +331,8 @@ impl Judge {
         }
     }
 
-    /// Judges contact and friction. `contact` gets the interaction force at every node, x and y, as the feet found here
-    /// hand it on to the master.
+    /// Judges contact and friction. `contact` (one entry a node of the scene) receives the interaction force on every node,
+    /// x and y; the feet found here distribute a slave's force over the nodes of its master element.
     pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {
         let mut verdict = Verdict::new();
         contact.fill([0.0; 2]);
@@ -340,7 +351,7 @@ impl Judge {
         verdict
     }
 
-    /// Where a slave node at `at` touches one of its surfaces, to within `near` (length); none where it does not.
+    /// Where a slave node at `at` touches one of its surfaces, to within `near` (length). `None` if it does not.
     pub fn touched(
         surfaces: &[Surface],
         slave: &Contact,
@@ -489,7 +500,7 @@ impl Judge {
     }
 }
 
-/// A side at a spot; none where its curve stands still.
+/// A side at a spot. `None` where dx/dξ = 0.
 fn touching(
     seen: &Seen,
     slave: usize,
@@ -625,7 +636,7 @@ fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> 
     }
 }
 
-/// The spot on the other side of a border of elements, at xi = ±1; none at an end of the chain.
+/// The same point as an end (xi = ±1) of the neighbouring element. `None` at an end of the chain.
 fn beyond_border(seen: &Seen, border: SurfacePoint) -> Option<SurfacePoint> {
     let elements = &seen.surfaces[border.surface].elements;
     let own = &elements[border.element];

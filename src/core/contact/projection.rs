@@ -13,7 +13,7 @@ use crate::model::Surface;
 const END_TOLERANCE: f64 = 1e-9;
 /// By how much another element must be closer before a node leaves its own, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
-/// Lagrange curves leave the bounding box of their nodes by less than this, in sizes of the box.
+/// Lagrange curves leave the bounding box of their nodes by less than this, relative to the size of the box.
 const BULGE: f64 = 0.5;
 
 /// A point of a chain of interface elements.
@@ -23,7 +23,7 @@ pub struct SurfacePoint {
     pub surface: usize,
     /// Number of the element in the surface.
     pub element: usize,
-    /// Coordinate in the element, −1 to 1; without bounds on an endless line.
+    /// Coordinate ξ in the element, −1 to 1; without bounds on an endless line.
     pub xi: f64,
 }
 
@@ -32,15 +32,15 @@ pub struct SurfacePoint {
 pub struct Projection {
     /// Position of S*.
     pub foot: [f64; 2],
-    /// Outward normal.
+    /// Outward normal n (unit).
     pub normal: [f64; 2],
-    /// (x_S − x_S*) · n.
+    /// Gap g = (x_S − x_S*) · n (length); negative is penetration.
     pub gap: f64,
     /// Shape functions N_i of the master element at S*; entries beyond its nodes are zero.
     pub shape: [f64; MAX_NODES],
     /// dN_i/dξ there.
     pub shape_slope: [f64; MAX_NODES],
-    /// Derivatives of the element's curve; none where S* lies on an end of the element.
+    /// Derivatives of the element's curve. `None` if S* lies on an end of the element.
     pub curve: Option<Curve>,
 }
 
@@ -60,8 +60,8 @@ pub fn tangent(normal: [f64; 2]) -> [f64; 2] {
 
 /// Finds S* for a slave node at `slave` among the surfaces `candidates`.
 ///
-/// `positions` are the current positions of the scene's nodes; `previous` is the spot that the node had, which it
-/// keeps where another is not truly closer. None past the ends of all chains.
+/// `positions` are the current positions of the scene's nodes. `previous` is the spot that the node had; it keeps the
+/// element unless another one is closer by more than round-off. `None` past the ends of all surfaces.
 pub fn project(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -95,8 +95,8 @@ struct Best {
     distance: f64,
 }
 
-/// Takes the closest point of the element of `spot` if it is truly closer than the best so far; `warm` where its ξ is a
-/// good guess.
+/// Takes the closest point of the element of `spot` if it is closer than the best so far by more than round-off; `warm`
+/// says that the ξ of `spot` is a good guess.
 fn consider(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -131,7 +131,7 @@ fn consider(
     }
 }
 
-/// The border of two elements of a surface that follow each other, as an end of the first of them; none where they do not.
+/// The border of the elements `from` and `to` of a surface, as an end of `from`. `None` if they are not neighbours.
 pub fn border(
     surface: &Surface,
     surface_number: usize,
@@ -149,8 +149,8 @@ pub fn border(
     })
 }
 
-/// Half the angle between the normals of the two elements that meet at a border, in radians, where they form a concave
-/// corner; none elsewhere.
+/// Half the angle (radians) between the normals of the two elements that meet at a border, if they form a concave corner;
+/// else `None`.
 pub fn concave(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> Option<f64> {
     let (other, xi) = neighbour(surface, border)?;
     let slope = |element: usize, xi: f64| {
@@ -209,7 +209,7 @@ fn normal_at(
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
 
-/// The element that meets this spot's own there, and where on it; none inside an element or at an end.
+/// The element that meets the spot's own there, and ξ on it. `None` inside an element, and at an end of the chain.
 fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
     let count = surface.elements.len();
     let own = &surface.elements[spot.element];
@@ -282,8 +282,8 @@ fn closest(
     (squared.sqrt(), xi)
 }
 
-/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1, falling back on Gauss-Newton where the curve bends too much
-/// towards the node.
+/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton where the second derivative of the squared
+/// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'.
 fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
@@ -329,7 +329,7 @@ fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
     [slave[0] - x[0], slave[1] - x[1]]
 }
 
-/// Not hypot, which costs ten times as much: lengths of a scene are far from the ends of the range of numbers.
+/// `hypot` costs ten times as much and is not needed: lengths of a scene neither overflow nor underflow when squared.
 fn length(v: [f64; 2]) -> f64 {
     (v[0] * v[0] + v[1] * v[1]).sqrt()
 }

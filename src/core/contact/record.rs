@@ -19,27 +19,28 @@ pub struct ContactRecord {
     pub f_n: f64,
     /// Tangential force along t (n turned 90 degrees anticlockwise).
     pub f_t: f64,
-    /// Largest tangential force that friction can give, with the sign that it would have (eqn 20), from this solve.
+    /// T_max of this solve (eqn 20): the largest tangential force that friction can give, with its sign.
     pub t_max: f64,
     /// T_max that this solve was made with (the lagged one); equal to `t_max` where it has settled.
     pub t_max_used: f64,
     /// Slip u_tS* − u_tS, as the settings count it.
     pub slip: f64,
-    /// How far it is from where it stuck, along the surface and with the sign of slip; 0 while it is free.
+    /// Length of the surface from S* to where the node stuck, with the sign of slip; 0 while it is free.
     pub drift: f64,
-    /// Where S* lies; none past the ends of all surfaces.
+    /// Where S* lies. `None` past the ends of all surfaces.
     pub spot: Option<SurfacePoint>,
     /// Outward normal n at S*.
     pub normal: [f64; 2],
     /// Position of S* at the start of this major iteration.
     pub foot: [f64; 2],
-    /// A force component was left to the support, since nothing else in its equation could move (normal, tangential).
+    /// Whether a force component (normal, tangential) is left to the supports, since no unknown takes part in its equation.
     pub carried: [bool; 2],
 }
 
-/// How the user stands behind a node's mode.
+/// Whether the user forces a node's mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Forced {
+    /// Not forced: the strategy chooses the mode.
     #[default]
     No,
     /// Forced for one minor iteration.

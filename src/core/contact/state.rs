@@ -13,8 +13,9 @@ pub struct ContactState {
     pub mode: Mode,
     /// Mode forced by the user, if any.
     pub forced: Forced,
-    /// Total forces F_n^(k−1), F_t^(k−1) at the start of the present major iteration.
+    /// Total normal force F_n^(k−1) on the slave node at the start of the present major iteration; compression positive.
     pub f_n: f64,
+    /// Total tangential force F_t^(k−1) there, along t.
     pub f_t: f64,
     /// T_max for the next minor iteration, signed.
     pub t_max: f64,
@@ -22,25 +23,26 @@ pub struct ContactState {
     pub sign: f64,
     /// Slip counted up to the start of the present major iteration.
     pub slip: f64,
-    /// Where on the master it stuck, or last was when an increment was accepted; none from a major iteration on in which it
-    /// opened, unless it is kept ([`crate::contact::stick_point`]).
+    /// Where on the master it stuck, or was when an increment was accepted last. `None` after a major iteration in which the
+    /// node opened, unless `kept` ([`crate::contact::stick_point`]).
     pub anchor: Option<SurfacePoint>,
     /// Whether the anchor is kept while the node is free, so that its net slip counts.
     #[serde(default)]
     pub kept: bool,
-    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t; in a
-    /// corner, how far along t the node still has to go to it.
+    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t. In a
+    /// corner: distance of the node from the corner, along t.
     pub drift: f64,
     /// Ratio ρ of tangential to normal travel where the node touched in the present major iteration; else 0.
     pub ratio: f64,
-    /// Tangential over normal travel in the last minor iteration: the ρ that the node would take, should it touch.
+    /// Ratio of tangential to normal travel in the last minor iteration: the ρ that the node takes if it touches.
     pub travel: f64,
-    /// Where S* lies; none past the ends of all surfaces.
+    /// Where S* lies. `None` past the ends of all surfaces.
     pub spot: Option<SurfacePoint>,
-    /// Half the angle (radians) of the concave corner in which it is held; S* is that corner then.
+    /// Half the angle (radians) between the normals of the concave corner that holds the node; S* is that corner then.
+    /// `None` if no corner holds it.
     #[serde(default)]
     pub corner: Option<f64>,
-    /// The master element that it left last in the present increment.
+    /// The master element that it left last in the present increment, if any.
     #[serde(default)]
     pub left: Option<usize>,
     /// Outward normal at the start of the present major iteration.
@@ -48,6 +50,7 @@ pub struct ContactState {
 }
 
 impl ContactState {
+    /// A node before the first minor iteration: its mode, and what it brings into the scene.
     pub fn new(mode: Mode, brought: &InitialState) -> Self {
         ContactState {
             mode,
@@ -73,8 +76,8 @@ impl ContactState {
         }
     }
 
-    /// What it has slipped up to the start of the present major iteration, and what sticking takes back: counted, or
-    /// measured from its anchor.
+    /// Slip up to the start of the present major iteration, which sticking takes back (length): counted, or measured from the
+    /// anchor, as the settings say.
     pub fn slipped(&self, settings: &Settings) -> f64 {
         if self.corner.is_some() {
             return self.drift;
@@ -86,7 +89,8 @@ impl ContactState {
         }
     }
 
-    /// Friction where it stands: that in force, or what the corner makes of it.
+    /// Friction where the node stands: `in_force`, or in a corner the wider friction of both sides
+    /// ([`corner::widened`]).
     pub fn friction(&self, in_force: &Friction) -> Friction {
         match self.corner {
             Some(half) => corner::widened(in_force, half),

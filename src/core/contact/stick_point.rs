@@ -18,8 +18,8 @@ use crate::contact::projection::{Projection, SurfacePoint, project, tangent};
 use crate::fem::lagrange::shape;
 use crate::model::Surface;
 
-/// Gauss-Legendre points and weights for the length of an element: here rather than made anew, since this is asked for
-/// in every major iteration.
+/// Gauss-Legendre points and weights for the length of an element. They are constants since they are needed in every major
+/// iteration.
 const POINTS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
@@ -28,10 +28,10 @@ const POINTS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
-/// Where a node that was free at the start of a major iteration touched in it: the point of the surface where its path
-/// pierced. None past the ends of its surface.
+/// Where a node that was free at the start of a major iteration touched in it: the point S* − g ρ t (eqn 14) of the surface,
+/// where its straight path pierced it. `None` past the ends of its surface.
 ///
-/// `positions` are those at the start of that major iteration, about which `footing` was taken.
+/// `positions` are the positions at the start of that major iteration, at which `footing` was taken; `ratio` is ρ.
 pub fn pierced(
     surfaces: &[Surface],
     spot: SurfacePoint,
@@ -77,7 +77,7 @@ pub fn distance(
     }
 }
 
-/// The same where `from` does not lie behind `to` by whole elements.
+/// The same for `from.element <= to.element`.
 fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
     if from.element == to.element {
         return length(&surface.elements[from.element], from.xi, to.xi, positions);

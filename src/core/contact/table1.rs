@@ -32,9 +32,13 @@ pub enum Motion {
 /// One equation: motion + d_n ΔF_n + d_t ΔF_t = value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equation {
+    /// Which component of the relative motion takes part.
     pub motion: Motion,
+    /// Factor of ΔF_n.
     pub d_n: f64,
+    /// Factor of ΔF_t.
     pub d_t: f64,
+    /// Right-hand side: a length if a motion takes part, else a force.
     pub value: f64,
 }
 
@@ -47,8 +51,9 @@ pub struct Known {
     pub ratio: f64,
     /// Slip already made that sticking must take back (length): the drift from the anchor, or what was counted.
     pub slip: f64,
-    /// Total forces F_n^(k−1), F_t^(k−1).
+    /// Total normal force F_n^(k−1).
     pub f_n: f64,
+    /// Total tangential force F_t^(k−1).
     pub f_t: f64,
     /// The tangential force of sliding.
     pub limit: Limit,
@@ -61,8 +66,11 @@ pub enum Limit {
     Lagged(f64),
     /// T_max follows F_n within the solve: sign · (coefficient · F_n + cohesion).
     Consistent {
+        /// Direction of T_max: ±1, or 0 if unknown.
         sign: f64,
+        /// tan φ.
         coefficient: f64,
+        /// c (force).
         cohesion: f64,
     },
 }
@@ -90,7 +98,7 @@ pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
     }
 }
 
-/// The equation that makes a force component vanish.
+/// The equation d_n ΔF_n + d_t ΔF_t = −`force`: it makes a total force component zero.
 pub fn gone(d_n: f64, d_t: f64, force: f64) -> Equation {
     Equation {
         motion: Motion::None,
@@ -120,13 +128,14 @@ fn sliding(known: &Known) -> Equation {
     }
 }
 
-/// T_max (eqn 20) for a normal force and a direction (the sign of the tangential force, or 0).
+/// T_max = sign (tan φ |F_n| + c), eqn (20); `sign` is the direction of the tangential force (−1, 1, or 0 if unknown).
 pub fn t_max(friction: &Friction, f_n: f64, sign: f64) -> f64 {
     (f_n.abs() * friction.coefficient() + friction.cohesion) * sign
 }
 
-/// The direction of T_max: that of the tangential force; of the slip where there is no such force, so that a node
-/// that enters sliding unloaded does not stay without friction for ever; else the one it had.
+/// The direction of T_max (−1, 0 or 1): the sign of `f_t` if |F_t| > `tiny_force`; else the sign of `slip` if
+/// |slip| > `tiny_slip`; else `had`. The slip counts since a node that enters sliding without a force would otherwise stay
+/// without friction for ever.
 pub fn direction(f_t: f64, tiny_force: f64, slip: f64, tiny_slip: f64, had: f64) -> f64 {
     if f_t.abs() > tiny_force {
         f_t.signum()

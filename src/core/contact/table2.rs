@@ -11,7 +11,7 @@ pub enum Rule {
     FixedStays,
     /// F_n > 0 and |F_t| > |T_max|.
     FixedSlides,
-    /// Its supports drag it over a surface that does not move either: no force can stick it there.
+    /// Prescribed motions drag the node over a surface that does not move either: no force can hold it there.
     FixedDragged,
     /// F_n <= 0.
     FixedOpens,
@@ -69,6 +69,7 @@ pub enum Tested {
 /// One inequality of Table 2 with its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Test {
+    /// What is compared.
     pub tested: Tested,
     /// Left-hand side.
     pub value: f64,
@@ -83,8 +84,11 @@ pub struct Test {
 /// Table 2's verdict on one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
+    /// Mode of the solve that is checked.
     pub before: Mode,
+    /// Mode of the next solve.
     pub next: Mode,
+    /// The cell that fired.
     pub rule: Rule,
     /// The inequalities that were tested, in Table 2's order (F_n first); one or two.
     pub tests: [Option<Test>; 2],
@@ -95,11 +99,13 @@ pub struct Decision {
 /// What Table 2 looks at, for one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Numbers {
+    /// Mode of the solve that is checked.
     pub mode: Mode,
     /// Gap (length), negative where the node penetrates.
     pub gap: f64,
-    /// Total normal and tangential force.
+    /// Total normal force; compression positive.
     pub f_n: f64,
+    /// Total tangential force along t.
     pub f_t: f64,
     /// T_max of this solve, signed.
     pub t_max: f64,
@@ -120,7 +126,7 @@ pub enum Entry {
     Sliding,
 }
 
-/// What counts as a tie.
+/// What counts as a tie in Table 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ties {
     /// Forces closer than this tie.
@@ -131,7 +137,7 @@ pub struct Ties {
     pub keep: bool,
 }
 
-/// Table 2.
+/// Table 2: the mode that follows from a node's numbers.
 pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
     let opens = ties.test(
         Tested::NormalForce,
@@ -188,6 +194,8 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
 }
 
 impl Ties {
+    /// An inequality with its numbers; `margin` is its distance from switching, and `tolerance` what counts as a tie
+    /// (force or length, as `tested`).
     pub fn test(
         &self,
         tested: Tested,
@@ -231,7 +239,8 @@ impl Decision {
         self.decisive().map_or(f64::INFINITY, |t| t.margin)
     }
 
-    /// A fixed node that slips all the same, by so much (length): nothing that is unknown can move to stop it, so it slides.
+    /// The decision on a fixed node that slips although it is fixed, by `slip` (length): its motion is prescribed, no unknown
+    /// can stop it, so it slides.
     pub fn dragged(self, slip: f64) -> Self {
         let test = Test {
             tested: Tested::Slip,

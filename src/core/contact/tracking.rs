@@ -1,9 +1,9 @@
 //! Where the slave nodes stand at the start of a major iteration: S*, anchor, drift, and corners.
 //!
-//! Where elements meet in a concave corner, each of the two may send a node that comes to rest there to the other, for ever.
-//! A sliding node that comes back over such a border to the element that it had left is therefore held in the corner: it is
-//! fixed there, about the mean of the two normals, with the friction that both sides together give
-//! ([`crate::contact::corner`]). At its limit the node slides out along one side, as out of any fixed mode.
+//! Where two elements meet in a concave corner, a node that comes to rest there may go back and forth between them for
+//! ever. A sliding node that comes back to the element that it had left is therefore held in the corner: it is fixed there,
+//! about the mean of the two normals, with the friction that both sides give together ([`crate::contact::corner`]). At the
+//! friction bound it slides out along one side, as out of any fixed mode.
 
 use crate::contact::projection::{SurfacePoint, border, concave, footing, project, tangent};
 use crate::contact::state::ContactState;
@@ -14,14 +14,16 @@ use crate::model::{Contact, Surface};
 /// The chains that nodes stand on, and where all nodes of the scene are now.
 #[derive(Debug, Clone, Copy)]
 pub struct Ground<'a> {
+    /// Surfaces of the scene.
     pub surfaces: &'a [Surface],
+    /// Current positions of all nodes (length).
     pub positions: &'a [[f64; 2]],
 }
 
 impl Ground<'_> {
-    /// Finds where a node stands. Forces keep their components in the frame that turns with the surface; where a node comes
-    /// into a corner or out of it the frame leaps, and they keep their direction. With `anew` a sliding node takes its anchor
-    /// along.
+    /// Finds where a node stands. Forces keep their components in the frame (n, t), which turns with the surface. When a node
+    /// enters or leaves a corner, the frame jumps, and the force keeps its direction instead. With `anew` a sliding node is
+    /// anchored anew where it stands.
     pub fn stand(&self, node: &mut ContactState, slave: &Contact, anew: bool) {
         let at = self.positions[slave.node];
         let (previous, force, was_held) = (node.spot, node.force(), node.corner.is_some());
@@ -87,8 +89,9 @@ impl Ground<'_> {
         }
     }
 
-    /// Gives a touching node that has no anchor one where it stands, takes it from a free one that does not keep it, and measures the drift. A
-    /// node that has come to another surface is anchored anew there. In a corner the way to it is the drift.
+    /// Anchors a touching node that has no anchor where it stands, removes the anchor of a free node that does not keep it,
+    /// and measures the drift. A node that has come to another surface is anchored anew there. In a corner, the drift is the
+    /// distance of the node from the corner.
     pub fn find_anchor(&self, node: &mut ContactState, at: [f64; 2]) {
         let free = node.mode == Mode::Free;
         let Some(spot) = node.spot.filter(|_| !free || node.kept) else {
@@ -115,8 +118,8 @@ impl Ground<'_> {
         };
     }
 
-    /// Anchors a node that brings slip into the scene as far back as it has slipped. One that has just opened is not
-    /// anchored, and takes its slip back all the same, should it stick in this major iteration.
+    /// Anchors a node that brings slip into the scene at the distance of that slip. A node that starts free is not anchored;
+    /// it still takes its slip back if it sticks in the first major iteration.
     pub fn place_anchor(&self, node: &mut ContactState, slave: &Contact) {
         let at = self.positions[slave.node];
         if node.mode == Mode::Free {

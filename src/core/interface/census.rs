@@ -1,37 +1,39 @@
 //! The census: every assumption of what the nodes of a frozen interface problem do, tried.
 //!
-//! Coulomb's law may leave a frozen problem with no consistent state, with one, or with several. The minor iterations
-//! cannot tell: they walk from assumption to assumption by Table 2. With k nodes there are up to 4^k assumptions (free,
-//! fixed, sliding either way), few enough to try them all.
+//! With Coulomb's law, a frozen problem may have no consistent state, one, or several. The minor iterations cannot tell
+//! which, since they go from assumption to assumption by Table 2. With k nodes there are up to 4^k assumptions (free, fixed,
+//! sliding either way); for few nodes all of them can be tried.
 
 use crate::interface::kinematics::NodeIncrement;
 use crate::interface::problem::{
     self, Answer, Assumed, InterfaceProblem, Margin, NodeAnswer, SINGULAR,
 };
 
-/// Most nodes that a census is held over: 4^8 is 65,536 assumptions.
+/// Largest number of nodes of a census: 4^8 = 65,536 assumptions.
 pub const MOST: usize = 8;
-/// Conditions broken by less than this, relatively, count as kept; forces and gaps closer than this are the same.
+/// Conditions that are broken by less than this (relative) count as obeyed; forces and gaps that differ by less are equal.
 const TOLERANCE: f64 = 1e-9;
 
 /// What a census found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Census {
-    /// Assumptions that were tried, and those of them that have no unique solution.
+    /// Number of assumptions that were tried.
     pub tried: usize,
+    /// Number of those that have no unique solution.
     pub singular: usize,
     /// The consistent states, each different in forces or gaps.
     pub answers: Vec<Consistent>,
-    /// Where there is none: the assumption that fails by least, the node (its place in the problem), and the condition
-    /// that it breaks.
+    /// If there is no consistent state: the assumption that comes closest, the node (its place in the problem) and the
+    /// condition that it breaks. `None` if there is one.
     pub nearest: Option<(Answer, usize, Margin)>,
 }
 
 /// A consistent state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Consistent {
+    /// The assumption with its forces and gaps.
     pub answer: Answer,
-    /// Other assumptions that lead to the same forces and gaps: ties.
+    /// Other assumptions that lead to the same forces and gaps (ties), a letter a node.
     pub ties: Vec<String>,
 }
 
@@ -41,7 +43,7 @@ pub struct Consistent {
     "a census is held over at most {MOST} nodes, and these are {nodes}; find the core of the cycle first"
 )]
 pub struct TooMany {
-    /// How many there are.
+    /// Number of nodes of the problem.
     pub nodes: usize,
 }
 
@@ -63,9 +65,9 @@ pub fn census(problem: &InterfaceProblem) -> Result<Census, TooMany> {
     Ok(found)
 }
 
-/// The way through all assumptions: node by node, the last one first, so that of two assumptions in a row only the
-/// equations of few nodes differ. Each node's equations are reduced by those before them as they are assumed, and the
-/// work is shared by all assumptions of the nodes that follow.
+/// The walk through all assumptions, node by node, the last node first, so that only the equations of few nodes differ
+/// between two assumptions in a row. A node's equations are reduced by those before them when they are assumed, and all
+/// assumptions of the nodes that follow share that work.
 struct Walk<'a> {
     problem: &'a InterfaceProblem,
     /// The two equations of each choice of each node, in z: coefficients, right-hand side, and that of the probe by which
@@ -125,7 +127,7 @@ impl<'a> Walk<'a> {
         let Some(place) = self.problem.nodes.len().checked_sub(depth + 1) else {
             self.found.tried += 1;
             match self.solve() {
-                true => self.judge(),
+                true => self.take_solution(),
                 false => self.found.singular += 1,
             }
             return;
@@ -192,8 +194,8 @@ impl<'a> Walk<'a> {
         self.z[1].iter().all(sound) && self.z[0].iter().all(|z| z.is_finite())
     }
 
-    /// Takes the solution, as soon as it is not known to be worse than what was found already.
-    fn judge(&mut self) {
+    /// Takes the solution, unless it is worse than what was found already.
+    fn take_solution(&mut self) {
         let problem = self.problem;
         let worst = match (self.found.answers.first(), &self.found.nearest) {
             (Some(_), _) => -TOLERANCE,
@@ -203,7 +205,7 @@ impl<'a> Walk<'a> {
         let mut nodes = Vec::with_capacity(problem.nodes.len());
         for (s, node) in problem.nodes.iter().enumerate() {
             let [force, motion] = problem.relation.answer(&self.z[0], s, node.prescribed);
-            let answer = problem::judge(
+            let answer = problem::node_answer(
                 problem,
                 node,
                 self.assumed[s],

@@ -5,20 +5,21 @@ use serde::{Deserialize, Serialize};
 /// A slave node's surroundings, frozen during a major iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NodeKinematics {
-    /// Gap (length); negative: penetration.
+    /// Gap g (length); negative is penetration.
     pub gap: f64,
-    /// Outward normal at S*.
+    /// Outward normal n at S* (unit).
     pub normal: [f64; 2],
     /// Position of S*.
     pub foot: [f64; 2],
-    /// Whether any unknown takes part in the normal and in the tangential motion; where not, the support carries the
-    /// force.
+    /// Whether any unknown takes part in the normal and in the tangential motion. If not, the supports carry that force.
     pub moves: [bool; 2],
 }
 
-/// What a solve gave at a slave node: increments of force, and motion of S* relative to S, normal and tangential.
+/// What a solve gave at a slave node; normal and tangential components.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeIncrement {
+    /// Increments ΔF_n, ΔF_t of the force on the slave node.
     pub force: [f64; 2],
+    /// Motion of S* relative to S: Δu_nS* − Δu_nS, Δu_tS* − Δu_tS (length).
     pub motion: [f64; 2],
 }

@@ -8,11 +8,11 @@
 //! 0 <= φ− = tan φ F_n + c + F_t     λ− >= 0,       slip = λ+ − λ−
 //! ```
 //!
-//! and for a smooth one the first line alone. A covering variable relaxes all of them at once, and every pivot exchanges
-//! one variable for the complement of the one that left before, until the covering variable is gone: then the basis says
-//! what every node does. Where nothing bounds the entering variable, the path ends on a ray. Ties are broken
-//! lexicographically, so that no basis comes twice. Cohesion counts for open nodes too here, which Coulomb's law does
-//! not say: what is found is checked afterwards.
+//! and for a smooth one only the first line. A covering variable relaxes all of them at once. In every pivot the complement
+//! of the variable that left last enters the basis, until the covering variable leaves it: then the basis says what every
+//! node does. If nothing bounds the entering variable, the path ends on a ray. Ties are broken lexicographically, so that no
+//! basis comes twice. Here cohesion acts on open nodes too, which Coulomb's law does not say; therefore what is found is
+//! checked afterwards.
 
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
@@ -22,8 +22,8 @@ use crate::linalg::DenseFactors;
 const TINY: f64 = 1e-11;
 /// Ratios that differ by less than this are a tie.
 const TIE: f64 = 1e-12;
-/// Most pivots of a path, for each row. Usual paths take about one; where forces are round-off, no basis is better than
-/// another and the path would go on for ever.
+/// Largest number of pivots of a path, per row. A usual path takes about one per row. If all forces are round-off, no basis
+/// is better than another and the path would not end.
 const PIVOTS: usize = 20;
 /// Estimated norm of a basis' scaled inverse from which on it is singular.
 const SINGULAR: f64 = 1e11;
@@ -58,7 +58,7 @@ pub struct Lemke {
     basis: Vec<usize>,
     /// The basis of the start, which breaks ties.
     first: Vec<usize>,
-    /// The variable that enters next; none before the first pivot and after the last.
+    /// The variable that enters next. `None` before the first pivot and after the last.
     entering: Option<usize>,
     /// Node and kind of the variable that left last.
     left: Option<(usize, Kind)>,
@@ -75,15 +75,16 @@ pub struct Lemke {
 pub enum End {
     /// The basis solves the problem.
     Solved,
+    /// Nothing bounds the variable that enters: no state is found from this start.
     Ray,
     /// It did not end within the pivots that it has.
     Astray,
 }
 
-/// Number of starts there are to try.
+/// Number of starts: all nodes free, as they come, all fixed, all sliding.
 pub const STARTS: usize = 4;
 
-/// What every node does in the basis from which a path starts: all free, as they come, all fixed, all sliding.
+/// What every node does in the basis of a start: 0 all free, 1 as they come, 2 all fixed, 3 all sliding.
 fn start(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Vec<Assumed> {
     let of = |(place, &brought): (usize, &Assumed)| match (number, problem.nodes[place].choices()) {
         (0, _) | (_, [Assumed::Free]) => Assumed::Free,
@@ -95,8 +96,8 @@ fn start(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Vec<
 }
 
 impl Lemke {
-    /// The tableau of a problem at one of the [`STARTS`], where `brought` is what the nodes come with; none where its
-    /// basis is singular.
+    /// The tableau of a problem at start `number`, less than [`STARTS`]; `brought` is what the nodes come with, one entry a
+    /// node. `None` if the basis of that start is singular.
     pub fn new(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Option<Lemke> {
         let start = start(problem, brought, number);
         let (relation, count) = (&problem.relation, problem.relation.count());
@@ -252,12 +253,12 @@ impl Lemke {
         self.table[(self.variables.len() + 1) * self.rows + row]
     }
 
-    /// How the path ended; none while it goes on.
+    /// How the path ended. `None` while it goes on.
     pub fn ended(&self) -> Option<End> {
         self.ended
     }
 
-    /// One pivot; none once the path has ended.
+    /// One pivot. `None` if the path has ended before.
     pub fn pivot(&mut self) -> Option<()> {
         if self.ended.is_some() {
             return None;
@@ -372,7 +373,7 @@ impl Lemke {
         }
     }
 
-    /// What reached its bound in the last pivot, and at which node; none where that was the covering variable.
+    /// The node of the last pivot, and what reached its bound there. `None` if that was the covering variable.
     pub fn bound(&self) -> Option<(usize, Tested)> {
         let (place, kind) = self.left?;
         let tested = match kind {

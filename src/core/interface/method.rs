@@ -1,8 +1,8 @@
 //! What a strategy decides: how the modes of the next minor iteration are chosen.
 //!
-//! All of them solve for one assumption of every node's mode, as Table 2 does, and differ in how they go on from there: in
-//! the mode with which a node enters contact, in how many nodes may change at once, in the test itself, or in that they
-//! look at all nodes together.
+//! Every strategy solves for one assumption of every node's mode, as Table 2 does. They differ in what follows: in the mode
+//! with which a node enters contact, in how many nodes may change at once, in the test itself, or in looking at all nodes
+//! together ([`Search`]).
 
 use crate::contact::table2::{Decision, Entry, Numbers, Rule, Tested, Ties, decide};
 use crate::interface::problem::{Assumed, InterfaceProblem};
@@ -10,7 +10,7 @@ use crate::model::{BoundUpdate, Friction, Strategy};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 
-/// A strategy. What it does not say is done as Table 2 has it.
+/// A strategy. Each method that it does not implement does what Table 2 does.
 pub trait Method: Sync {
     /// How T_max enters the equations; `wanted` is what the settings say.
     fn bound(&self, wanted: BoundUpdate) -> BoundUpdate {
@@ -41,17 +41,18 @@ pub trait Method: Sync {
         false
     }
 
-    /// Whether a return to earlier modes is no cycle as long as the number of changing nodes still falls.
+    /// Whether modes may repeat while the number of changing nodes still falls, without this being a cycle.
     fn counts_changes(&self) -> bool {
         false
     }
 
-    /// What looks at all nodes together, once the modes that a major iteration begins with do not hold.
+    /// A search over all nodes together, used when the modes at the start of a major iteration do not hold. `None` if the
+    /// strategy decides node by node.
     fn search(&self) -> Option<&dyn Search> {
         None
     }
 
-    /// The strategies that are tried one after the other in its place, the cheapest first; none where it stands for itself.
+    /// The strategies that are tried one after the other in its place, the cheapest first; empty if it stands for itself.
     fn rungs(&self) -> &'static [Strategy] {
         &[]
     }
@@ -60,11 +61,13 @@ pub trait Method: Sync {
 /// What a verdict on one node may look at beside the numbers of Table 2.
 #[derive(Debug, Clone, Copy)]
 pub struct Known<'a> {
+    /// Friction in force at the node.
     pub friction: &'a Friction,
+    /// What counts as a tie.
     pub ties: &'a Ties,
     /// Stiffness of the springs that compare lengths with forces (force by length).
     pub spring: f64,
-    /// Direction that T_max had.
+    /// Direction of T_max in the last minor iteration: −1, 0 (unknown) or 1.
     pub sign: f64,
     /// Slip as counted (length), also of a free node.
     pub slip: f64,
@@ -73,8 +76,9 @@ pub struct Known<'a> {
 /// A verdict on one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
+    /// The mode that the node takes next, with the reason.
     pub decision: Decision,
-    /// Direction of T_max, where the strategy knows it.
+    /// Direction of T_max (−1, 0 or 1). `None` leaves it to [`crate::contact::table1::direction`].
     pub sign: Option<f64>,
 }
 
@@ -83,18 +87,19 @@ pub trait Search {
     /// The next proposal.
     ///
     /// # Errors
-    /// Why there is none.
+    /// [`NoProposal`] if there is none.
     fn propose(&self, asked: Asked<'_>) -> Result<Proposal, NoProposal>;
 }
 
 /// What a search is asked for.
 pub struct Asked<'a> {
-    /// The start that it has come to, and the step from there.
+    /// The start that the search has come to, from 0.
     pub start: usize,
+    /// The step from there, from 0.
     pub step: usize,
     /// How many of its states a minor iteration has not confirmed.
     pub unconfirmed: usize,
-    /// What every node brought into the major iteration.
+    /// What every node brought into the major iteration, one entry a node.
     pub brought: &'a [Assumed],
     /// The interface problem; `None` where the bodies cannot be condensed.
     pub problem: &'a mut dyn FnMut() -> Option<InterfaceProblem>,
@@ -105,8 +110,9 @@ pub struct Asked<'a> {
 /// What a search has the nodes do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposal {
-    /// For every node what it does, with F_n, F_t, gap and slip.
+    /// For every node what it does, with F_n, F_t (forces), gap and slip (lengths).
     pub nodes: Vec<(Assumed, [f64; 4])>,
+    /// The rule that records name as the reason.
     pub rule: Rule,
     /// How far the problem is still relaxed (relative).
     pub cover: f64,
@@ -122,22 +128,30 @@ pub enum Searched {
     /// The modes that the iteration began with are tried first.
     #[default]
     Not,
-    /// The next minor iteration is this step from this start; of a census, the answer of this number.
+    /// The search goes on in the next minor iteration.
     At {
+        /// Number of the start; of a census, of the answer.
         start: usize,
+        /// Steps done from that start.
         #[serde(rename = "pivot")]
         step: usize,
     },
     /// A state was found from this start, and the next minor iteration checks it.
-    Found { start: usize },
+    Found {
+        /// Number of the start.
+        start: usize,
+    },
 }
 
 /// Why a search proposes nothing more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoProposal {
-    /// No assumption is consistent: so many were tried, all that there are.
-    NoAnswer { tried: usize },
-    /// None was found, which does not prove that there is none.
+    /// No assumption is consistent; all of them were tried.
+    NoAnswer {
+        /// Number of assumptions.
+        tried: usize,
+    },
+    /// No consistent state was found, which does not prove that there is none.
     NotFound(NotFound),
 }
 
@@ -148,14 +162,20 @@ pub enum NotFound {
     Ray,
     /// The equations of every start of pivoting are singular.
     NoStart,
-    /// So many nodes can touch that their assumptions are too many to try.
-    TooMany { nodes: usize },
+    /// More nodes can touch than a census can try all assumptions of ([`crate::interface::census::MOST`]).
+    TooMany {
+        /// Number of nodes that can touch.
+        nodes: usize,
+    },
     /// The equations of the nodes that cannot touch are singular.
     Loose,
     /// The bodies cannot be condensed to the interface.
     NotCondensed,
-    /// So many states were found, and the minor iteration that checked each did not confirm it.
-    Unconfirmed { states: usize },
+    /// States were found, but the minor iteration that checked each of them did not confirm it.
+    Unconfirmed {
+        /// Number of states found.
+        states: usize,
+    },
 }
 
 impl From<NotFound> for NoProposal {

@@ -1,7 +1,7 @@
 //! One minor iteration at one slave node: Table 1's equations before the solve, the strategy's verdict after it.
 //!
-//! Pure functions of what the node brings and what the solve gave, so that a minor iteration on a frozen interface
-//! problem alone ([`super::frozen`]) is the same as one of the stepper.
+//! These are pure functions of what the node brings and what the solve gave, so that a minor iteration on an interface
+//! problem alone ([`super::problem::Trials`]) is the same as one of the stepper.
 
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
@@ -11,19 +11,21 @@ use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::method::{self, Method};
 use crate::model::{BoundUpdate, Friction, Mode, Settings, SlipCount, Touch};
 
-/// What the modes are checked by.
+/// What modes are checked with.
 #[derive(Clone, Copy)]
 pub struct Check {
-    /// Those in force: the strategy is never the ladder itself ([`crate::strategy::in_force`]).
+    /// The settings in force; their strategy is never the ladder itself ([`crate::strategy::in_force`]).
     pub settings: Settings,
     /// What that strategy does.
     pub method: &'static dyn Method,
+    /// What counts as a tie.
     pub ties: Ties,
-    /// Stiffness of the springs that compare lengths with forces.
+    /// Stiffness of the springs that compare lengths with forces (force by length).
     pub stiffness: f64,
 }
 
-/// Table 1's rows of a node; a row in which nothing can move is given to the support ([`carried`]).
+/// Table 1's equations of a node, normal and tangential. An equation in which no unknown takes part is replaced by zero
+/// force, and the supports carry that component ([`carried`]).
 pub fn rows(
     node: &ContactState,
     kinematics: Option<&NodeKinematics>,
@@ -49,7 +51,7 @@ pub fn rows(
     supported(node.mode, &known, moves(kinematics))
 }
 
-/// Table 1's equations, those in which nothing can move given to the support.
+/// Table 1's equations, with zero force where the supports carry it.
 pub(super) fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equation; 2] {
     let [mut normal, mut tangential] = equations(mode, known);
     let carried = carried(mode, moves);
@@ -62,13 +64,13 @@ pub(super) fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equatio
     [normal, tangential]
 }
 
-/// Whether any unknown takes part in the normal and in the tangential motion; in neither where there is no surface.
+/// Whether any unknown takes part in the normal and in the tangential motion; both false without a surface.
 pub(super) fn moves(kinematics: Option<&NodeKinematics>) -> [bool; 2] {
     kinematics.map_or([false; 2], |k| k.moves)
 }
 
-/// Which force components a mode asks the node to hold a motion with that no unknown takes part in (normal, tangential):
-/// they are left to the support.
+/// Which force components (normal, tangential) are left to the supports: those with which the mode would hold a motion in
+/// which no unknown takes part.
 pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
     [
         mode != Mode::Free && !moves[0],
@@ -202,7 +204,8 @@ fn record(
     (record, turned)
 }
 
-/// Lets only the first of all nodes change that would: the others wait, as they came into the iteration.
+/// Lets only the first of all changing nodes change its mode. The others keep what they had `before` the iteration, and
+/// their records say that they wait.
 pub fn one_at_a_time(
     nodes: &mut [ContactState],
     before: &[ContactState],
@@ -220,8 +223,8 @@ pub fn one_at_a_time(
     }
 }
 
-/// Which way a node goes over its master, for the direction of T_max: its slip, or its travel while it is free, from its
-/// anchor on where it keeps one.
+/// The motion along t (length) whose sign gives T_max its direction: the slip of a touching node; the travel of a free one,
+/// measured from its anchor if it keeps one.
 fn sense(
     before: &ContactState,
     record: &ContactRecord,
@@ -238,8 +241,8 @@ fn sense(
     }
 }
 
-/// The ratio ρ (eqn 14) is taken when a node touches, and is gone when it opens. One that has kept its anchor goes back
-/// there.
+/// Sets the ratio ρ (eqn 14) when a node touches and clears it when it opens. A node that has kept its anchor has no ρ: it
+/// goes back to its anchor.
 fn leave_or_enter(node: &mut ContactState, before: &ContactState, touch: Touch) {
     match (before.mode, node.mode) {
         (_, Mode::Free) => node.ratio = 0.0,

@@ -15,8 +15,8 @@ pub struct Cycle {
     pub members: Vec<(usize, Vec<Mode>)>,
 }
 
-/// What went into each minor iteration of the present major one: while the geometry is frozen, a minor iteration is
-/// a function of this alone.
+/// The input of each minor iteration of the present major one. While the geometry is frozen, a minor iteration depends on
+/// nothing else, so an input that returns proves a cycle.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MinorHistory {
     /// One entry a slave node, iteration after iteration.
@@ -26,6 +26,7 @@ pub struct MinorHistory {
 /// What one slave node brings into a minor iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Input {
+    /// Mode of the minor iteration.
     pub mode: Mode,
     /// T_max, where the node slides; else 0.
     pub t_max: f64,
@@ -50,7 +51,7 @@ impl Input {
         }
     }
 
-    /// Same mode, and numbers that differ by less than these: T_max absolutely, the ratio relatively.
+    /// Whether the mode is the same, T_max differs by at most `force`, and ρ by at most `ratio` (1 + |ρ|).
     fn repeats(&self, other: &Input, force: f64, ratio: f64) -> bool {
         self.mode == other.mode
             && (self.t_max - other.t_max).abs() <= force
@@ -70,7 +71,7 @@ impl MinorHistory {
         self.entries.is_empty()
     }
 
-    /// Bytes that it takes.
+    /// Memory of the entries (bytes).
     pub fn bytes(&self) -> usize {
         self.entries.capacity() * size_of::<Input>()
     }
@@ -80,18 +81,19 @@ impl MinorHistory {
         self.entries.extend(nodes.iter().map(Input::of));
     }
 
-    /// Number of iterations remembered.
+    /// Number of iterations remembered, each with this number of nodes.
     pub fn len(&self, nodes: usize) -> usize {
         self.entries.len() / nodes.max(1)
     }
 
-    /// What the first of the iterations started from.
+    /// Input of the first of the iterations, one entry a node; empty if nothing is remembered.
     pub fn first(&self, nodes: usize) -> &[Input] {
         &self.entries[..nodes.min(self.entries.len())]
     }
 
-    /// The cycle that is closed where the iteration after `minor`, which `nodes` go into, starts from the same as an
-    /// earlier one; none if there is none. Forces are the same that differ by less than `force`, ratios relatively.
+    /// The cycle that closes if the iteration after `minor`, with input `nodes`, starts from the same input as an earlier
+    /// one; else `None`. Two values of T_max are equal if they differ by at most `force`, two ratios ρ if they differ by at
+    /// most `ratio` (1 + |ρ|).
     pub fn cycle(
         &self,
         nodes: &[ContactState],

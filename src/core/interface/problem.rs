@@ -1,10 +1,10 @@
 //! The frozen interface problem: all that the minor iterations of one major iteration know of the bodies.
 //!
-//! While geometry and stiffness are frozen, forces and relative motions at the slave nodes are linear in each other
-//! (the relation of `condensed`). What each node may do is Coulomb's law for the whole increment: a free node has
-//! a gap and no force; a touching one is pressed, and either sticks where the increment found it, within the friction
-//! limit, or slips against friction at the limit. This module solves for one assumption of what every node does, and
-//! says how far the answer is from obeying; [`crate::interface::census`] tries them all.
+//! While geometry and stiffness are frozen, forces and relative motions at the slave nodes depend linearly on each other
+//! ([`InterfaceResponse`]). Coulomb's law, applied to the whole increment, says what each node may do: a free node has g >= 0
+//! and no force; a touching one has F_n >= 0, and either sticks where it was at the start of the increment, with
+//! |F_t| <= tan φ F_n + c, or slips with |F_t| = tan φ F_n + c against the slip. This module solves for one assumption of
+//! what every node does, and says how far the answer is from obeying; [`crate::interface::census`] tries all of them.
 
 use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
@@ -18,20 +18,23 @@ use crate::linalg::DenseFactors;
 use crate::model::{self, Friction, Mode, Settings};
 use serde::{Deserialize, Serialize};
 
-/// Estimated norm of a scaled inverse from which on an assumption counts as singular.
+/// Estimated norm of the inverse of the scaled matrix above which an assumption counts as singular.
 pub const SINGULAR: f64 = 1e11;
 
 /// The frozen interface problem of a major iteration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceProblem {
+    /// How forces answer motions (eqn 6).
     pub relation: InterfaceResponse,
     /// One entry a slave node, in the relation's order.
     pub nodes: Vec<ProblemNode>,
-    /// Sizes of forces and lengths, to compare margins of either.
+    /// Size of the forces, the unit of relative margins of forces.
     pub force: f64,
+    /// Size of the lengths, the unit of relative margins of lengths.
     pub length: f64,
-    /// Stiffness that compares lengths with forces, finite also where the relation has no springs.
+    /// Stiffness that compares lengths with forces (force by length), finite even if `relation` has no springs.
     pub spring: f64,
+    /// Settings in force.
     pub settings: Settings,
 }
 
@@ -43,8 +46,9 @@ pub struct ProblemNode {
     /// How it stands over its surface; `None` past the ends of all surfaces.
     #[serde(rename = "site")]
     pub kinematics: Option<NodeKinematics>,
-    /// Relative motion, along n and t, that no unknown takes part in.
+    /// Prescribed part of the motion of S* relative to S, along n and t (length).
     pub prescribed: [f64; 2],
+    /// Friction in force at the node.
     pub friction: Friction,
     /// What the node brings into the next minor iteration.
     pub state: ContactState,
@@ -53,15 +57,18 @@ pub struct ProblemNode {
 /// What a node is assumed to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Assumed {
+    /// No force.
     Free,
+    /// Touching, and sticking.
     Fixed,
-    /// Sliding with F_t > 0, and with F_t < 0.
+    /// Sliding with F_t > 0.
     Plus,
+    /// Sliding with F_t < 0.
     Minus,
 }
 
 impl Assumed {
-    /// As the reference solutions write it: F, X, +, −.
+    /// One letter, as in the reference solutions: F, X, +, −.
     pub fn letter(self) -> char {
         match self {
             Assumed::Free => 'F',
@@ -80,7 +87,7 @@ impl Assumed {
         }
     }
 
-    /// What a node in this mode does whose tangential force has this sign.
+    /// The assumption of this mode, and of this sign of the tangential force.
     pub fn of(mode: Mode, sign: f64) -> Self {
         match mode {
             Mode::Free => Assumed::Free,
@@ -90,7 +97,7 @@ impl Assumed {
         }
     }
 
-    /// Sign of F_t; where it does not matter, 1.
+    /// Sign of F_t when sliding; 1 for the other assumptions.
     pub fn sign(self) -> f64 {
         if self == Assumed::Minus { -1.0 } else { 1.0 }
     }
@@ -102,7 +109,7 @@ impl ProblemNode {
         moves(self.kinematics.as_ref())
     }
 
-    /// What the node can be assumed to do: without friction, sliding has no direction and sticking no sense.
+    /// What the node can be assumed to do. Without friction, a node cannot stick, and sliding has no direction.
     pub fn choices(&self) -> &'static [Assumed] {
         if self.kinematics.is_none() {
             &[Assumed::Free]
@@ -113,7 +120,7 @@ impl ProblemNode {
         }
     }
 
-    /// Table 1's equations of an assumption, T_max in them.
+    /// Table 1's equations of an assumption, normal and tangential; T_max follows F_n in them.
     pub fn equations(&self, assumed: Assumed, settings: &Settings) -> [Equation; 2] {
         let known = Known {
             gap: self.kinematics.map_or(0.0, |k| k.gap),
@@ -134,15 +141,17 @@ impl ProblemNode {
 /// What an assumption leads to, at one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NodeAnswer {
+    /// What the node was assumed to do.
     pub assumed: Assumed,
-    /// Total forces.
+    /// Total normal force; compression positive.
     pub f_n: f64,
+    /// Total tangential force along t.
     pub f_t: f64,
-    /// |F_t| that friction can give.
+    /// Friction bound tan φ |F_n| + c (force).
     pub limit: f64,
-    /// Gap after the motion.
+    /// Gap after the motion (length); infinite without a surface.
     pub gap: f64,
-    /// Slip since the start of the increment.
+    /// Slip since the start of the increment (length).
     pub slip: f64,
     /// The condition that is closest to being broken, or most broken.
     pub worst: Margin,
@@ -164,16 +173,18 @@ pub enum Condition {
 /// How far a condition is from being broken.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Margin {
+    /// The condition.
     pub condition: Condition,
     /// Force or length; negative where the condition is broken.
     pub value: f64,
-    /// The same over the problem's size of forces or lengths.
+    /// `value` over [`InterfaceProblem::force`] or [`InterfaceProblem::length`].
     pub relative: f64,
 }
 
 /// An assumption for every node, solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
+    /// One entry a node of the problem, in its order.
     pub nodes: Vec<NodeAnswer>,
 }
 
@@ -183,7 +194,7 @@ impl Answer {
         self.nodes.iter().map(|n| n.assumed.letter()).collect()
     }
 
-    /// The node whose condition is closest to being broken, or most broken, and that condition; none without nodes.
+    /// The node whose condition is closest to being broken, or most broken, and that condition. `None` if there are no nodes.
     pub fn worst(&self) -> Option<(usize, Margin)> {
         let margins = self.nodes.iter().map(|n| n.worst).enumerate();
         margins.min_by(|a, b| a.1.relative.total_cmp(&b.1.relative))
@@ -204,7 +215,7 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    /// Room for trials of a problem; none without memory.
+    /// Room for trials of a problem. `None` if there is no memory.
     pub fn new(problem: &'a InterfaceProblem) -> Option<Self> {
         let count = problem.relation.count();
         Some(Trials {
@@ -215,20 +226,20 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// The answer to an assumption, one entry a node; none where its equations are singular.
+    /// The answer to an assumption, one entry a node. `None` if its equations are singular.
     pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
         let problem = self.problem;
         let given = self.solve(|s, node| node.equations(assumed[s], &problem.settings))?;
         let nodes = problem.nodes.iter().zip(assumed).zip(given);
         Some(Answer {
             nodes: nodes
-                .map(|((node, &assumed), given)| judge(problem, node, assumed, given))
+                .map(|((node, &assumed), given)| node_answer(problem, node, assumed, given))
                 .collect(),
         })
     }
 
-    /// One minor iteration: solves for what the nodes bring, and leaves in them what they bring into the next. Returns
-    /// what it did at each node, and whether all has settled; none where the equations are singular.
+    /// One minor iteration: solves for what the nodes bring, and leaves in them what they bring into the next. Returns what
+    /// it did at each node, and whether all modes and T_max have settled. `None` if the equations are singular.
     pub fn minor(
         &mut self,
         nodes: &mut [ContactState],
@@ -268,7 +279,7 @@ impl<'a> Trials<'a> {
         Some((records, settled))
     }
 
-    /// What a minor iteration gives for what the nodes bring.
+    /// Solves Table 1's equations for what the nodes bring, without a check of the modes. `None` if they are singular.
     pub fn given(&mut self, nodes: &[ContactState]) -> Option<Vec<NodeIncrement>> {
         let settings = self.problem.settings;
         self.solve(|s, node| {
@@ -281,7 +292,8 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// How the answer to the last solve's equations changes by the right-hand side of equation k of a node.
+    /// Derivative of the last solution by the right-hand side of equation k (0 normal, 1 tangential) of a node: one entry a
+    /// node. `None` if it is not finite.
     pub fn answers_to(&mut self, slave: usize, k: usize) -> Option<Vec<NodeIncrement>> {
         self.z.fill(0.0);
         self.z[2 * slave + k] = 1.0;
@@ -324,7 +336,7 @@ impl InterfaceProblem {
         self.nodes.iter().map(|node| node.state).collect()
     }
 
-    /// Tolerances of Table 2, for forces of this size.
+    /// Tolerances of Table 2, if the largest force is `force`.
     pub fn ties(&self, force: f64) -> Ties {
         Ties {
             force: self.settings.tolerance * force,
@@ -333,8 +345,8 @@ impl InterfaceProblem {
         }
     }
 
-    /// The problem of some of the nodes (`keep`, by place, ascending), all others going on for ever with the equations of
-    /// what they bring; none where these are singular.
+    /// The problem of some of the nodes (`keep`, by place, ascending), the others eliminated by the equations of what they
+    /// bring: they keep their modes. `None` if these equations are singular.
     pub fn reduced(&self, keep: &[usize]) -> Option<InterfaceProblem> {
         let (relation, count) = (&self.relation, self.relation.count());
         let rest: Vec<usize> = (0..self.nodes.len())
@@ -399,8 +411,9 @@ impl InterfaceProblem {
     }
 }
 
-/// What force and motion increments mean for a node that was assumed to do this.
-pub fn judge(
+/// Forces, gap and slip that a node has after these increments, and the condition of its assumption that is closest to
+/// being broken.
+pub fn node_answer(
     problem: &InterfaceProblem,
     node: &ProblemNode,
     assumed: Assumed,

@@ -1,8 +1,13 @@
 //! How the interface of the condensed bodies answers (eqn 6).
 //!
-//! For springs of stiffness k between every slave node and its S*, the interface forces answer gaps z that the springs
-//! are given by `ΔF = start + response z`, and the relative motion is `v = z + ΔF / k`. Where k is infinite, z is the
-//! motion itself.
+//! With a spring of stiffness k between every slave node and its S*, pulled apart by z, the interface forces are
+//!
+//! ```text
+//! ΔF = start + response z,        relative motion v = z + ΔF / k
+//! ```
+//!
+//! For infinite k, z is the motion itself. Springs of finite k make a response exist where nothing but contact holds a
+//! body.
 
 use crate::contact::table1::{Equation, Motion};
 use serde::{Deserialize, Serialize};
@@ -10,23 +15,23 @@ use serde::{Deserialize, Serialize};
 /// How the interface of the condensed bodies answers; normal and tangential components of each slave node in turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceResponse {
-    /// Stiffness k of the springs; may be infinite.
+    /// Stiffness k of the springs (force by length); may be infinite.
     pub stiffness: f64,
-    /// ΔF at z = 0.
+    /// ΔF at z = 0: 2 entries a slave node, normal and tangential.
     pub start: Vec<f64>,
-    /// Change of ΔF by z, column by column.
+    /// Change of ΔF by z (force by length), column by column.
     pub response: Vec<f64>,
 }
 
 impl InterfaceResponse {
-    /// Number of z.
+    /// Number of entries of z: 2 a slave node.
     pub fn count(&self) -> usize {
         self.start.len()
     }
 
     /// Writes row `2 slave + k` of the matrix that an equation (k: 0 normal, 1 tangential) of a slave node makes in z,
-    /// and returns its right-hand side; `prescribed` is the relative motion, along n and t, that no unknown takes part
-    /// in.
+    /// and returns its right-hand side; `prescribed` is the prescribed part of the relative motion, along n and t. The matrix
+    /// is of size [`InterfaceResponse::count`], column by column.
     pub fn place_row(
         &self,
         slave: usize,
@@ -70,7 +75,7 @@ impl InterfaceResponse {
         [force, motion]
     }
 
-    /// Change of the same by these z.
+    /// Change of [`InterfaceResponse::answer`] by these z: the same without `start` and `prescribed`.
     pub fn change(&self, z: &[f64], slave: usize) -> [[f64; 2]; 2] {
         let (mut force, mut motion) = ([0.0; 2], [0.0; 2]);
         for component in 0..2 {

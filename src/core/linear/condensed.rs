@@ -15,6 +15,7 @@ pub struct Condensed {
     pub fresh: bool,
     /// Estimated norm of the inverse of what was factored to get there.
     pub norm: f64,
+    /// How the forces answer the motions.
     pub relation: InterfaceResponse,
     /// Table 1's equations in z, column by column.
     matrix: Vec<f64>,

@@ -43,14 +43,18 @@ const PROGRAM: f64 = 10e6;
 /// Seconds of a major iteration with its minor ones, and bytes in all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
+    /// Time of a major iteration with its minor ones (seconds).
     pub seconds: f64,
+    /// Memory in all (bytes).
     pub bytes: f64,
 }
 
 /// What a scene takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
+    /// With the augmented system (eqn 9).
     pub augmented: Effort,
+    /// With the bodies condensed (eqn 6).
     pub condensed: Effort,
     /// Whether `auto` stands for condensed.
     pub condenses: bool,

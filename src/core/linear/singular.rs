@@ -17,7 +17,10 @@ const ZERO: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Singular {
     /// Nothing holds a body against a rigid motion.
-    Rigid { motions: Vec<RigidMotion> },
+    Rigid {
+        /// The motions, at least one.
+        motions: Vec<RigidMotion>,
+    },
     /// No rigid motion explains it: a limit point, a bifurcation, or dependent constraints.
     Unexplained,
 }
@@ -25,7 +28,9 @@ pub enum Singular {
 /// A rigid motion that meets no resistance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RigidMotion {
+    /// Name of the body.
     pub body: String,
+    /// How it moves.
     pub motion: Motion,
 }
 

@@ -7,17 +7,22 @@ use serde::{Deserialize, Serialize};
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
+    /// Name in the scene.
     pub name: String,
     /// Distinct nodes of the body, along the chain for a beam.
     pub nodes: Vec<usize>,
+    /// What it is made of.
     pub kind: BodyKind,
 }
 
 /// What a body is made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BodyKind {
+    /// A chain of beam elements.
     Beam(Beam),
+    /// A plane continuum.
     Solid(Solid),
+    /// A body given by a stiffness or compliance matrix.
     Linear(Linear),
 }
 
@@ -41,10 +46,10 @@ pub struct Beam {
     pub ea: f64,
     /// Bending stiffness (force · length²).
     pub ei: f64,
-    /// Shear stiffness (force); none is shear-rigid.
+    /// Shear stiffness (force). `None` is shear-rigid.
     pub ga: Option<f64>,
-    /// First shear degree of freedom of the body, where shear-rigid: element e, Gauss point p has
-    /// `first_shear + e * (m - 1) + p`.
+    /// First shear degree of freedom of a shear-rigid body; Gauss point p of element e has
+    /// `first_shear + e * (m - 1) + p`. `None` if the body has a shear stiffness.
     pub first_shear: Option<usize>,
 }
 
@@ -70,10 +75,13 @@ pub struct Elastic {
     pub young: f64,
     /// Poisson's ratio.
     pub poisson: f64,
+    /// How stress follows from strain.
     pub law: Law,
+    /// What is assumed across the plane.
     pub plane: Plane,
     /// Thickness across the plane, undeformed (length).
     pub thickness: f64,
+    /// What strains and stresses are referred to.
     pub update: Update,
 }
 
@@ -120,8 +128,10 @@ documented! {
 /// A body that is given by a matrix over the x and y of its nodes, in their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linear {
+    /// What the matrix means.
     pub form: Form,
-    /// Row, column and value of the matrix' entries, row by row; the whole diagonal, and what else is not zero.
+    /// Row, column and value of the entries of the matrix, row by row: the whole diagonal, and all others that are not
+    /// zero.
     pub entries: Vec<(usize, usize, f64)>,
     /// Pairs of nodes that bars join, for a drawing.
     pub bars: Vec<Vec<usize>>,
@@ -134,11 +144,14 @@ pub enum Form {
     Stiffness,
     /// u = free λ + W f. The forces f are unknowns of their own, from this degree of freedom on, in the order of the
     /// matrix; their equations are u − W f = free λ. The displacements where no force acts are loads there.
-    Compliance { first_force: usize },
+    Compliance {
+        /// Degree of freedom of the first of the forces.
+        first_force: usize,
+    },
 }
 
 impl Linear {
-    /// Whether the matrix is the same when rows and columns change places, to the last bit.
+    /// Whether the matrix equals its transpose, to the last bit.
     pub fn is_symmetric(&self) -> bool {
         let mut turned: Vec<(usize, usize, f64)> =
             self.entries.iter().map(|&(i, j, v)| (j, i, v)).collect();

@@ -5,22 +5,27 @@ use super::friction::{Friction, InitialState, Mode};
 /// A master surface: a chain of m-node interface elements; the outward side is on the right of the walk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
+    /// Name in the scene.
     pub name: String,
     /// Node numbers of each element in walking order; neighbours share their end node.
     pub elements: Vec<Vec<usize>>,
-    /// No node of it can move by an unknown.
+    /// Whether no node of it can move by an unknown.
     pub rigid: bool,
-    /// Goes on straight past its ends.
+    /// Whether it goes on straight past its ends; such a surface is one element of 2 nodes.
     pub endless: bool,
 }
 
-/// A slave node.
+/// A slave node with the surfaces that it may touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
+    /// Number of the slave node.
     pub node: usize,
-    /// Candidate surfaces.
+    /// Numbers of the surfaces that it may touch.
     pub surfaces: Vec<usize>,
+    /// Friction at the start; a user may change it during a run.
     pub friction: Friction,
+    /// Mode of the first minor iteration.
     pub start: Mode,
+    /// What the node brings into the first minor iteration.
     pub state: InitialState,
 }

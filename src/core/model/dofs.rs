@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 pub struct Dofs {
     /// First degree of freedom of each node.
     pub first: Vec<usize>,
-    /// 2 or 3 per node.
+    /// Number of degrees of freedom of each node: 2, or 3 on beams.
     pub count: Vec<u8>,
-    /// Number of the equation of each degree of freedom; none where restrained or prescribed.
+    /// Number of the equation of each degree of freedom; `None` if it is restrained or prescribed.
     pub equation: Vec<Option<usize>>,
     /// Number of equations.
     pub equations: usize,
@@ -29,7 +29,7 @@ impl Dofs {
         self.equation.is_empty()
     }
 
-    /// The degree of freedom of a node's component, if the node has it.
+    /// Number of a node's degree of freedom; `None` if the node has no such component.
     pub fn dof(&self, node: usize, component: Component) -> Option<usize> {
         let k = component as usize;
         (k < self.count[node] as usize).then(|| self.first[node] + k)
@@ -41,8 +41,11 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Component {
+        /// Displacement along x (length).
         X,
+        /// Displacement along y (length).
         Y,
+        /// Rotation, anticlockwise (radians).
         Rotation,
     }
 }
@@ -62,7 +65,9 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Axis {
+        /// The x axis.
         X,
+        /// The y axis.
         Y,
     }
 }

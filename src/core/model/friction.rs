@@ -33,12 +33,12 @@ documented! {
 }
 
 impl Friction {
-    /// tan φ.
+    /// Coefficient of friction, tan φ.
     pub fn coefficient(&self) -> f64 {
         self.angle.to_radians().tan()
     }
 
-    /// Whether no tangential force can arise at all.
+    /// Whether there is neither friction nor cohesion, so that no tangential force can arise.
     pub fn is_smooth(&self) -> bool {
         self.angle == 0.0 && self.cohesion == 0.0
     }

@@ -6,20 +6,27 @@ use serde::{Deserialize, Serialize};
 /// A dead load on one degree of freedom (a force, or a moment).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
+    /// Number of the degree of freedom.
     pub dof: usize,
+    /// Force, or moment on a rotation, at a factor of 1.
     pub value: f64,
+    /// Factor of the value, as a function of the load factor.
     pub scale: Factor,
 }
 
 /// A prescribed value of one degree of freedom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prescribed {
+    /// Number of the degree of freedom.
     pub dof: usize,
+    /// Length, or angle of a rotation (radians), at a factor of 1.
     pub value: f64,
+    /// Factor of the value, as a function of the load factor.
     pub scale: Factor,
 }
 
-/// A load's own factor as a function of the scene's load factor.
+/// A load's own factor as a function of the scene's load factor: pairs of load factor and own factor, the load factors
+/// ascending.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Factor(pub Vec<(f64, f64)>);
 
@@ -66,10 +73,10 @@ impl Jumps {
     }
 }
 
-/// Size below which an increment of this size is not cut, if `given` does not say.
+/// Size below which an increment is not cut further: `given`, or 1/64 of `increment`.
 pub fn least(given: Option<f64>, increment: f64) -> f64 {
-    given.unwrap_or(increment / LEAST)
+    given.unwrap_or(increment / FINEST)
 }
 
-/// How many times smaller than an increment the smallest is that it is cut to, where the scene does not say.
-const LEAST: f64 = 64.0;
+/// An increment is cut to no less than this part (1/64) of its size, unless the scene says otherwise.
+const FINEST: f64 = 64.0;

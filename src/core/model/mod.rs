@@ -1,12 +1,12 @@
 //! The model: what the solver works on, the ground on which everything else stands.
 //!
-//! Indices instead of names, generated nodes laid out, degrees of freedom numbered. Only what the scene names is
-//! here: nodes of rigid surfaces have no unknowns, beams with GA no shear unknowns.
+//! Everything refers to everything else by index (not by name), generated nodes are laid out, and degrees of freedom are
+//! numbered. Nodes of rigid surfaces have no unknowns, and beams with a shear stiffness GA have no shear unknowns.
 //!
 //! Degrees of freedom are laid out node by node (x, y and, on beams, the rotation), then the bodies' own, body by body:
 //! the shear forces of shear-rigid beams, one per Gauss point, and the forces on bodies that are given by a compliance,
-//! whose equations are lengths, all of them. `equation[d]` is the number of the unknown of degree of freedom d, or
-//! none where it is restrained or prescribed.
+//! whose equations are lengths, all of them. `equation[d]` is the number of the unknown of degree of freedom d, and
+//! `None` if that is restrained or prescribed.
 
 pub mod documented;
 
@@ -32,13 +32,21 @@ pub use settings::{
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
+    /// Title, one line.
     pub title: String,
+    /// What the scene shows, as free text; may be empty.
     pub about: String,
+    /// All nodes, in the reference configuration; indices of nodes point here.
     pub nodes: Vec<Node>,
+    /// What deforms.
     pub bodies: Vec<Body>,
+    /// Master surfaces; indices of surfaces point here.
     pub surfaces: Vec<Surface>,
+    /// The slave nodes, one contact each; slave numbers point here.
     pub contacts: Vec<Contact>,
+    /// Numbering of the degrees of freedom and of the unknowns.
     pub dofs: Dofs,
+    /// Dead loads.
     pub loads: Vec<Load>,
     /// Prescribed motions other than zero.
     pub prescribed: Vec<Prescribed>,
@@ -46,11 +54,13 @@ pub struct Model {
     pub path: Vec<f64>,
     /// Increment of the load factor, positive.
     pub increment: f64,
-    /// Size below which an increment that fails is not cut; none stands for a 64th of the increment in force.
+    /// Size below which an increment that fails is not cut further. `None` stands for 1/64 of the increment in force.
     pub least: Option<f64>,
-    /// What increments do that jump.
+    /// What happens to an increment that jumps to another branch of equilibrium.
     pub jumps: Jumps,
+    /// Choices of the method, and its limits.
     pub settings: Settings,
+    /// Numbers to report, in the order of the columns of outputs.
     pub monitors: Vec<Monitor>,
     /// Memory that the solver may take (bytes), unless `settings.memory` says otherwise.
     pub budget: f64,
@@ -63,13 +73,16 @@ pub struct Model {
 pub struct Node {
     /// `ID.k` for the k-th node of a chain or block (from 1), or the id of a single node.
     pub name: String,
+    /// Position (length).
     pub at: [f64; 2],
 }
 
 /// A number to report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Monitor {
+    /// Name of the column in outputs.
     pub name: String,
+    /// What it reports.
     pub of: Watched,
 }
 
@@ -77,11 +90,25 @@ pub struct Monitor {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Watched {
     /// Value of a degree of freedom.
-    Displacement { dof: usize },
+    Displacement {
+        /// Number of the degree of freedom.
+        dof: usize,
+    },
     /// Component of the interaction force on slaves (by slave number).
-    Contact { slaves: Vec<usize>, axis: Axis },
+    Contact {
+        /// Slave numbers; their forces are added up.
+        slaves: Vec<usize>,
+        /// The component.
+        axis: Axis,
+    },
     /// Support force at a restrained degree of freedom.
-    Reaction { dof: usize },
+    Reaction {
+        /// Number of the degree of freedom.
+        dof: usize,
+    },
     /// Largest drift of slaves (by slave number).
-    Drift { slaves: Vec<usize> },
+    Drift {
+        /// Slave numbers.
+        slaves: Vec<usize>,
+    },
 }

@@ -72,9 +72,9 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum Strategy {
-        /// Table 2 first; where it cycles or cannot go on, what gets out at the least cost: `sliding`, `sliding_least`, `lemke`,
-        /// `census`, with T_max in the matrix. Where none finds a consistent state, the increment is halved, down to
-        /// `history.least`, and grows again afterwards.
+        /// Table 2 first; if it cycles or cannot go on, then `sliding`, `sliding_least`, `lemke` and `census`, with T_max in the
+        /// matrix. If none of them finds a consistent state, the increment is halved, down to `history.least`, and grows again
+        /// afterwards.
         #[default]
         Ladder,
         /// Table 2 as printed.
@@ -97,7 +97,7 @@ documented! {
 }
 
 impl Strategy {
-    /// All of them.
+    /// All strategies.
     pub const ALL: [Strategy; 9] = [
         Strategy::Ladder,
         Strategy::Table2,
@@ -110,7 +110,7 @@ impl Strategy {
         Strategy::Census,
     ];
 
-    /// Their names, in the same order.
+    /// Names of [`Strategy::ALL`], in the same order.
     pub const NAMES: [&str; 9] = {
         let (mut names, mut k) = ([""; 9], 0);
         while k < names.len() {

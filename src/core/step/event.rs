@@ -15,16 +15,20 @@ use serde::{Deserialize, Serialize};
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]
 pub struct Position {
+    /// Increment.
     pub increment: u32,
     /// How often this increment was started (with another size).
     pub attempt: u32,
+    /// Major iteration of the attempt.
     pub major: u32,
+    /// Minor iteration of the major one.
     pub minor: u32,
 }
 
 /// What one minor iteration did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
+    /// The minor iteration.
     pub position: Position,
     /// Load factor at the end of this increment.
     pub load_factor: f64,
@@ -32,6 +36,7 @@ pub struct Event {
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, about which the minor iterations are linearised.
     pub before: Norms,
+    /// What follows from it.
     pub outcome: Outcome,
 }
 
@@ -42,27 +47,59 @@ pub enum Outcome {
     Minor,
     /// The minor iterations cycle, and the settings want this major iteration damped: it starts its minor iterations
     /// again, aiming at this load factor.
-    Damped { cycle: Cycle, target: f64 },
+    Damped {
+        /// The cycle.
+        cycle: Cycle,
+        /// Load factor that is aimed at.
+        target: f64,
+    },
     /// The strategy cannot go on, and the ladder's next one leads this major iteration from its start on.
-    Climbed { why: Failure, to: Strategy },
+    Climbed {
+        /// What the last strategy failed of.
+        why: Failure,
+        /// The next strategy.
+        to: Strategy,
+    },
     /// The increment failed, and is started again with this size.
-    Cut { why: Failure, size: f64 },
+    Cut {
+        /// What it failed of.
+        why: Failure,
+        /// Size of the part that is tried (load factor).
+        size: f64,
+    },
     /// The halves of an increment that may jump failed: it is started again, and taken whole, which is this size.
-    Leaps { why: Failure, size: f64 },
-    /// The minor iterations are done, but equilibrium is not reached: another major iteration. `settled` is false
-    /// where the limit of minor iterations was accepted.
-    Major { after: Norms, settled: bool },
+    Leaps {
+        /// What its halves failed of.
+        why: Failure,
+        /// Size of the whole (load factor).
+        size: f64,
+    },
+    /// The minor iterations are done, but equilibrium is not reached: another major iteration.
+    Major {
+        /// Norms at the end of this major iteration.
+        after: Norms,
+        /// False if the limit of minor iterations was accepted instead.
+        settled: bool,
+    },
     /// The increment would be done, but the judge found that a node's net slip is against Coulomb's law: another major
     /// iteration, and from here on net slip counts.
-    Refused { why: Finding, after: Norms },
-    /// The increment is accepted. `unsettled` counts minor loops and majors whose limits were accepted instead of
-    /// reached; `marked` is what the judge found against a law, where it was accepted all the same; `jumped` says that it
-    /// ends on another branch of equilibrium; `last` says that the history ends here.
-    Increment {
+    Refused {
+        /// The law that is broken, and where.
+        why: Finding,
+        /// Norms at the end of this major iteration.
         after: Norms,
+    },
+    /// The increment is accepted.
+    Increment {
+        /// Norms at its end.
+        after: Norms,
+        /// Number of loops of minor or major iterations that ended at their limit, which was accepted.
         unsettled: u32,
+        /// The law that is broken although the increment is accepted; `None` if all laws hold.
         marked: Option<Finding>,
+        /// Whether it ends on another branch of equilibrium.
         jumped: bool,
+        /// Whether the history ends here.
         last: bool,
     },
     /// The increment failed.
@@ -84,12 +121,20 @@ impl Outcome {
 pub enum Failure {
     /// The minor iterations returned to a state in which they had been: they will cycle for ever.
     Cycle(Cycle),
-    /// The minor iterations did not settle within their limit; nodes that still changed in the last one.
-    MinorLimit { limit: u32, changing: Vec<usize> },
+    /// The minor iterations did not settle within their limit.
+    MinorLimit {
+        /// The limit.
+        limit: u32,
+        /// Slave numbers of the nodes that still changed in the last one.
+        changing: Vec<usize>,
+    },
     /// No equilibrium within the limit of major iterations.
     MajorLimit {
+        /// The limit.
         limit: u32,
+        /// Residual at the end, relative to the forces.
         relative: f64,
+        /// Error of the interface conditions at the end (relative).
         #[serde(default)]
         interface: f64,
     },
@@ -97,31 +142,48 @@ pub enum Failure {
     MajorCycle(MajorCycle),
     /// The equations have no unique solution.
     Singular(Singular),
-    /// The round-off of the stiffest forces is this part of the loads: more than [`Norms::LOUDEST`], so that no residual
-    /// tells an answer from none.
-    RoundOff { noise: f64 },
+    /// The round-off of the stiffest forces is too large against the loads, so that a residual says nothing.
+    RoundOff {
+        /// Round-off over loads, more than [`Norms::LOUDEST`].
+        noise: f64,
+    },
     /// The increment moved beyond what its tangent and the increments before it predict: it may have jumped to another
     /// branch of equilibrium.
-    Leapt { motion: f64, predicted: f64 },
+    Leapt {
+        /// How far it moved (length).
+        motion: f64,
+        /// How far it was predicted to move (length).
+        predicted: f64,
+    },
     /// The residual or the displacements grew out of all bounds.
-    Diverged { relative: f64 },
-    /// No assumption of what the nodes do is consistent: all were tried. `first` is what Table 2 failed of before, where it
-    /// led.
+    Diverged {
+        /// Residual relative to the forces.
+        relative: f64,
+    },
+    /// No assumption of what the nodes do is consistent; all were tried.
     NoAnswer {
+        /// What Table 2 failed of before. `None` if it was not tried.
         first: Option<Box<Failure>>,
+        /// Number of assumptions.
         tried: usize,
     },
-    /// Nothing on the ladder found a consistent state, though not everything could be tried: what Table 2 failed of, and
-    /// the last rung.
+    /// No rung of the ladder found a consistent state, and not all assumptions could be tried.
     LadderEnded {
+        /// What Table 2 failed of.
         first: Box<Failure>,
+        /// What the last rung failed of.
         last: Box<Failure>,
     },
     /// Pivoting, or the census, found no consistent state, which does not prove that there is none.
     NotFound(NotFound),
     /// Converged, but against a law of contact or balance.
     Refused(Finding),
-    /// A touching node and its master can neither of them move to close the gap (slave number).
+    /// Neither a touching node nor its master can move to close the gap.
     #[serde(rename = "Jammed")]
-    OverConstrained { slave: usize, gap: f64 },
+    OverConstrained {
+        /// Slave number.
+        slave: usize,
+        /// Gap that stays (length).
+        gap: f64,
+    },
 }

@@ -16,14 +16,20 @@ use std::sync::Arc;
 pub enum Intervention {
     /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
     Force {
+        /// Slave number.
         slave: usize,
+        /// The mode.
         mode: Mode,
+        /// Whether it is held until released.
         hold: bool,
     },
     /// Start several slave nodes at once from a state that is known: each in a mode, for the next minor iteration.
     Assume(Vec<Start>),
     /// Give a slave node back to Table 2.
-    Release { slave: usize },
+    Release {
+        /// Slave number.
+        slave: usize,
+    },
     /// Change the increment size and start the present increment again.
     Increment(f64),
     /// Replace the friction of every slave node.
@@ -66,7 +72,9 @@ pub enum Refusal {
 /// Where a slave node is to start from in the next minor iteration, known from elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Start {
+    /// Slave number.
     pub slave: usize,
+    /// Mode of the next minor iteration.
     pub mode: Mode,
     /// T_max, signed (force).
     pub t_max: f64,

@@ -7,7 +7,7 @@ use crate::model::Mode;
 use serde::{Deserialize, Serialize};
 
 /// Numbers of two major iterations that differ by less than this, relatively, are the same.
-const SAME: f64 = 1e-10;
+const REPEATED: f64 = 1e-10;
 /// Those that differ by more than this, relatively, are different: between the two, an iteration may still converge.
 const DIFFERENT: f64 = 1e-7;
 
@@ -43,14 +43,18 @@ pub struct MajorCycle {
 /// Mode of a slave node, and the master element (surface, element) that S* is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stop {
+    /// Mode.
     pub mode: Mode,
+    /// Numbers of surface and element. `None` past the ends of all surfaces.
     pub element: Option<(usize, usize)>,
 }
 
 /// Sizes of forces and lengths.
 #[derive(Debug, Clone, Copy)]
 pub struct Scales {
+    /// Size of the forces.
     pub force: f64,
+    /// Size of the lengths.
     pub length: f64,
 }
 
@@ -115,7 +119,7 @@ impl MajorHistory {
             let mut pairs = of(then).iter().zip(of(here));
             pairs.all(|(a, b)| a.within(b, scales, limit))
         };
-        let found = (0..here).rfind(|&then| all_within(then, SAME))?;
+        let found = (0..here).rfind(|&then| all_within(then, REPEATED))?;
         let mut between = found + 1..here;
         if between.is_empty() || between.any(|then| all_within(then, DIFFERENT)) {
             return None;

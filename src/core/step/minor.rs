@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Two states of a minor loop whose numbers differ by less than this, relatively, are the same. It is far below any
 /// tolerance, so that T_max that converges slowly has settled before two rounds look alike.
-const SAME: f64 = 1e-14;
+const REPEATED: f64 = 1e-14;
 /// Forces this many times larger than the interface's stiffness over the scene's length are no forces.
 const UNBOUNDED: f64 = 1e10;
 /// Rounds that all changes at once may go on without getting fewer.
@@ -211,8 +211,10 @@ impl Stepper {
 
     /// Whether the next minor iteration starts from where an earlier one of this major did.
     fn find_cycle(&self) -> Option<Cycle> {
-        let force = SAME * self.force_scale();
+        let force = REPEATED * self.force_scale();
         let (state, minor) = (&self.state, self.state.next.minor);
-        state.minor_history.cycle(&state.nodes, minor, force, SAME)
+        state
+            .minor_history
+            .cycle(&state.nodes, minor, force, REPEATED)
     }
 }

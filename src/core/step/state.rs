@@ -86,11 +86,13 @@ pub struct IncrementStart {
     pub load_factor: f64,
     /// Leg of the path on which the present increment lies: from corner `leg` to corner `leg + 1`.
     pub leg: usize,
+    /// Values of all degrees of freedom.
     pub u: Arc<Vec<f64>>,
+    /// The interface, one entry a slave node.
     pub nodes: Vec<ContactState>,
     /// What the elements remember of it ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
     pub history: Vec<f64>,
-    /// What the judge found when it was accepted; none before the first increment.
+    /// What the judge found when it was accepted. `None` before the first increment.
     #[serde(default)]
     pub verdict: Option<Verdict>,
 }
@@ -102,12 +104,14 @@ pub struct Progress {
     pub rung: usize,
     /// What the first rung failed of in the present major iteration.
     pub first: Option<Box<Failure>>,
-    /// Fewest nodes that changed at once in the present major iteration, and the rounds since then.
+    /// Fewest nodes that changed at once in the present major iteration.
     pub fewest: Option<usize>,
+    /// Minor iterations since then.
     pub rounds: u32,
-    /// How far pivoting has come in the present major iteration, and how many states that it found were not confirmed.
+    /// How far the search over all nodes has come in the present major iteration.
     #[serde(rename = "pivoting")]
     pub searched: Searched,
+    /// How many of the states that it found were not confirmed.
     pub unconfirmed: usize,
 }
 
@@ -120,6 +124,7 @@ pub struct Controls {
     pub least: f64,
     /// Friction of each slave node.
     pub friction: Vec<Friction>,
+    /// The settings as the user has them.
     pub settings: Settings,
 }
 

@@ -7,11 +7,13 @@ use serde::{Deserialize, Serialize};
 /// An increment, or what it was cut to: a part of it, halved some times.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SubIncrement {
-    /// Load factors at the start and at the end of the whole increment.
+    /// Load factor at the start of the whole increment.
     pub from: f64,
+    /// Load factor at its end.
     pub to: f64,
-    /// How often it was halved, and which of the parts this is, from 0.
+    /// How often it was halved.
     pub cut: u32,
+    /// Which of the 2^cut parts this is, from 0.
     pub part: u32,
 }
 
@@ -49,7 +51,7 @@ impl SubIncrement {
         }
     }
 
-    /// The piece after it, as large as the halves allow; none where the whole increment is done.
+    /// The piece after it, as large as the halves allow. `None` when the whole increment is done.
     pub fn next(mut self) -> Option<Self> {
         self.part += 1;
         while self.cut > 0 && self.part.is_multiple_of(2) {

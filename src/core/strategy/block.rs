@@ -1,7 +1,7 @@
 //! Block pivoting: all changes at once, and one at a time while their number does not fall.
 //!
-//! As long as fewer nodes change than ever before in a major iteration, or did so a few rounds ago, the modes may
-//! return to earlier ones without that being a cycle.
+//! While the number of changing nodes has reached a new minimum within the last few minor iterations of a major one, the
+//! modes may return to earlier ones without that being a cycle.
 
 use crate::contact::table2::Entry;
 use crate::interface::method::Method;

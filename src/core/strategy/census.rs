@@ -1,5 +1,5 @@
-//! The census as a strategy: all assumptions of what the nodes do are tried ([`crate::interface::census`]), and the
-//! consistent ones taken one after the other, those first that change the least.
+//! The census as a strategy: all assumptions of what the nodes do are tried ([`crate::interface::census`]). The consistent
+//! ones are proposed one after the other, beginning with the one that changes the fewest nodes.
 
 use crate::contact::table2::Rule;
 use crate::interface::census;

@@ -1,6 +1,6 @@
-//! The ladder: Table 2 first; where it cycles or cannot go on, what gets out at the least cost.
+//! The ladder: Table 2 first; if it cycles or cannot go on, the next rung, from the cheapest to the most expensive.
 //!
-//! From its second rung on T_max stands in the matrix. Where no rung finds a consistent state the increment is cut.
+//! From the second rung on, T_max follows F_n within the solve. If no rung finds a consistent state, the increment is cut.
 
 use crate::interface::method::Method;
 use crate::model::Strategy;

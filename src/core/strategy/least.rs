@@ -1,7 +1,6 @@
 //! One change at a time: of all nodes that would change, only the first does, and the others wait (Bland's least index).
 //!
-//! Nodes that answer to each other's changes cannot push each other to and fro any more. It costs as many minor
-//! iterations as there are changes.
+//! Nodes that react to each other's changes then no longer cycle together. The price is one minor iteration for each change.
 
 use crate::contact::table2::Entry;
 use crate::interface::method::Method;
@@ -15,7 +14,7 @@ impl Method for Least {
     }
 }
 
-/// The same, and a rough node enters sliding.
+/// One change at a time, and a rough node enters sliding.
 pub struct SlidingLeast;
 
 impl Method for SlidingLeast {

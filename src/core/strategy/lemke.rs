@@ -27,14 +27,14 @@ impl Method for Lemke {
 }
 
 impl Search for Lemke {
-    /// One pivot; where the path has ended on a ray, the next start is next.
+    /// One pivot; after a path that has ended on a ray, the next start follows.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
         let mut path: Box<Path> = match kept {
             Some(path) if is_at(&path, &asked) => path,
             _ => Box::new(path(&mut asked)?),
         };
-        // It has ended already where its start is the answer.
+        // A path whose start is the answer has ended already.
         if path.tableau.pivot().is_some() {
             path.step += 1;
         }

@@ -12,7 +12,7 @@ mod table2;
 use crate::interface::method::Method;
 use crate::model::{BoundUpdate, Settings, Strategy};
 
-/// What a strategy does.
+/// The implementation of a strategy.
 pub fn method(strategy: Strategy) -> &'static dyn Method {
     match strategy {
         Strategy::Ladder => &ladder::Ladder,
@@ -27,12 +27,13 @@ pub fn method(strategy: Strategy) -> &'static dyn Method {
     }
 }
 
-/// The strategies that `chosen` tries one after the other; none where it stands for itself.
+/// The strategies that `chosen` tries one after the other; empty if it stands for itself.
 pub fn rungs(chosen: Strategy) -> &'static [Strategy] {
     method(chosen).rungs()
 }
 
-/// The settings in force on a rung: the strategy is the one of that rung, and T_max enters as it wants.
+/// The settings in force on a rung (from 0; past the last one, those of the last). The strategy is that of the rung, and
+/// `t_max` is what this strategy needs.
 pub fn in_force(chosen: &Settings, rung: usize) -> Settings {
     let mut settings = *chosen;
     let rungs = rungs(chosen.strategy);

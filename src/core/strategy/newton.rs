@@ -1,7 +1,13 @@
-//! Semismooth Newton on the projections of the forces.
+//! Semismooth Newton's method on the projection equations of contact and friction.
 //!
-//! A node is pressed where F_n exceeds what a spring of stiffness k would push off it through the gap, and slides where
-//! force and spring together exceed the friction that this gives:
+//! With a spring of stiffness k that compares lengths with forces, Coulomb's law is
+//!
+//! ```text
+//! F_n = max(0, F_n − k g)
+//! F_t = projection of F_t + k slip on |F_t| <= tan φ (F_n − k g) + c
+//! ```
+//!
+//! and a step of Newton's method takes the branch of each equation that holds at the present numbers:
 //!
 //! ```text
 //! opens    F_n − k g <= 0
@@ -12,7 +18,7 @@ use crate::contact::table2::{Decision, Numbers, Rule, Tested};
 use crate::interface::method::{Choice, Known, Method};
 use crate::model::{BoundUpdate, Mode};
 
-/// Projections of the forces.
+/// Newton's method on the projection equations.
 pub struct Newton;
 
 impl Method for Newton {

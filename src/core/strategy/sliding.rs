@@ -1,7 +1,7 @@
 //! Table 2, but a rough node that touches enters sliding, against its travel.
 //!
-//! Table 2 lets it stick first. Where the friction bound is soon exceeded, sticking and sliding then take turns; a node
-//! that slides from the start has the direction of its travel and settles.
+//! In Table 2 it sticks first. If the friction bound is soon exceeded, sticking and sliding may then alternate for ever. A
+//! node that slides from the start takes the direction of its travel, and settles.
 
 use crate::contact::table2::Entry;
 use crate::interface::method::Method;
