@@ -179,7 +179,8 @@ fn problem_05_converges_with_its_mesh() {
 /// Strain energy of all bodies at displacements u: the internal forces have a potential, so it is their work on any way
 /// to u, here the straight one, by a Gauss rule.
 fn strain_energy(run: &Run, u: &[f64]) -> f64 {
-    use stickslip::fem::assembly::{Assembled, Assembly, Moved};
+    use stickslip::fem::assembly::{Assembly, Moved};
+    use stickslip::fem::element::Assembled;
     use stickslip::linalg::Pattern;
     let model = run.stepper.model();
     let dofs = &model.dofs;

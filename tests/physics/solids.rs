@@ -297,7 +297,8 @@ fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
 #[ignore = "a measurement: cargo test --release --test physics solids -- --ignored --nocapture"]
 fn time_of_an_assembly_of_50000_unknowns() {
     use std::time::Instant;
-    use stickslip::fem::assembly::{Assembled, Assembly, Moved};
+    use stickslip::fem::assembly::{Assembly, Moved};
+    use stickslip::fem::element::Assembled;
     use stickslip::linalg::Pattern;
     let started = Instant::now();
     let scene = block(

@@ -170,7 +170,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    fn new() -> Self {
+    /// Nothing judged yet.
+    pub fn new() -> Self {
         Verdict {
             worst: [None; 8],
             work: None,

@@ -4,7 +4,8 @@ use super::norms::Norms;
 use super::sizes::ROUND_OFF;
 use super::source::At;
 use super::system::{Layout, System};
-use crate::model::{Mode, Model, Sticking};
+use super::violation::violation;
+use crate::model::Model;
 
 impl System {
     /// Out-of-balance force R − F of eqn (22) and its norms.
@@ -99,36 +100,8 @@ impl System {
 
     /// Largest relative violation of the interface conditions by a state's forces and gaps.
     fn violation(&self, model: &Model, at: &At<'_>) -> f64 {
-        let mut worst = 0.0_f64;
-        // Also in the middle of a major iteration this is about what it began with.
-        let first = at.entered;
-        for (s, node) in at.contacts.iter().enumerate() {
-            let (mode, t_max) = match first.get(s) {
-                Some(input) => (input.mode, input.t_max),
-                None => (node.mode, node.t_max),
-            };
-            let Some(gap) = self.interfaces[s].footing.map(|f| f.gap) else {
-                continue;
-            };
-            let length = match mode {
-                Mode::Free => (-gap).max(0.0),
-                _ => gap.abs(),
-            };
-            let force = match mode {
-                Mode::Sliding => (node.f_t - t_max).abs(),
-                _ => 0.0,
-            };
-            let anchored = at.chosen.sticking == Sticking::Anchored || node.corner.is_some();
-            let drift = match mode {
-                Mode::Fixed if anchored && self.interfaces[s].moves[1] => node.drift.abs(),
-                _ => 0.0,
-            };
-            worst = worst.max(length.max(drift) / model.length);
-            if force > 0.0 {
-                worst = worst.max(force / self.norms.scale);
-            }
-        }
-        worst
+        let kinematics = |contact: usize| self.kinematics(contact);
+        violation(at, model.length, self.norms.scale, kinematics)
     }
 
     /// Norms of the last linearisation, with the interface conditions of this state: what is told of it must not hang on

@@ -22,6 +22,9 @@ pub mod stepper;
 pub mod sub_increment;
 mod verdict;
 
+#[cfg(test)]
+mod tests;
+
 pub use drive::{RunEnd, Until};
 pub use event::{Event, Failure, Outcome};
 pub use state::{State, Status};

@@ -1,0 +1,440 @@
+//! A constant interface response as a source: no bodies and no geometry, contacts over straight lines that do not move.
+//!
+//! With w the displacements of the slave nodes, normal (away from the surface) and tangential for each contact in turn, λ the
+//! load factor, p the load and F the contact forces on the slave nodes,
+//!
+//! ```text
+//! K w = λ p + F,      g = g_0 + w_n,      v = −w  (motion of S* against S),      ΔF = (K w − λ p − F) − K v.
+//! ```
+//!
+//! The smallest thing that can be stepped, and an example of what another code has to give ([`crate::linear::source`]).
+
+use crate::contact::judge::{Finding, Law, Numbers, Scales, Verdict};
+use crate::contact::projection::SurfacePoint;
+use crate::contact::state::ContactState;
+use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
+use crate::interface::minor;
+use crate::interface::problem::{InterfaceProblem, ProblemNode};
+use crate::interface::response::InterfaceResponse;
+use crate::linalg::SolveError;
+use crate::linear::condensed::Condensed;
+use crate::linear::norms::Norms;
+use crate::linear::source::{At, Solved, Source};
+use crate::linear::violation::violation;
+use crate::model::{Axis, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch, Watched};
+
+/// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
+const SUSPICIOUS: f64 = 1e12;
+/// What a relative amount against a law may be at least.
+const TOLERANCE: f64 = 1e-8;
+
+/// A constant interface: how the slave nodes resist, what loads them, and how far they are from their surfaces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    /// K (force by length), column by column, two rows a contact: normal, tangential.
+    stiffness: Vec<f64>,
+    /// p (force) at load factor 1.
+    load: Vec<f64>,
+    /// g_0 (length) of each contact; negative is penetration.
+    gaps: Vec<f64>,
+    /// Friction of each contact.
+    friction: Vec<Friction>,
+    /// The scene's unit of length for tolerances.
+    length: f64,
+}
+
+/// Lists whose lengths do not fit together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{name} has {found} entries, and {contacts} contacts need {wanted}")]
+pub struct WrongSize {
+    /// Which list.
+    pub name: &'static str,
+    /// How many entries it has.
+    pub found: usize,
+    /// How many it needs.
+    pub wanted: usize,
+    /// The number of contacts.
+    pub contacts: usize,
+}
+
+impl Constant {
+    /// An interface of `gaps.len()` contacts, whose unit of length is `length` (positive).
+    ///
+    /// # Errors
+    /// [`WrongSize`] where the lists do not fit together.
+    pub fn try_new(
+        stiffness: Vec<f64>,
+        load: Vec<f64>,
+        gaps: Vec<f64>,
+        friction: Vec<Friction>,
+        length: f64,
+    ) -> Result<Self, WrongSize> {
+        let contacts = gaps.len();
+        let lengths = [
+            ("the stiffness", stiffness.len(), 4 * contacts * contacts),
+            ("the load", load.len(), 2 * contacts),
+            ("the friction", friction.len(), contacts),
+        ];
+        for (name, found, wanted) in lengths {
+            if found != wanted {
+                return Err(WrongSize {
+                    name,
+                    found,
+                    wanted,
+                    contacts,
+                });
+            }
+        }
+        Ok(Constant {
+            stiffness,
+            load,
+            gaps,
+            friction,
+            length,
+        })
+    }
+
+    /// The model to step it with: a history of the load factor, and settings.
+    pub fn model(&self, path: Vec<f64>, increment: f64, settings: Settings) -> Model {
+        let contact = |(node, &friction)| Contact {
+            node,
+            surfaces: Vec::new(),
+            friction,
+            start: Mode::Free,
+            state: Default::default(),
+        };
+        let node = |k: usize| Node {
+            name: format!("contact.{}", k + 1),
+            at: [0.0; 2],
+        };
+        // As interface problems are posed: one step of Coulomb's law.
+        let touch = match settings.touch {
+            Touch::Auto => Touch::Start,
+            touch => touch,
+        };
+        Model {
+            title: "A constant interface".into(),
+            about: String::new(),
+            nodes: (0..self.gaps.len()).map(node).collect(),
+            bodies: Vec::new(),
+            surfaces: Vec::new(),
+            contacts: self.friction.iter().enumerate().map(contact).collect(),
+            dofs: Dofs::default(),
+            loads: Vec::new(),
+            prescribed: Vec::new(),
+            path,
+            increment,
+            least: None,
+            jumps: Default::default(),
+            settings: Settings { touch, ..settings },
+            monitors: Vec::new(),
+            budget: f64::INFINITY,
+            length: self.length,
+        }
+    }
+
+    /// What the stepper drives.
+    pub fn source(self) -> ConstantSource {
+        let contacts = self.gaps.len();
+        ConstantSource {
+            gaps: self.gaps.clone(),
+            condensed: Condensed::new(contacts),
+            norms: Norms::default(),
+            interface: self,
+        }
+    }
+
+    /// K w − λ p − F: the forces that are missing for balance.
+    fn missing(&self, w: &[f64], target: f64, contacts: &[ContactState], out: &mut [f64]) {
+        for (k, out) in out.iter_mut().enumerate() {
+            let state = &contacts[k / 2];
+            let force = if k % 2 == 0 { state.f_n } else { state.f_t };
+            *out = -target * self.load[k] - force;
+        }
+        let columns = self.stiffness.chunks_exact(out.len().max(1));
+        for (column, w) in columns.zip(w) {
+            for (out, k) in out.iter_mut().zip(column) {
+                *out += k * w;
+            }
+        }
+    }
+}
+
+/// A constant interface with the workspace of a major iteration.
+pub struct ConstantSource {
+    interface: Constant,
+    /// Gaps in the last linearisation.
+    gaps: Vec<f64>,
+    condensed: Condensed,
+    norms: Norms,
+}
+
+impl ConstantSource {
+    /// Where a contact stands: its tangential displacement is the coordinate on its line.
+    fn point(contact: usize, w: &[f64]) -> SurfacePoint {
+        SurfacePoint {
+            surface: contact,
+            element: 0,
+            xi: w[2 * contact + 1],
+        }
+    }
+
+    /// Size of forces: loads, and what the present forces are.
+    fn scale(&self, at: &At<'_>) -> f64 {
+        let loads = self.interface.load.iter().map(|p| (at.target * p).abs());
+        let forces = at.contacts.iter().map(|c| c.f_n.abs().max(c.f_t.abs()));
+        loads.chain(forces).fold(0.0, f64::max)
+    }
+}
+
+impl Source for ConstantSource {
+    fn start(&self) -> Vec<f64> {
+        vec![0.0; self.interface.load.len()]
+    }
+
+    fn follow(&mut self, w: &[f64], contacts: &mut [ContactState], anew: bool) {
+        for (k, state) in contacts.iter_mut().enumerate() {
+            let here = Self::point(k, w);
+            (state.spot, state.normal) = (Some(here), [0.0, 1.0]);
+            if state.mode == Mode::Free {
+                (state.f_n, state.f_t, state.drift) = (0.0, 0.0, 0.0);
+                state.anchor = state.anchor.filter(|_| state.kept);
+                continue;
+            }
+            if anew && state.mode == Mode::Sliding {
+                state.anchor = Some(here);
+            }
+            let anchor = *state.anchor.get_or_insert(here);
+            state.drift = anchor.xi - here.xi;
+        }
+    }
+
+    fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError> {
+        self.condensed.resize(self.interface.gaps.len())?;
+        for (k, (gap, start)) in self.gaps.iter_mut().zip(&self.interface.gaps).enumerate() {
+            *gap = start + at.u[2 * k];
+        }
+        let relation = &mut self.condensed.relation;
+        relation.stiffness = f64::INFINITY;
+        for (response, k) in relation.response.iter_mut().zip(&self.interface.stiffness) {
+            *response = -k;
+        }
+        let missing = &mut relation.start;
+        self.interface
+            .missing(at.u, at.target, at.contacts, missing);
+        let force = missing.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        self.condensed.fresh = true;
+        let scale = self.scale(at);
+        self.norms = Norms {
+            force,
+            relative: if force > 0.0 { force / scale } else { 0.0 },
+            correction: at.correction,
+            scale,
+            limit: at.chosen.tolerance,
+            ..Norms::default()
+        };
+        Ok(())
+    }
+
+    fn norms(&mut self, at: &At<'_>) -> Norms {
+        let over = |contact: usize| self.kinematics(contact);
+        self.norms.interface = violation(at, self.interface.length, self.norms.scale, over);
+        self.norms
+    }
+
+    fn kinematics(&self, contact: usize) -> Option<NodeKinematics> {
+        Some(NodeKinematics {
+            gap: self.gaps[contact],
+            normal: [0.0, 1.0],
+            foot: [0.0; 2],
+            moves: [true; 2],
+        })
+    }
+
+    fn solve(&mut self, at: &At<'_>) -> Solved {
+        self.condensed.clear();
+        for (k, state) in at.contacts.iter().enumerate() {
+            let over = self.kinematics(k);
+            let friction = state.friction(&at.friction[k]);
+            let rows = minor::rows(state, over.as_ref(), &friction, &at.settings);
+            for (component, row) in rows.iter().enumerate() {
+                self.condensed.place_row(k, component, row, [0.0; 2]);
+            }
+        }
+        let Ok(norm) = self.condensed.solve() else {
+            return Solved::Not;
+        };
+        for k in 0..at.contacts.len() {
+            self.condensed.read(k, [0.0; 2]);
+        }
+        if norm > SUSPICIOUS {
+            Solved::NearlySingular
+        } else {
+            Solved::Well
+        }
+    }
+
+    fn increment(&self, contact: usize) -> NodeIncrement {
+        NodeIncrement {
+            force: self.condensed.forces[contact],
+            motion: self.condensed.motions[contact],
+        }
+    }
+
+    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
+        let nodes = at
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(k, state)| ProblemNode {
+                slave: k,
+                kinematics: self.kinematics(k),
+                prescribed: [0.0; 2],
+                friction: state.friction(&at.friction[k]),
+                state: *state,
+            });
+        let relation: InterfaceResponse = self.condensed.relation.clone();
+        Ok(InterfaceProblem {
+            nodes: nodes.collect(),
+            relation,
+            force: self.norms.scale,
+            length: self.interface.length,
+            spring: self.spring(),
+            settings: at.settings,
+        })
+    }
+
+    fn spring(&self) -> f64 {
+        let size = self.interface.load.len();
+        let diagonal = self.interface.stiffness.iter().step_by(size + 1);
+        diagonal.fold(0.0, |most: f64, k| most.max(k.abs()))
+    }
+
+    fn recover(&mut self) -> Solved {
+        Solved::Well
+    }
+
+    fn advance(&mut self, w: &mut [f64]) -> f64 {
+        let motions = self.condensed.motions.iter().flatten();
+        w.iter_mut().zip(motions).fold(0.0, |most: f64, (w, v)| {
+            *w -= v;
+            most.max(v.abs())
+        })
+    }
+
+    fn stick_point(&self, contact: usize, state: &ContactState) -> Option<SurfacePoint> {
+        let point = state.spot?;
+        Some(SurfacePoint {
+            xi: point.xi - self.gaps[contact] * state.ratio,
+            ..point
+        })
+    }
+
+    fn position(&self, contact: usize) -> [f64; 2] {
+        [0.0, self.gaps[contact]]
+    }
+
+    fn largest_motion(&self, w: &[f64]) -> f64 {
+        w.iter().fold(0.0, |most: f64, w| most.max(w.abs()))
+    }
+
+    fn moved(&self, w: &[f64], before: &[f64]) -> f64 {
+        let moved = w.iter().zip(before).map(|(w, before)| (w - before).abs());
+        moved.fold(0.0, f64::max)
+    }
+
+    fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict {
+        let tolerance = (10.0 * at.chosen.tolerance).max(TOLERANCE);
+        let scales = Scales {
+            length: self.interface.length,
+            force: after.scale.max(f64::MIN_POSITIVE),
+            lengths: tolerance,
+            forces: tolerance,
+        };
+        let mut verdict = Verdict::new();
+        for (k, state) in at.contacts.iter().enumerate() {
+            let slip = at.accepted.u[2 * k + 1] - at.u[2 * k + 1];
+            let touched = at.accepted.contacts[k].mode != Mode::Free;
+            let gap = self.interface.gaps[k] + at.u[2 * k];
+            let laws = against(
+                state,
+                &at.friction[k],
+                gap,
+                touched.then_some(slip),
+                &scales,
+            );
+            for (law, amount) in laws {
+                verdict.add(Finding {
+                    law,
+                    slave: Some(k),
+                    amount,
+                    allowed: scales.allowed(law),
+                    numbers: Numbers {
+                        gap,
+                        slip: -slip,
+                        limit: at.friction[k].coefficient() * state.f_n + at.friction[k].cohesion,
+                        f_n: state.f_n,
+                        f_t: state.f_t,
+                    },
+                });
+            }
+        }
+        verdict.add(Finding {
+            law: Law::Balance,
+            slave: None,
+            amount: after.relative,
+            allowed: scales.allowed(Law::Balance),
+            numbers: Numbers::default(),
+        });
+        verdict
+    }
+
+    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
+        match watched {
+            Watched::Displacement { dof } => at.u[*dof],
+            Watched::Contact { slaves, axis } => {
+                let of = |&s: &usize| match axis {
+                    Axis::X => -at.contacts[s].f_t,
+                    Axis::Y => at.contacts[s].f_n,
+                };
+                slaves.iter().map(of).sum()
+            }
+            Watched::Drift { slaves } => {
+                let drifts = slaves.iter().map(|&s| at.contacts[s].drift);
+                drifts.fold(
+                    0.0,
+                    |most: f64, d| if d.abs() > most.abs() { d } else { most },
+                )
+            }
+            // Nothing is supported here.
+            Watched::Reaction { .. } => 0.0,
+        }
+    }
+}
+
+/// By how much a contact is against each law, relative to the scales; `slip` is what it has slipped in the increment, if it
+/// touched all the while.
+fn against(
+    state: &ContactState,
+    friction: &Friction,
+    gap: f64,
+    slip: Option<f64>,
+    scales: &Scales,
+) -> Vec<(Law, f64)> {
+    let (length, force) = (scales.length, scales.force);
+    let pressed = state.f_n.hypot(state.f_t) > scales.forces * force;
+    if !pressed {
+        return vec![(Law::Penetration, (-gap / length).max(0.0))];
+    }
+    let bound = friction.coefficient() * state.f_n + friction.cohesion;
+    let mut laws = vec![
+        (Law::Gap, gap.abs() / length),
+        (Law::Tension, (-state.f_n / force).max(0.0)),
+        (Law::Cone, ((state.f_t.abs() - bound) / force).max(0.0)),
+    ];
+    if let Some(slip) = slip.filter(|slip| slip.abs() > scales.near()) {
+        let short = bound - slip.signum() * state.f_t;
+        laws.push((Law::Slip, (short / force).max(0.0)));
+    }
+    laws
+}
