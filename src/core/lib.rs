@@ -93,8 +93,8 @@
 //!
 //! - [`linalg`]: patterns, factors, checked solves; a package of its own.
 //! - [`model`]: what is solved, as plain data: nodes, bodies, surfaces, contacts, loads, settings.
-//! - [`fem`]: an element is a small file here: shape functions, internal forces and their tangent. [`fem::assembly`] adds
-//!   the elements of all bodies up.
+//! - [`fem`]: an element is a small file here ([`fem::element`] says what it has to give): shape functions, internal forces
+//!   and their tangent. [`fem::assembly`] adds the elements of all bodies up.
 //! - [`contact`]: one slave node: projection on its surface, Table 1's equations, Table 2's decision, and the judge of the
 //!   laws that every accepted state obeys.
 //! - [`interface`]: the interface problem of a major iteration, by itself: geometry and stiffness frozen, no bodies.
@@ -102,7 +102,8 @@
 //!   nodes may change at once, or what all nodes do together. Whatever it leaves out is done as in Table 2.
 //! - [`linear`]: the linearised equations. [`linear::source::Source`] is the seam: what the stepper needs of what deforms.
 //!   It linearises at a state, solves for the modes of the nodes, takes the forces back, and says where the nodes are then.
-//!   [`linear::bodies`] is the source of our own bodies; a source of your own goes into [`Stepper::with_source`].
+//!   [`linear::bodies`] is the source of our own bodies and [`linear::constant`] one of constant matrices; a source of
+//!   your own goes into [`Stepper::with_source`].
 //! - [`step`]: increments, major and minor iterations: the algorithm box.
 //!
 //! # Conventions

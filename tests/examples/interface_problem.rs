@@ -1,19 +1,21 @@
-//! Poses an interface problem of its own, without bodies, and finds all of its consistent states.
+//! Poses an interface problem of its own, without bodies, finds all of its consistent states, and steps it.
 //!
-//! Two slave nodes on a rigid floor are held by springs and coupled by another one. With K the stiffness in the components
-//! (n, t) of each node, P the loads and F the forces of the floor, K u = P + F. The floor does not move, so the motion of S*
-//! relative to S is v = −u, and the forces answer it by F = −P − K v.
+//! Two slave nodes on a floor are held by springs and coupled by another one. With K the stiffness and w the displacements
+//! in the components (n, t) of each node, λ the load factor, p the loads and F the forces of the floor, K w = λ p + F.
 //!
 //! `cargo run --example interface_problem`
 
+use std::convert::Infallible;
 use std::error::Error;
 use std::io::Write;
-use stickslip::contact::state::ContactState;
+use std::ops::ControlFlow;
+use std::sync::Arc;
 use stickslip::interface::census::census;
-use stickslip::interface::kinematics::NodeKinematics;
-use stickslip::interface::problem::{Assumed, InterfaceProblem, ProblemNode, Trials};
-use stickslip::interface::response::InterfaceResponse;
-use stickslip::model::{Friction, InitialState, Mode, Settings};
+use stickslip::interface::problem::{Assumed, Trials};
+use stickslip::linear::constant::Constant;
+use stickslip::model::{Friction, Settings};
+use stickslip::step::Stepper;
+use stickslip::step::drive::{RunEnd, Until};
 
 /// Stiffness by rows: n and t of node 0, n and t of node 1.
 const K: [[f64; 4]; 4] = [
@@ -29,9 +31,26 @@ fn main() -> Result<(), Box<dyn Error>> {
     run(&mut std::io::stdout())
 }
 
-/// Writes how far one assumption is from obeying Coulomb's law, and all states that obey it.
+/// Writes how far one assumption is from obeying Coulomb's law, all states that obey it, and the one that the stepper finds.
 pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
-    let problem = problem();
+    let friction = Friction {
+        angle: 20.0,
+        cohesion: 0.0,
+    };
+    let columns = (0..4).flat_map(|j| K.map(|row| row[j]));
+    let (gaps, length) = (vec![0.1; 2], 1.0);
+    let interface = Constant::try_new(
+        columns.collect(),
+        P.to_vec(),
+        gaps,
+        vec![friction; 2],
+        length,
+    )?;
+    let model = interface.model(vec![0.0, 1.0], 1.0, Settings::default());
+    let mut stepper = Stepper::with_source(Arc::new(model), Box::new(interface.source()));
+
+    // The problem of the first major iteration, which aims at the whole load.
+    let problem = stepper.interface_problem().ok_or("not condensed")?;
     let mut trials = Trials::new(&problem).ok_or("no memory")?;
     let stuck = trials.answer(&[Assumed::Fixed; 2]).ok_or("singular")?;
     let (node, margin) = stuck.worst().ok_or("no nodes")?;
@@ -50,53 +69,23 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
         all.answers.len()
     )?;
     for found in &all.answers {
-        for (node, answer) in found.answer.nodes.iter().enumerate() {
+        for answer in &found.answer.nodes {
             writeln!(
                 out,
-                "{}: node {node} has F_n = {:.4}, F_t = {:.4}, slip = {:.5}",
-                found.answer.letters(),
-                answer.f_n,
-                answer.f_t,
-                answer.slip,
+                "{:?}: F_n = {:.4}, F_t = {:.4}, slip = {:.5}",
+                answer.assumed, answer.f_n, answer.f_t, answer.slip,
             )?;
         }
     }
+
+    let end: RunEnd<Infallible> = stepper.drive(Until::end(), |_| ControlFlow::Continue(()));
+    writeln!(out, "stepped: {end:?}")?;
+    for node in &stepper.state().nodes {
+        writeln!(
+            out,
+            "{:?}: F_n = {:.4}, F_t = {:.4}",
+            node.mode, node.f_n, node.f_t
+        )?;
+    }
     Ok(())
-}
-
-fn problem() -> InterfaceProblem {
-    InterfaceProblem {
-        relation: InterfaceResponse {
-            // No springs in between: z is the motion v itself.
-            stiffness: f64::INFINITY,
-            start: P.map(|p| -p).to_vec(),
-            // Column by column.
-            response: (0..4).flat_map(|j| K.map(|row| -row[j])).collect(),
-        },
-        nodes: (0..2).map(node).collect(),
-        // What forces, lengths and stiffnesses are about as large as.
-        force: 30.0,
-        length: 0.3,
-        spring: 100.0,
-        settings: Settings::default(),
-    }
-}
-
-/// A node that starts free, 0.1 above a floor whose outward normal is y.
-fn node(slave: usize) -> ProblemNode {
-    ProblemNode {
-        slave,
-        kinematics: Some(NodeKinematics {
-            gap: 0.1,
-            normal: [0.0, 1.0],
-            foot: [slave as f64, 0.0],
-            moves: [true; 2],
-        }),
-        prescribed: [0.0; 2],
-        friction: Friction {
-            angle: 20.0,
-            cohesion: 0.0,
-        },
-        state: ContactState::new(Mode::Free, &InitialState::default()),
-    }
 }

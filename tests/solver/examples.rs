@@ -41,17 +41,20 @@ fn a_scene_is_stepped_to_its_end() {
 }
 
 #[test]
-fn an_interface_problem_without_bodies_has_one_consistent_state() {
+fn an_interface_problem_without_bodies_has_one_consistent_state_and_is_stepped_to_it() {
     let friction = 20_f64.to_radians().tan() * 20.0;
-    // K u = P + F along t, node 1 stuck: 120 slip = 30 − friction.
+    // K w = p + F along t, node 1 stuck: 120 slip = 30 − friction.
     let slip = (30.0 - friction) / 120.0;
+    let (f_0, f_1) = (format!("{friction:.4}"), format!("{:.4}", 20.0 * slip));
     let expected = format!(
         "XX: node 0 breaks WithinLimit by {:.3}\n\
          16 assumptions tried, 1 consistent\n\
-         +X: node 0 has F_n = 20.0000, F_t = {friction:.4}, slip = {slip:.5}\n\
-         +X: node 1 has F_n = 20.0000, F_t = {:.4}, slip = 0.00000\n",
+         Plus: F_n = 20.0000, F_t = {f_0}, slip = {slip:.5}\n\
+         Fixed: F_n = 20.0000, F_t = {f_1}, slip = 0.00000\n\
+         stepped: Finished\n\
+         Sliding: F_n = 20.0000, F_t = {f_0}\n\
+         Fixed: F_n = 20.0000, F_t = {f_1}\n",
         30.0 - friction,
-        20.0 * slip,
     );
     assert_eq!(written!(interface_problem), expected);
 }

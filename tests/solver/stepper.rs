@@ -155,7 +155,7 @@ fn limits_stop_an_increment_or_mark_it_as_the_settings_say() {
         ],
     ));
     assert!(marked.failure.is_none());
-    let unsettled = |a: &&crate::common::Accepted| matches!(a.event.outcome, Outcome::Increment { unsettled, .. } if unsettled > 0);
+    let unsettled = |a: &&common::Accepted| matches!(a.event.outcome, Outcome::Increment { unsettled, .. } if unsettled > 0);
     assert!(marked.accepted.iter().filter(unsettled).count() > 40);
     let stopped = run(&scene(
         "02-two-cantilevers-smooth",
