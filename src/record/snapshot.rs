@@ -6,11 +6,12 @@
 
 use crate::contact::record::Forced;
 use crate::contact::table2::Rule;
+use crate::format::{SceneError, Spec, notation, read};
 use crate::linear::norms::Norms;
 use crate::model::{Mode, Model};
 use crate::outside::files::{self, FileError};
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
-use crate::scene::{Scene, SceneError, Spec, read};
+use crate::scene::Scene;
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervene::Intervention;
 use crate::step::state::{State, Status};
@@ -175,7 +176,7 @@ impl Snapshot {
             .new_line("\n")
             // Lists of slaves and nodes are tables: one row, one line.
             .depth_limit(3);
-        let text = read::options()
+        let text = notation::options()
             .to_string_pretty(self, layout)
             .map_err(SnapshotError::Unwritable)?;
         Ok(text + "\n")
@@ -230,7 +231,7 @@ impl Snapshot {
                 message: deep.message,
             }
         })?;
-        if let Ok(header) = read::options().from_str::<Header>(text)
+        if let Ok(header) = notation::options().from_str::<Header>(text)
             && header.format != FORMAT
         {
             return Err(SnapshotError::Format {
@@ -238,7 +239,7 @@ impl Snapshot {
                 found: header.format,
             });
         }
-        read::options()
+        notation::options()
             .from_str(text)
             .map_err(|e| SnapshotError::Syntax {
                 file: file.to_owned(),
