@@ -6,7 +6,8 @@
 //! program stands on them:
 //!
 //! - [`outside`]: what comes from outside and goes there: files that are read and written, texts of others that are shown.
-//! - [`scene`]: what to solve. A RON file ([`scene::spec`]) becomes a checked [`model::Model`].
+//! - [`format`]: the scene file as its author writes it: read, located, described, and set by paths.
+//! - [`scene`]: what to solve: a [`format::Spec`] becomes a checked [`model::Model`].
 //! - [`explain`]: what happened, why, and what could be done about it, in the words that all front ends share.
 //! - [`study`]: many runs of a scene: sweeps, stability maps, work-precision charts.
 //! - [`history`]: what was done so far: frames, branches, breakpoints, watches.
@@ -27,6 +28,8 @@ pub mod action;
 pub mod cli;
 #[allow(missing_docs)]
 pub mod explain;
+#[allow(missing_docs)]
+pub mod format;
 #[allow(missing_docs)]
 pub mod history;
 pub mod manual;

@@ -4,12 +4,12 @@ use super::context::{Context, any_or_exact, chosen, exact, find, model, several}
 use super::meaning::{Action, ChartOf, Filter, Question, Sort, Ui, Whose};
 use super::misread::Misread;
 use super::table::{Entry, Verb, by_name};
+use crate::format::paths;
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::manual;
 use crate::model::Mode;
 use crate::record::command::{Command, To};
-use crate::scene::paths;
 use crate::study::Vary;
 use std::path::PathBuf;
 

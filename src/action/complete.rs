@@ -4,10 +4,10 @@ use super::arguments::{CONDITIONS, set_paths};
 use super::context::{Context, names};
 use super::meaning::{Filter, Sort, Whose};
 use super::table::{ACTIONS, Entry, Verb, by_name};
+use crate::format::paths;
 use crate::history::tree::Tree;
 use crate::history::watches::WatchQuantity;
 use crate::manual;
-use crate::scene::paths;
 
 /// What a line could go on as: whole lines, of which the first is the likeliest.
 pub fn complete(line: &str, context: &Context) -> Vec<String> {

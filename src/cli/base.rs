@@ -1,10 +1,11 @@
 //! What all subcommands need: exit codes, errors, the scene that is named, and how the user is told.
 
+use crate::format::SceneError;
 use crate::outside::files::FileError;
 use crate::outside::shown;
 use crate::record::journal::JournalError;
 use crate::record::snapshot::SnapshotError;
-use crate::scene::{Scene, SceneError};
+use crate::scene::Scene;
 use std::io::{self, Write};
 use std::process::ExitCode;
 

@@ -1,8 +1,9 @@
 //! `stickslip check`: is the scene sound, and what does it cost.
 
 use super::base::{Error, Exit, SceneArgs, say};
+use crate::format::paths;
+use crate::scene::Scene;
 use crate::scene::cost::Cost;
-use crate::scene::{Scene, paths};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

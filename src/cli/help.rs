@@ -1,10 +1,8 @@
 //! `stickslip help [TOPIC]`: the manual's pages, searched or shown, and the help of subcommands.
 
-use super::Cli;
 use super::base::{Error, Exit, say};
 use crate::manual::{self, Page, render};
 use crate::tui;
-use clap::{CommandFactory, Parser};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::{Command, Stdio};
@@ -19,11 +17,12 @@ pub struct Args {
     search: Option<String>,
 }
 
-pub fn main(args: &Args) -> Result<Exit, Error> {
+/// Shows what is asked for; `program` is the whole command line.
+pub fn main(args: &Args, program: clap::Command) -> Result<Exit, Error> {
     match (&args.topic, &args.search) {
         (None, Some(word)) => search(word),
         (None, None) => contents(),
-        (Some(topic), _) if Cli::command().find_subcommand(topic).is_some() => subcommand(topic),
+        (Some(topic), _) if program.find_subcommand(topic).is_some() => subcommand(topic, program),
         (Some(topic), _) => show(manual::page(topic).map_err(|why| Error::Usage(why.to_string()))?),
     }
 }
@@ -38,8 +37,8 @@ fn contents() -> Result<Exit, Error> {
 }
 
 /// What `SUBCOMMAND --help` says.
-fn subcommand(name: &str) -> Result<Exit, Error> {
-    if let Err(help) = Cli::try_parse_from(["stickslip", name, "--help"]) {
+fn subcommand(name: &str, program: clap::Command) -> Result<Exit, Error> {
+    if let Err(help) = program.try_get_matches_from(["stickslip", name, "--help"]) {
         say(&help.render().to_string())?;
     }
     Ok(Exit::Good)
@@ -67,9 +66,8 @@ fn search(word: &str) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// All subcommands with their arguments and options, as the manual shows them.
-pub fn commands() -> String {
-    let mut program = Cli::command();
+/// All subcommands of the program with their arguments and options, as the manual shows them.
+pub fn commands(mut program: clap::Command) -> String {
     program.build();
     let mut text = String::new();
     for command in std::iter::once(&program).chain(program.get_subcommands()) {
@@ -113,18 +111,6 @@ fn written(argument: &clap::Arg) -> String {
     format!("{} {}", flags.join(", "), values.join(" "))
         .trim()
         .to_owned()
-}
-
-/// Whether these words can follow the program's name, without doing what they say.
-///
-/// # Errors
-/// What is wrong with them.
-pub fn is_command_line(words: &[&str]) -> Result<(), String> {
-    let program = std::iter::once("stickslip");
-    match Cli::try_parse_from(program.chain(words.iter().copied())) {
-        Err(error) if error.use_stderr() => Err(error.to_string()),
-        _ => Ok(()),
-    }
 }
 
 /// A page: through a pager on a terminal, else as plain text.

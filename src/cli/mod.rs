@@ -27,11 +27,9 @@ mod story;
 mod study;
 mod table;
 
-pub use help::{commands, is_command_line};
-
 use crate::study::origin;
 use base::{Exit, say, tell};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Steps through contact iterations of the finite element method, in a terminal.
@@ -139,7 +137,7 @@ pub fn main() -> ExitCode {
         Some(Command::Chart(args)) => chart::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
         Some(Command::Show(args)) => show::main(args),
-        Some(Command::Help(args)) => help::main(args),
+        Some(Command::Help(args)) => help::main(args, Cli::command()),
     };
     ended
         .unwrap_or_else(|error| {
@@ -147,4 +145,21 @@ pub fn main() -> ExitCode {
             Exit::Bad
         })
         .into()
+}
+
+/// All subcommands with their arguments and options, as the manual shows them.
+pub fn commands() -> String {
+    help::commands(Cli::command())
+}
+
+/// Whether these words can follow the program's name, without doing what they say.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn is_command_line(words: &[&str]) -> Result<(), String> {
+    let program = std::iter::once("stickslip");
+    match Cli::try_parse_from(program.chain(words.iter().copied())) {
+        Err(error) if error.use_stderr() => Err(error.to_string()),
+        _ => Ok(()),
+    }
 }

@@ -1,8 +1,9 @@
 //! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from.
 
 use super::base::{Error, Exit, say, tell};
+use crate::format::error::did_you_mean;
 use crate::outside::files;
-use crate::scene::{builtin, error::did_you_mean};
+use crate::scene::builtin;
 use crate::study::{builtin as studies, chart_file};
 use crate::teach;
 use std::path::PathBuf;

@@ -5,7 +5,7 @@
 
 pub mod render;
 
-use crate::scene::error::did_you_mean;
+use crate::format::error::did_you_mean;
 
 /// A page of the manual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,9 +8,10 @@
 
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
 use crate::explain::names;
+use crate::format::paths;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{Motion, Singular};
-use crate::scene::{Scene, paths};
+use crate::scene::Scene;
 use crate::step::event::Failure;
 use crate::step::state::Status;
 use std::collections::BTreeMap;

@@ -1,5 +1,5 @@
 //! A frozen interface problem written out as a scene of its own: a condensed scene
-//! ([`crate::scene::condensed`]) whose minor iterations are those of the problem.
+//! ([`crate::format::condensed`]) whose minor iterations are those of the problem.
 //!
 //! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`InterfaceResponse`]); S* moves by
 //! v + p relative to S, with what is prescribed, p. In the scene the slave node moves by u = −(v + p) over a floor at
@@ -17,14 +17,15 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::explain::core::Core;
 use crate::explain::names;
 use crate::explain::report;
+use crate::format::condensed::{Contact, Matrix, Problem, at_once};
+use crate::format::{SceneError, read};
 use crate::interface::minor_history::Cycle;
 use crate::interface::problem::{InterfaceProblem, ProblemNode, Trials};
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
 use crate::model::InitialState;
 use crate::model::{Mode, Model, Settings};
-use crate::scene::condensed::{Contact, Matrix, Problem, at_once};
-use crate::scene::{Scene, SceneError, limits};
+use crate::scene::{Scene, limits};
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
 use crate::step::event::{Failure, Position};
@@ -56,7 +57,7 @@ pub enum NoExport {
     Carried(String),
     #[error(
         "the matrix of {nodes} nodes takes {mebibytes} MiB, and a scene file can have {}; a core is smaller",
-        limits::FILE_BYTES >> 20
+        read::FILE_BYTES >> 20
     )]
     Large { nodes: usize, mebibytes: usize },
     #[error("the problem cannot be written as a matrix: {0}")]
@@ -273,7 +274,7 @@ fn text(
             settings: settings(&problem.settings),
         };
         let text = written.text(&comments);
-        if text.len() > limits::FILE_BYTES {
+        if text.len() > read::FILE_BYTES {
             return Err(NoExport::Large {
                 nodes: count,
                 mebibytes: text.len() >> 20,

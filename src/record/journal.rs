@@ -6,10 +6,11 @@
 //! the disk, moves of the cursor only handed to the system: a kill loses neither, a power cut the latter.
 //! A last line without its end is what a kill leaves of an entry; it is dropped, and told.
 
+use crate::format::{SceneError, Spec, notation, read};
 use crate::outside::files;
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::record::command::Command;
-use crate::scene::{Scene, SceneError, Spec, read};
+use crate::scene::Scene;
 use crate::step::state::State;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Write as _};
@@ -253,7 +254,7 @@ impl Journal {
 
     fn write(&mut self, line: &impl Serialize, sync: bool) -> Result<(), JournalError> {
         let failed = |source| failure(&self.path, "written", source);
-        let text = read::options().to_string(line);
+        let text = notation::options().to_string(line);
         let text = text.map_err(|e| failed(io::Error::other(e)))? + "\n";
         let written = self.file.write_all(text.as_bytes());
         let written = written.and_then(|()| match sync {
@@ -377,7 +378,7 @@ fn header(file: &str, line: &str) -> Result<Header, JournalError> {
     struct Any {
         format: u32,
     }
-    if let Ok(any) = read::options().from_str::<Any>(line)
+    if let Ok(any) = notation::options().from_str::<Any>(line)
         && any.format != FORMAT
     {
         return Err(JournalError::Format {
@@ -393,7 +394,7 @@ fn parsed<T: for<'de> Deserialize<'de>>(
     number: usize,
     line: &str,
 ) -> Result<T, JournalError> {
-    read::options().from_str(line).map_err(|e| {
+    notation::options().from_str(line).map_err(|e| {
         let column = e.span.start.col;
         damaged(
             file,
@@ -468,7 +469,7 @@ pub fn digest(state: &State) -> String {
         }
     }
     let mut hash = Hash(0xcbf2_9ce4_8422_2325);
-    match read::options().to_writer(&mut hash, state) {
+    match notation::options().to_writer(&mut hash, state) {
         Ok(()) => format!("{:016x}", hash.0),
         // No state is known that RON cannot take; a digest that equals no other says so.
         Err(error) => format!("none: {error}"),

@@ -6,11 +6,12 @@
 
 use crate::contact::record::Forced;
 use crate::contact::table2::Rule;
+use crate::format::{SceneError, Spec, notation, read};
 use crate::linear::norms::Norms;
 use crate::model::{Mode, Model};
 use crate::outside::files::{self, FileError};
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
-use crate::scene::{Scene, SceneError, Spec, read};
+use crate::scene::Scene;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervene::Intervention;
@@ -177,7 +178,7 @@ impl Snapshot {
             .new_line("\n")
             // Lists of slaves and nodes are tables: one row, one line.
             .depth_limit(3);
-        let text = read::options()
+        let text = notation::options()
             .to_string_pretty(self, layout)
             .map_err(SnapshotError::Unwritable)?;
         Ok(text + "\n")
@@ -232,7 +233,7 @@ impl Snapshot {
                 message: deep.message,
             }
         })?;
-        if let Ok(header) = read::options().from_str::<Header>(text)
+        if let Ok(header) = notation::options().from_str::<Header>(text)
             && header.format != FORMAT
         {
             return Err(SnapshotError::Format {
@@ -240,7 +241,7 @@ impl Snapshot {
                 found: header.format,
             });
         }
-        read::options()
+        notation::options()
             .from_str(text)
             .map_err(|e| SnapshotError::Syntax {
                 file: file.to_owned(),

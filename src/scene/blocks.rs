@@ -5,10 +5,10 @@
 //! interpolation, Gordon and Hall 1973).
 
 use super::curves::{lagrange, point, sin_cos_degrees};
-use super::error::{Fault, Path};
 use super::geometry;
 use super::limits;
-use super::spec::{Place, Point, Side, Sides};
+use crate::format::error::{Fault, Path};
+use crate::format::spec::{Place, Point, Side, Sides};
 
 /// Edges of a block in the order of the walk around it.
 pub(crate) const EDGES: [&str; 4] = ["bottom", "right", "top", "left"];

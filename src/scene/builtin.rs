@@ -63,7 +63,7 @@ impl Builtin {
     ///
     /// A built-in scene that cannot be read is a bug that the tests find; its description is empty then.
     pub fn title(&self) -> String {
-        super::read::spec(self.name, self.text)
+        crate::format::read::spec(self.name, self.text)
             .map(|spec| spec.title)
             .unwrap_or_default()
     }

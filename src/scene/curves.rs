@@ -1,8 +1,8 @@
 //! Points along lines, arcs and Lagrange curves.
 
-use super::error::{Fault, Path};
 use super::limits;
-use super::spec::Point;
+use crate::format::error::{Fault, Path};
+use crate::format::spec::Point;
 
 pub(crate) fn point(path: &Path, (x, y): Point) -> Result<(), Fault> {
     limits::finite(&path.then(0), x, "x")?;

@@ -1,7 +1,7 @@
 //! Whether elements are sound curves, and how far a point is from a chain of them.
 
-use super::error::{Fault, Path};
 use super::limits;
+use crate::format::error::{Fault, Path};
 use crate::model::Node;
 
 /// Refuses chains with an element whose nodes coincide, or whose curve folds back or stands still.

@@ -1,13 +1,11 @@
 //! How large a scene may be, and checks of single numbers.
 //!
 //! The limits keep a slip of the finger (`elements: 100000000`) from taking the machine. What a large scene may have is a
-//! matter of the memory that it takes ([`super::memory`], [`crate::linear::estimate`]).
+//! matter of the memory that it takes ([`super::memory`], [`super::cost`]).
 
-use super::error::{Fault, Path};
+use crate::format::error::{Fault, Path};
 use crate::linear::estimate::bytes;
 
-/// Most bytes of a scene file: a dense matrix of 2,500 contacts to the last digit.
-pub const FILE_BYTES: usize = 512 << 20;
 /// Most nodes of a scene, after refinement: places in its stiffness have 32 bits.
 pub const NODES: usize = 50_000_000;
 /// Least bytes that a node takes, with its share of elements and stiffness.
@@ -82,7 +80,7 @@ pub(crate) fn entries(list: &str, length: usize) -> Result<(), Fault> {
         return Ok(());
     }
     let message = format!("the list has {length} entries; at most {ENTRIES} can be had");
-    Err(Fault::new(super::error::at![list], message))
+    Err(Fault::new(crate::format::error::at![list], message))
 }
 
 /// What does not fit, if this many bytes are wanted at least; `setting` is `settings.memory`.
@@ -121,7 +119,7 @@ pub(crate) fn id(path: &Path, id: &str) -> Result<(), Fault> {
     } else {
         return Ok(());
     };
-    let shown = super::error::quoted(id);
+    let shown = crate::format::error::quoted(id);
     Err(Fault::new(
         path.clone(),
         format!("the id {shown} {wrong}; an id is made of letters, digits, - and _"),

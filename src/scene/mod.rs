@@ -1,42 +1,30 @@
-//! What to solve: the scene file and the checked model made of it.
+//! What to solve: from the scene file, as [`format`](crate::format) reads it, to the checked model made of it.
 //!
-//! - [`spec`]: the file as its author writes it; [`read`]: from text to that, [`locate`]: from that back to a line.
-//! - [`described`]: the types of the file, described once for [`paths`] and for the manual.
-//! - [`paths`]: every scalar of a scene by its path, to list and to set.
-//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what is wrong.
-//! - [`cost`]: what a scene costs, and what it does without; [`crate::linear::estimate`]: its time and memory, estimated; [`memory`]: what
-//!   there is of that.
-//! - [`condensed`]: interface problems without bodies, as scenes; [`siconos`]: those of another code.
+//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what
+//!   is wrong.
+//! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
+//! - [`siconos`]: interface problems of another code.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod builtin;
-pub mod condensed;
 pub mod cost;
-pub mod described;
-pub mod error;
 pub mod limits;
-pub mod locate;
 pub mod memory;
 pub mod nodes;
-pub mod paths;
-pub mod read;
 pub mod siconos;
-pub mod spec;
 
 mod blocks;
 mod compile;
 mod curves;
 mod geometry;
 
+use crate::format::paths::Override;
+use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read};
 use crate::model::Model;
 pub use builtin::Builtin;
-pub use error::SceneError;
-pub use spec::Spec;
 
 pub(crate) use compile::increments;
-pub(crate) use error::Fault;
 use nodes::Names;
-use paths::Override;
 
 /// A scene that has been read and found sound.
 #[derive(Debug, Clone, PartialEq)]

@@ -18,9 +18,9 @@
 //! The scene that comes of it has all contacts at gap 0 and free, and takes the unloaded motion q, and so u and r, in one
 //! increment. A trailing rest of the file is not read.
 
-use super::condensed::{Contact, Matrix, Problem, at_once};
 use super::limits;
-use super::locate::line_and_column;
+use crate::format::condensed::{Contact, Matrix, Problem, at_once};
+use crate::format::locate::line_and_column;
 use crate::model::{Friction, InitialState, Mode, Settings, Solver};
 
 /// A friction problem in the plane.
@@ -249,7 +249,7 @@ impl<'t> Words<'t> {
     }
 
     fn unlike(&self, word: &str, wanted: &str) -> Broken {
-        let shown = super::error::quoted(word);
+        let shown = crate::format::error::quoted(word);
         self.broken(&format!("{shown} stands where {wanted} should"))
     }
 

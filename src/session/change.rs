@@ -4,10 +4,11 @@ use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
 use super::worker::Job;
 use crate::explain::report;
+use crate::format::paths;
 use crate::history::branches;
 use crate::history::strip::PointKind;
 use crate::outside::shown;
-use crate::scene::{Scene, paths};
+use crate::scene::Scene;
 use crate::step::intervene::Intervention;
 
 impl Session {

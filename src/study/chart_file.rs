@@ -15,7 +15,7 @@
 
 use super::read::{Vary, Word, parse, vary};
 use super::reference::Reference;
-use crate::scene::error::SceneError;
+use crate::format::error::SceneError;
 use crate::scene::{Scene, builtin};
 use serde::Deserialize;
 use std::path::PathBuf;

@@ -4,8 +4,8 @@
 //! and a result as RON; the key is a hash of all that the result depends on, so that whatever is asked for next time, what
 //! is there already is not computed again. A line that a kill has cut off has no end, and is taken away.
 
+use crate::format::read::plainly;
 use crate::outside::input::{self, Unreadable};
-use crate::scene::read::plainly;
 use rustix::fs::{FlockOperation, flock};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

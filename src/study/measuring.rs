@@ -3,7 +3,8 @@
 use super::chart_file::Chart;
 use super::precision::{self, Cost, Measure, Precision, PrecisionError};
 use super::{Plan, Vary, Watch};
-use crate::scene::{Scene, SceneError};
+use crate::format::SceneError;
+use crate::scene::Scene;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};

@@ -1,8 +1,9 @@
 //! The product of all settings of a study, with every case found sound before any is run.
 
 use super::read::{AxisQuantity, Study, Vary};
-use crate::scene::error::{SceneError, did_you_mean, some_of};
-use crate::scene::{Scene, increments, paths};
+use crate::format::error::{SceneError, did_you_mean, some_of};
+use crate::format::paths;
+use crate::scene::{Scene, increments};
 use std::sync::Arc;
 
 /// More runs than this are a slip of the finger.

@@ -17,9 +17,9 @@ use super::read::Study;
 use super::reference::{self, Reference};
 use super::result::{CaseEnd, Run};
 use super::run::{Watch, one};
+use crate::format::SceneError;
 use crate::linear::estimate::Estimate;
 use crate::model::Model;
-use crate::scene::SceneError;
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
 

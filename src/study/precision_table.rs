@@ -2,9 +2,9 @@
 
 use super::csv::TableError;
 use super::precision::{Cost, Point, Precision, mark_front};
+use crate::format::error::quoted;
 use crate::outside::input::{self, MARK, TABLE_BYTES};
 use crate::outside::shown;
-use crate::scene::error::quoted;
 use std::fmt::Write;
 use std::path::Path;
 

@@ -12,8 +12,8 @@
 //!   0 to 1, too, and the problem may have no answer;
 //! - gaps: half of the nodes touch (0), the others are uniform in −0.25 to 0.75: some penetrate. All nodes start free.
 
+use crate::format::condensed::{Contact, HEAD, Matrix, Problem, at_once};
 use crate::model::{Friction, Mode, Settings};
-use crate::scene::condensed::{Contact, HEAD, Matrix, Problem, at_once};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::fmt::Write;

@@ -15,9 +15,10 @@
 //! that fit to the same value.
 
 use super::builtin;
-use crate::scene::error::{Path, SceneError, Step, did_you_mean, quoted};
-use crate::scene::locate::{locate, too_deep};
-use crate::scene::read::{options, plainly, shallow, text};
+use crate::format::error::{Path, SceneError, Step, did_you_mean, quoted};
+use crate::format::locate::{locate, too_deep};
+use crate::format::notation::options;
+use crate::format::read::{plainly, shallow, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};

@@ -6,8 +6,8 @@
 
 use super::csv::{TableError, column};
 use super::result::Run;
+use crate::format::error::{quoted, shortened};
 use crate::outside::input::{self, MARK, TABLE_BYTES};
-use crate::scene::error::{quoted, shortened};
 use std::path::Path;
 
 /// Loads that differ by less than this part of the largest are the same.

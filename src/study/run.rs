@@ -5,7 +5,7 @@ use super::plan::{Case, Plan};
 use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
 use super::verdict::Verdict;
-use crate::scene::SceneError;
+use crate::format::SceneError;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;

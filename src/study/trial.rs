@@ -13,9 +13,10 @@
 use super::random::{Drawn, Population};
 use super::reason::Reason;
 use super::verdict::Verdict;
+use crate::format::condensed::{Matrix, Problem};
+use crate::format::{SceneError, paths};
 use crate::interface::census::census;
-use crate::scene::condensed::{Matrix, Problem};
-use crate::scene::{Scene, SceneError, increments, paths};
+use crate::scene::{Scene, increments};
 use crate::step::drive::{RunEnd, Until};
 use crate::step::stepper::Stepper;
 use serde::{Deserialize, Serialize};
@@ -148,7 +149,7 @@ fn one(problem: &Problem, scene: Scene) -> Trial {
 /// By how much the present state breaks what it must satisfy, over the sizes of its own forces and lengths.
 fn violation(problem: &Problem, stepper: &Stepper) -> f64 {
     let (model, state) = (stepper.model(), stepper.state());
-    // The contacts are the slaves, in order; n is y and t is −x (`scene::condensed`).
+    // The contacts are the slaves, in order; n is y and t is −x (`format::condensed`).
     let place = |s: usize| model.dofs.first[model.contacts[s].node];
     let slaves = 0..problem.contacts.len();
     let u: Vec<f64> = slaves
@@ -216,8 +217,8 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::format::condensed::{Contact, at_once};
     use crate::model::Friction;
-    use crate::scene::condensed::{Contact, at_once};
 
     /// A node on two unit springs, a load (−1, 1) along n and t, friction μ = 0.5: it slides, u_t = 0.5.
     fn slider() -> Problem {

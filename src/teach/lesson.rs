@@ -4,10 +4,11 @@ use super::quantity::{LessonQuantity, Template};
 use super::refusal::NoPress;
 use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use crate::action::{self, Action, Context};
+use crate::format::error::{Path, SceneError, at, did_you_mean};
+use crate::format::{Fault, read};
 use crate::model::{Mode, Model};
 use crate::record::command::Command;
-use crate::scene::error::{Path, SceneError, at, did_you_mean};
-use crate::scene::{Builtin, Fault, Scene, placed, read};
+use crate::scene::{Builtin, Scene, placed};
 use std::sync::Arc;
 
 /// A lesson that was read and found to fit its scene.

@@ -7,8 +7,8 @@ use super::tutor::{AnswerKind, Tutor};
 use crate::action::Action;
 use crate::explain::names;
 use crate::explain::number::four;
+use crate::format::SceneError;
 use crate::record::command::{Command, Unit};
-use crate::scene::SceneError;
 use crate::session::Session;
 use std::sync::Arc;
 

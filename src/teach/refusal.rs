@@ -1,7 +1,7 @@
 //! Why a lesson does not let something be done, and what it cannot tell.
 
 use crate::action::Misread;
-use crate::scene::error::did_you_mean;
+use crate::format::error::did_you_mean;
 use crate::session::Refusal;
 
 /// Why something is not done now: what the lesson, or free mode, waits for.

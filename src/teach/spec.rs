@@ -18,8 +18,8 @@
 //! Right answers do not stand here: they are what the solver then does. So are numbers in texts, see
 //! [`super::quantity`].
 
+use crate::format::spec::Spec;
 use crate::model::Mode;
-use crate::scene::spec::Spec;
 use serde::Deserialize;
 
 /// A lesson file.

@@ -1,7 +1,8 @@
 //! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
 //! while.
 
-use crate::scene::{Scene, SceneError};
+use crate::format::SceneError;
+use crate::scene::Scene;
 use crate::session::Session;
 use crate::teach::Lesson;
 use crate::tui::chartpage::{ChartPage, NoPage};

@@ -2,10 +2,11 @@
 
 use crate::action::ChartOf;
 use crate::explain::report;
+use crate::format::SceneError;
 use crate::outside::shown;
 use crate::record::command::{Command, Unit};
 use crate::record::journal::{JournalError, Keep};
-use crate::scene::{Scene, SceneError, builtin};
+use crate::scene::{Scene, builtin};
 use crate::session::{Reply, Session};
 use crate::study::measuring::Measuring;
 use crate::teach::{Lesson, Tutor};

@@ -378,7 +378,7 @@ fn a_star_sets_all_that_fit_and_several_scenes_have_a_column() {
         .iter()
         .map(|case| {
             let spec = case.open().unwrap().spec;
-            let all = stickslip::scene::paths::list(&spec);
+            let all = stickslip::format::paths::list(&spec);
             let found = all.into_iter().find(|l| l.path == "materials.rod.EA");
             found.unwrap().value
         })

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use stickslip::scene::described::markdown;
+use stickslip::format::markdown;
 use stickslip::teach::Lesson;
 use stickslip::tui::{Debugger, theme::Theme};
 

@@ -2,8 +2,9 @@
 
 use crate::scenes::{EVERYTHING, assert_usable};
 use proptest::prelude::*;
+use stickslip::format::paths;
 use stickslip::scene::cost::Cost;
-use stickslip::scene::{Scene, builtin, paths};
+use stickslip::scene::{Scene, builtin};
 
 fn try_text(text: &str) {
     match Scene::from_text("x", text, &[]) {

@@ -1,11 +1,12 @@
 //! What a sound scene means: loads, supports, regions, monitors, and settings from outside.
 
 use crate::scenes::{BLOCK, ELASTIC, EVERYTHING, LINE, SOLID, assert_usable, small, solid, with};
+use stickslip::format::{Spec, notation, paths};
 use stickslip::model::BoundUpdate;
 use stickslip::model::Model;
 use stickslip::model::{BodyKind, Watched};
 use stickslip::scene::cost::Cost;
-use stickslip::scene::{Scene, Spec, builtin, paths, read};
+use stickslip::scene::{Scene, builtin};
 
 #[test]
 fn tractions_add_up_to_load_times_length() {
@@ -160,10 +161,10 @@ fn a_scene_survives_being_written_and_read() {
     for builtin in builtin::list() {
         let scene = Scene::open(builtin.name, &[]).unwrap();
         let pretty = ron::ser::PrettyConfig::default();
-        let text = read::options()
+        let text = notation::options()
             .to_string_pretty(&scene.spec, pretty)
             .unwrap();
-        let again: Spec = read::options().from_str(&text).unwrap();
+        let again: Spec = notation::options().from_str(&text).unwrap();
         assert_eq!(again, scene.spec);
         let model: Model = Scene::from_spec("again", again).unwrap().model;
         assert_eq!(model, scene.model);

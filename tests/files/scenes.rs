@@ -1,10 +1,11 @@
 //! Scenes as text, for tests of the format: the pinned beam changed, small ones, a block, a plate, and one with everything.
 
 use std::collections::HashSet;
+use stickslip::format::SceneError;
 use stickslip::model::BodyKind;
 use stickslip::model::Component;
 use stickslip::model::Model;
-use stickslip::scene::{Scene, SceneError, builtin};
+use stickslip::scene::{Scene, builtin};
 
 pub const PINNED: &str = "01-pinned-beam-rough-floor";
 

@@ -2,11 +2,11 @@
 
 use crate::common::{force, go_on, run, scene};
 use std::sync::Arc;
+use stickslip::format::spec::{LoadSpec, Nodes, Point, Spec};
 use stickslip::model::Mode;
 use stickslip::model::{Friction, Model};
 use stickslip::scene::Scene;
 use stickslip::scene::builtin;
-use stickslip::scene::spec::{LoadSpec, Nodes, Point, Spec};
 use stickslip::step::event::Outcome;
 use stickslip::step::state::{State, Status};
 use stickslip::step::stepper::Stepper;

@@ -161,8 +161,8 @@ fn a_distorted_patch_reproduces_a_homogeneous_deformation_exactly() {
                 let nodes = scene.names().nodes(&format!("k.{e}")).unwrap();
                 nodes[1..].to_vec()
             }) {
+                use stickslip::format::spec::LoadSpec;
                 use stickslip::model::Component;
-                use stickslip::scene::spec::LoadSpec;
                 for (k, component) in [Component::X, Component::Y].into_iter().enumerate() {
                     spec.loads.push(LoadSpec::Displacement {
                         node: scene.model.nodes[n].name.clone(),

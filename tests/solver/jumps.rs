@@ -2,8 +2,8 @@
 
 use crate::common::{self, Accepted, Run, run, scene};
 use crate::program::{code, err, out, program};
+use stickslip::format::spec::LoadSpec;
 use stickslip::scene::Scene;
-use stickslip::scene::spec::LoadSpec;
 use stickslip::step::event::{Failure, Outcome};
 
 const EDGE: &str = concat!(

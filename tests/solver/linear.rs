@@ -1,11 +1,12 @@
 //! Bodies given by a matrix, endless floors, and what slave nodes bring along.
 
 use crate::common::run;
+use stickslip::format::condensed::{Contact, Matrix, Problem};
+use stickslip::format::spec::History;
+use stickslip::format::{Spec, notation};
 use stickslip::model::InitialState;
 use stickslip::model::{Friction, Mode, Settings};
-use stickslip::scene::condensed::{Contact, Matrix, Problem};
-use stickslip::scene::spec::History;
-use stickslip::scene::{Scene, Spec, read};
+use stickslip::scene::Scene;
 use stickslip::step::stepper::Stepper;
 
 fn contact(id: &str, gap: f64, load: [f64; 2]) -> Contact {
@@ -137,10 +138,10 @@ fn a_problem_survives_being_written_as_a_scene_and_read() {
         vec![0.1; 4],
     );
     let spec = problem.spec();
-    let text = read::options()
+    let text = notation::options()
         .to_string_pretty(&spec, ron::ser::PrettyConfig::default())
         .unwrap();
-    let again: Spec = read::options().from_str(&text).unwrap();
+    let again: Spec = notation::options().from_str(&text).unwrap();
     assert_eq!(again, spec);
     assert_eq!(
         Scene::from_text("t", &text, &[]).unwrap().model,
@@ -198,7 +199,7 @@ fn forces_that_a_node_brings_hold_what_loads_it() {
         let mut it = contact("a", 0.0, [0.0, 0.0]);
         (it.start, it.state.f_n, it.state.f_t) = (Mode::Fixed, 2.0, 0.5);
         let mut spec = problem(vec![it], single(1.0), vec![]).spec();
-        spec.loads.push(stickslip::scene::spec::LoadSpec::Force {
+        spec.loads.push(stickslip::format::spec::LoadSpec::Force {
             node: "a".to_owned(),
             x: 0.5,
             y: -2.0,

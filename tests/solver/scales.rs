@@ -3,11 +3,11 @@
 
 use crate::common::{Run, run, scene};
 use crate::program;
+use stickslip::format::spec::{BodySpec, LoadSpec, Material, Nodes, Point, Spec};
 use stickslip::linear::estimate::Estimate;
 use stickslip::linear::norms::Norms;
 use stickslip::model::Component;
 use stickslip::scene::Scene;
-use stickslip::scene::spec::{BodySpec, LoadSpec, Material, Nodes, Point, Spec};
 use stickslip::step::event::{Failure, Outcome};
 
 fn file(name: &str) -> Scene {

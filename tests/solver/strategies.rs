@@ -4,6 +4,8 @@
 use crate::common::{run, scene};
 use std::sync::Arc;
 use stickslip::contact::table2::Rule;
+use stickslip::format::condensed::{Contact, Matrix, Problem};
+use stickslip::format::spec::History;
 use stickslip::interface::census::{Census, census};
 use stickslip::interface::method::NotFound;
 use stickslip::interface::problem::Trials;
@@ -11,8 +13,6 @@ use stickslip::linear::singular::Singular;
 use stickslip::model::{Friction, Mode, Model, Settings};
 use stickslip::model::{InitialState, Jumps, Strategy};
 use stickslip::scene::Scene;
-use stickslip::scene::condensed::{Contact, Matrix, Problem};
-use stickslip::scene::spec::History;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::intervene::Intervention;
 use stickslip::step::stepper::Stepper;

@@ -160,8 +160,8 @@ pub struct Numbers {
     pub slip: f64,
 }
 
-/// A state judged.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// What was found of a state; empty before anything is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
     /// The worst place for every law, in the order of [`Law::ALL`]. `None` if the law applied nowhere.
     pub worst: [Option<Finding>; 8],
@@ -170,14 +170,6 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Nothing judged yet.
-    pub fn new() -> Self {
-        Verdict {
-            worst: [None; 8],
-            work: None,
-        }
-    }
-
     /// Keeps `finding` if it is worse than what is known of its law.
     pub fn add(&mut self, finding: Finding) {
         let worst = match finding.law {
@@ -334,7 +326,7 @@ impl Judge {
     /// Judges contact and friction. `contact` (one entry a node of the scene) receives the interaction force on every node,
     /// x and y; the feet found here distribute a slave's force over the nodes of its master element.
     pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {
-        let mut verdict = Verdict::new();
+        let mut verdict = Verdict::default();
         contact.fill([0.0; 2]);
         let near = seen.scales.near();
         if !self.last.is(seen.before, near, seen.contacts.len()) {

@@ -351,7 +351,7 @@ impl Source for ConstantSource {
             lengths: tolerance,
             forces: tolerance,
         };
-        let mut verdict = Verdict::new();
+        let mut verdict = Verdict::default();
         for (k, state) in at.contacts.iter().enumerate() {
             let slip = at.accepted.u[2 * k + 1] - at.u[2 * k + 1];
             let touched = at.accepted.contacts[k].mode != Mode::Free;

@@ -37,7 +37,7 @@ impl System {
                 self.residual[*equation] = balance;
             }
         }
-        let [floor, length_floor] = self.round_off(model, &at.u);
+        let [floor, length_floor] = self.round_off(model, at.u);
         let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
         let wanted = self.sizes.wanted(model, at, |dof| self.nodal_force(dof));
         let noise = if floor > 0.0 { floor / wanted } else { 0.0 };

@@ -137,7 +137,7 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, at: &At<'_>) -> Result<(), SolveError> {
-        if self.condenses(&at.chosen) && self.condensable {
+        if self.condenses(at.chosen) && self.condensable {
             self.linearise_in(Layout::Bodies, model, at)
         } else {
             self.linearise_in(Layout::Whole, model, at)
@@ -152,7 +152,7 @@ impl System {
     ) -> Result<(), SolveError> {
         self.condensed.fresh = false;
         self.scaled = false;
-        self.place(model, &at.u);
+        self.place(model, at.u);
         for (interface, (node, slave)) in self
             .interfaces
             .iter_mut()
@@ -183,10 +183,10 @@ impl System {
             coupling: &mut self.coupling,
         };
         let moved = Moved {
-            u: &at.u,
+            u: at.u,
             step: &self.step,
-            before: &at.accepted.u,
-            history: &at.accepted.history,
+            before: at.accepted.u,
+            history: at.accepted.history,
         };
         self.assembly.assemble(&model.dofs, moved, out);
         if let (Layout::Bodies, Some(bodies)) = (layout, &mut self.bodies) {
@@ -369,7 +369,7 @@ impl System {
     /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
     /// bodies after [`System::recover`].
     pub fn solve(&mut self, model: &Model, at: &At<'_>) -> Solved {
-        if self.condenses(&at.chosen) {
+        if self.condenses(at.chosen) {
             self.solve_condensed(model, at)
         } else {
             self.solve_augmented(model, at)

@@ -1,12 +1,13 @@
 //! Materials, bodies, and the elements along chains.
 
 use super::super::curves::point;
-use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use super::super::geometry;
 use super::super::limits;
-use super::super::nodes::{Mesh, Names, unique};
-use super::super::spec::{BodySpec, Material, Point, Region, Spec};
+use super::super::nodes::checks::unique;
+use super::super::nodes::{Mesh, Names};
 use super::linear;
+use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
+use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
 use crate::model::{Beam, Body, BodyKind, Elastic, ElementKind, Node, Solid};
 use crate::model::{Law, Update};
 use std::collections::HashSet;

@@ -1,8 +1,8 @@
 //! The path of the load factor, and the settings of the method.
 
-use super::super::error::{Fault, at};
 use super::super::limits;
-use super::super::spec::History;
+use crate::format::error::{Fault, at};
+use crate::format::spec::History;
 use crate::model::Settings;
 
 /// Refuses a path that goes nowhere, or that has no end.

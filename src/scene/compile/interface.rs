@@ -1,11 +1,12 @@
 //! Surfaces, slave nodes and friction.
 
-use super::super::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use super::super::geometry;
 use super::super::limits;
-use super::super::nodes::{Names, unique};
-use super::super::spec::{Nodes, Side, SlaveSpec, Spec};
+use super::super::nodes::Names;
+use super::super::nodes::checks::unique;
 use super::bodies::{check_chain, elements};
+use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
+use crate::format::spec::{Nodes, Side, SlaveSpec, Spec};
 use crate::model::{Component, Friction, InitialState};
 use crate::model::{Contact, Dofs, Surface};
 use std::collections::HashSet;

@@ -1,10 +1,10 @@
 //! Degrees of freedom: which there are, what holds them, what loads them, and the numbers of the rest.
 
-use super::super::error::{Fault, Path, at};
 use super::super::limits;
 use super::super::nodes::Names;
-use super::super::spec::{LoadSpec, Point, Spec};
 use super::tractions;
+use crate::format::error::{Fault, Path, at};
+use crate::format::spec::{LoadSpec, Point, Spec};
 use crate::model::Component;
 use crate::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed};
 use std::collections::HashMap;

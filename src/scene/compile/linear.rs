@@ -1,9 +1,9 @@
 //! Linear bodies: matrices as the file gives them, and springs made into one.
 
-use super::super::error::{Fault, Path};
 use super::super::limits;
 use super::super::nodes::Names;
-use super::super::spec::{Bar, BodySpec, Spec};
+use crate::format::error::{Fault, Path};
+use crate::format::spec::{Bar, BodySpec, Spec};
 use crate::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load};
 use std::collections::{BTreeMap, HashMap, HashSet};
 

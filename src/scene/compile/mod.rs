@@ -11,11 +11,11 @@ mod linear;
 mod monitors;
 mod tractions;
 
-use super::error::{Fault, at};
 use super::geometry;
 use super::limits;
 use super::nodes::Names;
-use super::spec::Spec;
+use crate::format::error::{Fault, at};
+use crate::format::spec::Spec;
 use crate::linear::estimate::Estimate;
 use crate::model::{Body, BodyKind, Model};
 use crate::model::{Settings, Touch};

@@ -1,10 +1,10 @@
 //! What is to be reported.
 
-use super::super::error::{Fault, Path, at, quoted, some_of};
 use super::super::limits;
 use super::super::nodes::Names;
-use super::super::spec::{Quantity, Spec};
 use super::layout::no_rotation;
+use crate::format::error::{Fault, Path, at, quoted, some_of};
+use crate::format::spec::{Quantity, Spec};
 use crate::model::{Contact, Dofs, Monitor, Watched};
 use std::collections::HashMap;
 

@@ -1,10 +1,10 @@
 //! Nodal forces of uniform loads along chains.
 
 use super::super::curves::shape;
-use super::super::error::{Fault, Path};
 use super::super::geometry;
 use super::super::limits;
 use super::super::nodes::Names;
+use crate::format::error::{Fault, Path};
 use std::collections::BTreeMap;
 
 /// A uniform load per unit of undeformed length.

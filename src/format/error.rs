@@ -58,7 +58,7 @@ impl fmt::Display for Path {
 /// A [`Path`] from keys and indices: `at!["slaves", 0, "nodes", 1]`.
 macro_rules! at {
     ($($step:expr),* $(,)?) => {
-        $crate::scene::error::Path(vec![$($crate::scene::error::Step::from($step)),*])
+        $crate::format::error::Path(vec![$($crate::format::error::Step::from($step)),*])
     };
 }
 pub(crate) use at;

@@ -2,9 +2,9 @@
 
 /// Whether an attribute says that a field, or every field, may be left out.
 macro_rules! has_default {
-    (serde($($inside:tt)*)) => { $crate::scene::described::has_default!(@in $($inside)*) };
+    (serde($($inside:tt)*)) => { $crate::format::described::macros::has_default!(@in $($inside)*) };
     (@in default $($rest:tt)*) => { true };
-    (@in $other:tt $($rest:tt)*) => { $crate::scene::described::has_default!(@in $($rest)*) };
+    (@in $other:tt $($rest:tt)*) => { $crate::format::described::macros::has_default!(@in $($rest)*) };
     (@in) => { false };
     ($($other:tt)*) => { false };
 }
@@ -12,11 +12,15 @@ macro_rules! has_default {
 /// Visits a field, as its mark asks.
 macro_rules! walk_field {
     ($field:ident, $place:ident, $visit:ident) => {
-        $crate::scene::described::Described::walk($field, &$place.field(stringify!($field)), $visit)
+        $crate::format::described::Described::walk(
+            $field,
+            &$place.field(stringify!($field)),
+            $visit,
+        )
     };
     ($field:ident, $place:ident, $visit:ident, given) => {
         if let Some(given) = $field {
-            $crate::scene::described::Described::walk(
+            $crate::format::described::Described::walk(
                 given,
                 &$place.field(stringify!($field)),
                 $visit,
@@ -52,54 +56,54 @@ macro_rules! described {
         }
 
         #[allow(non_snake_case)]
-        impl $crate::scene::described::Described for $name {
+        impl $crate::format::described::Described for $name {
             fn walk(
                 &mut self,
-                place: &$crate::scene::described::Place,
-                visit: &mut $crate::scene::described::Visit<'_>,
+                place: &$crate::format::described::Place,
+                visit: &mut $crate::format::described::Visit<'_>,
             ) {
                 let $name { $($part),* } = self;
-                $($crate::scene::described::walk_field!($part, place, visit $(, $mark)?);)*
+                $($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*
             }
             fn called(&self) -> Option<&str> {
                 let $name { $($part),* } = self;
-                [$($crate::scene::described::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
+                [$($crate::format::described::macros::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
             }
             fn kind() -> String {
-                $crate::scene::described::link(stringify!($name))
+                $crate::format::described::link(stringify!($name))
             }
             fn blank() -> String {
-                let every = false $(|| $crate::scene::described::has_default!($($meta)*))*;
-                $crate::scene::described::blank_form("", &[$((
+                let every = false $(|| $crate::format::described::macros::has_default!($($meta)*))*;
+                $crate::format::described::blank_form("", &[$((
                     stringify!($part),
-                    every $(|| $crate::scene::described::has_default!($($part_meta)*))*,
-                    <$type as $crate::scene::described::Described>::blank(),
+                    every $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                    <$type as $crate::format::described::Described>::blank(),
                 )),*])
             }
             fn shown(&self) -> String {
-                $crate::scene::described::OWN_DEFAULTS.to_owned()
+                $crate::format::described::OWN_DEFAULTS.to_owned()
             }
-            fn types(into: &mut Vec<$crate::scene::described::Type>) -> Result<(), String> {
-                if $crate::scene::described::known(into, stringify!($name)) {
+            fn types(into: &mut Vec<$crate::format::described::Type>) -> Result<(), String> {
+                if $crate::format::described::known(into, stringify!($name)) {
                     return Ok(());
                 }
-                let every = false $(|| $crate::scene::described::has_default!($($meta)*))*;
-                let $name { $($part),* } = &$crate::scene::described::read_blank(&Self::blank())?;
-                into.push($crate::scene::described::Type {
+                let every = false $(|| $crate::format::described::macros::has_default!($($meta)*))*;
+                let $name { $($part),* } = &$crate::format::described::read_blank(&Self::blank())?;
+                into.push($crate::format::described::Type {
                     name: stringify!($name),
                     docs: $crate::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
-                    forms: vec![$crate::scene::described::Form {
+                    forms: vec![$crate::format::described::Form {
                         name: None,
                         docs: String::new(),
-                        fields: vec![$($crate::scene::described::Field::of(
+                        fields: vec![$($crate::format::described::field_of(
                             stringify!($part),
                             &[$(stickslip_core::doc_line!($($part_meta)*)),*],
                             $part,
-                            every $(|| $crate::scene::described::has_default!($($part_meta)*))*,
+                            every $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
                         )),*],
                     }],
                 });
-                $(<$type as $crate::scene::described::Described>::types(into)?;)*
+                $(<$type as $crate::format::described::Described>::types(into)?;)*
                 Ok(())
             }
         }
@@ -117,72 +121,72 @@ macro_rules! described {
         }
 
         #[allow(non_snake_case)]
-        impl $crate::scene::described::Described for $name {
+        impl $crate::format::described::Described for $name {
             fn walk(
                 &mut self,
-                place: &$crate::scene::described::Place,
-                visit: &mut $crate::scene::described::Visit<'_>,
+                place: &$crate::format::described::Place,
+                visit: &mut $crate::format::described::Visit<'_>,
             ) {
                 match self {
                     $($name::$form { $($part),* } => {
-                        $($crate::scene::described::walk_field!($part, place, visit $(, $mark)?);)*
+                        $($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*
                     })*
                 }
             }
             fn called(&self) -> Option<&str> {
                 match self {
                     $($name::$form { $($part),* } => {
-                        [$($crate::scene::described::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
+                        [$($crate::format::described::macros::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
                     })*
                 }
             }
             fn kind() -> String {
-                $crate::scene::described::link(stringify!($name))
+                $crate::format::described::link(stringify!($name))
             }
             fn blank() -> String {
-                let all = [$($crate::scene::described::blank_form(stringify!($form), &[$((
+                let all = [$($crate::format::described::blank_form(stringify!($form), &[$((
                     stringify!($part),
-                    false $(|| $crate::scene::described::has_default!($($part_meta)*))*,
-                    <$type as $crate::scene::described::Described>::blank(),
+                    false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                    <$type as $crate::format::described::Described>::blank(),
                 )),*])),*];
                 all[0].clone()
             }
             fn shown(&self) -> String {
-                $crate::scene::described::OWN_DEFAULTS.to_owned()
+                $crate::format::described::OWN_DEFAULTS.to_owned()
             }
-            fn types(into: &mut Vec<$crate::scene::described::Type>) -> Result<(), String> {
-                if $crate::scene::described::known(into, stringify!($name)) {
+            fn types(into: &mut Vec<$crate::format::described::Type>) -> Result<(), String> {
+                if $crate::format::described::known(into, stringify!($name)) {
                     return Ok(());
                 }
                 let mut forms = Vec::new();
                 $(
-                    let blank = $crate::scene::described::blank_form(stringify!($form), &[$((
+                    let blank = $crate::format::described::blank_form(stringify!($form), &[$((
                         stringify!($part),
-                        false $(|| $crate::scene::described::has_default!($($part_meta)*))*,
-                        <$type as $crate::scene::described::Described>::blank(),
+                        false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                        <$type as $crate::format::described::Described>::blank(),
                     )),*]);
-                    let $name::$form { $($part),* } = &$crate::scene::described::read_blank(&blank)? else {
+                    let $name::$form { $($part),* } = &$crate::format::described::read_blank(&blank)? else {
                         return Err(format!("{blank}: read as another form"));
                     };
-                    forms.push($crate::scene::described::Form {
+                    forms.push($crate::format::described::Form {
                         name: Some(stringify!($form)),
                         docs: $crate::model::documented::text(
                             &[$(stickslip_core::doc_line!($($form_meta)*)),*],
                         ),
-                        fields: vec![$($crate::scene::described::Field::of(
+                        fields: vec![$($crate::format::described::field_of(
                             stringify!($part),
                             &[$(stickslip_core::doc_line!($($part_meta)*)),*],
                             $part,
-                            false $(|| $crate::scene::described::has_default!($($part_meta)*))*,
+                            false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
                         )),*],
                     });
                 )*
-                into.push($crate::scene::described::Type {
+                into.push($crate::format::described::Type {
                     name: stringify!($name),
                     docs: $crate::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
                     forms,
                 });
-                $($(<$type as $crate::scene::described::Described>::types(into)?;)*)*
+                $($(<$type as $crate::format::described::Described>::types(into)?;)*)*
                 Ok(())
             }
         }

@@ -9,16 +9,15 @@
 //! - `words!` describes enums of plain words that are defined elsewhere. The words are those that serde reads, so
 //!   that none can be forgotten.
 
-mod macros;
-pub mod markdown;
+pub(crate) mod macros;
 mod model;
-mod reference;
+mod types;
 mod words;
 
 use super::error::{Path, quoted};
-pub(crate) use macros::{described, has_default, name_field, walk_field};
-pub use reference::{Field, Form, Type, reference};
-pub(crate) use reference::{OWN_DEFAULTS, blank_form, known, link, read_blank};
+use crate::model::documented::{Lines, text};
+pub use types::{Field, Form, Type};
+pub(crate) use types::{OWN_DEFAULTS, blank_form, known, link, read_blank};
 
 /// A place that a walk has come to, by both its names.
 #[derive(Clone)]
@@ -163,6 +162,26 @@ pub(crate) trait Described: Sized {
     fn types(_into: &mut Vec<Type>) -> Result<(), String> {
         Ok(())
     }
+}
+
+/// A field as the reference shows it; `value` is its default where it is `optional`.
+pub(crate) fn field_of<T: Described>(
+    name: &'static str,
+    docs: Lines,
+    value: &T,
+    optional: bool,
+) -> Field {
+    Field {
+        name,
+        docs: text(docs),
+        kind: T::kind(),
+        default: optional.then(|| value.shown()),
+    }
+}
+
+/// Adds the types that stand in a field.
+fn types_of<T: Described>(_: &T, into: &mut Vec<Type>) -> Result<(), String> {
+    T::types(into)
 }
 
 /// Scalars that are visited as they are: type, scalar, what may be written, the shortest text, how it is shown.

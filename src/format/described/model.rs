@@ -1,11 +1,9 @@
 //! What the scene file shares with the solver: types that are defined with
 //! [`documented!`](crate::model::documented) and listed here.
 
-use super::reference::{
-    Field, Form, OWN_DEFAULTS, Type, known, lines_of, link, of_words, read_blank, types_of,
-};
+use super::types::{Form, OWN_DEFAULTS, Type, known, lines_of, link, of_words, read_blank};
 use super::words::{of_word, word, words};
-use super::{Choice, Described, Place, Scalar, Visit, one_of};
+use super::{Choice, Described, Place, Scalar, Visit, field_of, one_of, types_of};
 use crate::model::documented::text;
 use crate::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Friction, Geometry, InitialState, Jumps, Law,
@@ -34,7 +32,7 @@ macro_rules! fields {
                     return Ok(());
                 }
                 let $name { $($part),* } = &read_blank(&Self::blank())?;
-                let fields = vec![$(Field::of(stringify!($part), lines_of(&$name::DOCS, stringify!($part)), $part, true)),*];
+                let fields = vec![$(field_of(stringify!($part), lines_of(&$name::DOCS, stringify!($part)), $part, true)),*];
                 let form = Form { name: None, docs: String::new(), fields };
                 into.push(Type { name: $name::DOCS.name, docs: text($name::DOCS.lines), forms: vec![form] });
                 $(types_of($part, into)?;)*

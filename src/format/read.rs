@@ -2,23 +2,17 @@
 
 use super::condensed::Problem;
 use super::error::{Path, SceneError, Step, did_you_mean, quoted, shortened};
-use super::limits;
 use super::locate::{line_and_column, locate, too_deep};
+use super::notation::options;
 use super::spec::Spec;
 use crate::outside::input::{self, Unreadable};
 use crate::outside::shown;
 use ron::error::SpannedError;
-use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 use serde_path_to_error::Segment;
 
-/// How scene files are read and written: `Some` may be left out.
-pub fn options() -> ron::Options {
-    // The recursion limit is ron's own (128), spelled out because the stack depends on it.
-    ron::Options::default()
-        .with_default_extension(Extensions::IMPLICIT_SOME)
-        .with_recursion_limit(128)
-}
+/// Most bytes of a scene file: a dense matrix of 2,500 contacts to the last digit.
+pub const FILE_BYTES: usize = 512 << 20;
 
 /// Reads a scene's text.
 pub(crate) fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
@@ -114,7 +108,7 @@ fn wanted(error: &ron::Error) -> Option<&'static str> {
 
 /// The text of a scene file.
 pub(crate) fn text(file: &str) -> Result<String, SceneError> {
-    let most = limits::FILE_BYTES as u64;
+    let most = FILE_BYTES as u64;
     input::text(std::path::Path::new(file), most, "a scene is a page or two")
         .map_err(|error| unread(file, error))
 }

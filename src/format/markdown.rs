@@ -1,6 +1,7 @@
 //! The scene reference as the manual's pages show it.
 
-use super::{Field, Form, Type, reference};
+use super::described::{Field, Form, Type};
+use super::reference::reference;
 
 /// Every type of the file but the settings, which have a page of their own.
 ///

@@ -1,6 +1,6 @@
 //! The words of an enum without fields, as serde reads and writes them.
 
-use crate::scene::read::options;
+use crate::format::notation::options;
 use serde::de::value::Error as Unread;
 use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor};
 use serde::{Serialize, forward_to_deserialize_any};
@@ -44,4 +44,22 @@ pub(super) fn word<T: Serialize + DeserializeOwned>(value: &T) -> &'static str {
 pub(super) fn of_word<T: DeserializeOwned>(word: &str) -> Option<T> {
     let word: serde::de::value::StrDeserializer<'_, Unread> = word.into_deserializer();
     T::deserialize(word).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Law, Strategy};
+
+    #[test]
+    fn words_are_written_as_they_are_read() {
+        for name in words::<Strategy>() {
+            let value: Strategy = of_word(name).unwrap();
+            assert_eq!(word(&value), *name);
+        }
+        assert_eq!(words::<Strategy>(), Strategy::NAMES);
+        assert_eq!(words::<Law>(), ["svk", "neohookean"]);
+        assert_eq!(of_word::<Law>("steel"), None);
+        assert_eq!(Strategy::DOCS.parts.len(), Strategy::NAMES.len());
+    }
 }

@@ -4,7 +4,7 @@
 //! [`Model`](crate::model::Model), and refuses what makes no sense. Every field is either required or has the
 //! default that its comment names.
 
-use super::described::described;
+use super::described::macros::described;
 use crate::model::{
     Axis, Component, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update, least,
 };

@@ -1,0 +1,25 @@
+//! The scene file as its author writes it: from its text to a [`Spec`], and from that back to a line.
+//!
+//! - [`spec`]: the types of the file; [`condensed`]: those of a file with an interface problem without bodies.
+//! - [`described`]: the types, described once for [`paths`] and for the [`reference`](mod@reference), which
+//!   [`markdown`] writes.
+//! - [`notation`]: how RON is written here; [`read`]: from a text to a value; [`locate`]: from a path to its line.
+//! - [`paths`]: every scalar of a scene by its path, to list and to set.
+//! - [`error`]: what is wrong, and where.
+//!
+//! Whether what is written makes sense is for [`scene`](crate::scene) to say.
+
+pub mod condensed;
+pub mod described;
+pub mod error;
+pub mod locate;
+pub mod markdown;
+pub mod notation;
+pub mod paths;
+pub mod read;
+pub mod reference;
+pub mod spec;
+
+pub(crate) use error::Fault;
+pub use error::SceneError;
+pub use spec::Spec;

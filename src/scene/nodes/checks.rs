@@ -1,0 +1,71 @@
+//! Nodes that cannot be laid out, refused before any is made: unusable or doubled ids, and too many nodes.
+
+use super::super::limits;
+use crate::format::error::{Fault, at};
+use crate::format::spec::{Nodes, Spec};
+use std::collections::HashMap;
+
+/// Ids of nodes: usable, and none twice.
+pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
+    if spec.nodes.is_empty() {
+        return Err(Fault::new(at!["nodes"], "the scene has no nodes"));
+    }
+    unique("nodes", spec.nodes.iter().map(Nodes::id))
+}
+
+/// Refuses unusable ids and second ones of the entries of a list.
+pub(crate) fn unique<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
+    let mut seen = HashMap::new();
+    for (k, id) in ids.enumerate() {
+        let here = at![list, k, "id"];
+        limits::id(&here, id)?;
+        if let Some(first) = seen.insert(id, k) {
+            return Err(Fault::new(
+                here,
+                format!("the id {id:?} is taken already by {list}[{first}]"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses too many nodes before any is made.
+pub(super) fn check_total(spec: &Spec) -> Result<(), Fault> {
+    let mut total = 0.0;
+    for (k, nodes) in spec.nodes.iter().enumerate() {
+        // Floating point cannot overflow here, and is exact where it matters.
+        total += match nodes {
+            Nodes::Node { .. } => 1.0,
+            Nodes::Line {
+                elements,
+                per_element,
+                ..
+            }
+            | Nodes::Arc {
+                elements,
+                per_element,
+                ..
+            } => *elements as f64 * *per_element as f64 * spec.refine as f64,
+            Nodes::Through { points, .. } => points.len() as f64 * spec.refine as f64,
+            Nodes::Block { elements, .. } => {
+                let (nx, ny) = (elements.0 as f64, elements.1 as f64);
+                let refine = spec.refine as f64;
+                (3.0 * nx * ny * refine + 2.0 * (nx + ny)) * refine + 1.0
+            }
+            Nodes::Mesh { .. } | Nodes::Chain { .. } => 0.0,
+        };
+        let why = if total > limits::NODES as f64 {
+            format!("at most {} can be had", limits::NODES)
+        } else {
+            match limits::memory(total * limits::NODE_BYTES, spec.settings.memory) {
+                Ok(()) => continue,
+                Err(why) => format!("they take {why}"),
+            }
+        };
+        let refine = spec.refine;
+        let message =
+            format!("up to here the scene has about {total} nodes (refine: {refine}); {why}");
+        return Err(Fault::new(at!["nodes", k], message));
+    }
+    Ok(())
+}

@@ -1,0 +1,168 @@
+//! Meshes of several blocks: which edges are joined, and which nodes become one there.
+
+use super::super::geometry::distance;
+use super::{Entry, EntryKind, Names};
+use crate::format::error::{Fault, Path, at};
+use crate::format::spec::Nodes;
+use std::collections::HashSet;
+
+impl Names {
+    /// Enters a mesh of several blocks, and tells which nodes its joints make one: pairs of those that stay and those
+    /// that go.
+    pub(super) fn mesh_of_blocks(
+        &mut self,
+        at: usize,
+        nodes: &Nodes,
+        twins: &mut Vec<(usize, usize)>,
+    ) -> Result<(), Fault> {
+        let Nodes::Mesh {
+            id,
+            of,
+            joints,
+            tolerance,
+        } = nodes
+        else {
+            return Ok(());
+        };
+        let here = at!["nodes", at];
+        if !(0.0..=0.1).contains(tolerance) {
+            let message = format!(
+                "the tolerance is {tolerance:?}; it must be 0 to 0.1, in lengths of the edge"
+            );
+            return Err(Fault::new(here.then("tolerance"), message));
+        }
+        if of.is_empty() {
+            return Err(Fault::new(
+                here.then("of"),
+                "the list is empty; name the blocks of the mesh",
+            ));
+        }
+        let mut parts = Vec::new();
+        for (k, block) in of.iter().enumerate() {
+            let fault = |message| Fault::new(here.then("of").then(k), message);
+            let part = self.block(block).map_err(fault)?;
+            if parts.contains(&part) {
+                return Err(fault(format!("block {block:?} is named twice")));
+            }
+            parts.push(part);
+        }
+        for (k, (a, b)) in joints.iter().enumerate() {
+            let here = here.then("joints").then(k);
+            let a = self.edge(&here.then(0), a, &parts)?;
+            let b = self.edge(&here.then(1), b, &parts)?;
+            twins.extend(self.joint(&here, a, b, *tolerance)?);
+        }
+        let all: Vec<usize> = parts
+            .iter()
+            .flat_map(|&k| self.entries[k].nodes.clone())
+            .collect();
+        self.enter(at, id, all, EntryKind::Mesh);
+        if let Some(entry) = self.entries.last_mut() {
+            entry.parts = parts;
+        }
+        Ok(())
+    }
+
+    /// An edge of one of these blocks.
+    fn edge(&self, here: &Path, name: &str, parts: &[usize]) -> Result<&Entry, Fault> {
+        let fault = |message| Fault::new(here.clone(), message);
+        let edge = self.chain(name).map_err(fault)?;
+        let owner = parts.iter().any(|&k| self.entries[k].at == edge.at);
+        if edge.kind == EntryKind::Edge && owner {
+            return Ok(edge);
+        }
+        Err(fault(format!(
+            "{name:?} is no edge of a block of this mesh, which is what can be joined, as \"{}.right\"",
+            parts.first().map_or("block", |&k| &self.entries[k].id)
+        )))
+    }
+
+    /// The nodes that become one where two edges are joined. Both are walked with their block on the left, so that one
+    /// runs against the other.
+    fn joint(
+        &self,
+        here: &Path,
+        a: &Entry,
+        b: &Entry,
+        tolerance: f64,
+    ) -> Result<Vec<(usize, usize)>, Fault> {
+        let elements = |edge: &Entry| edge.nodes.len() / 2;
+        if a.nodes.len() != b.nodes.len() {
+            let message = format!(
+                "{:?} has {} elements and {:?} has {}; edges that are joined need as many",
+                a.id,
+                elements(a),
+                b.id,
+                elements(b)
+            );
+            return Err(Fault::new(here.clone(), message));
+        }
+        let place = |n: usize| self.nodes[n].at;
+        let length: f64 = a
+            .nodes
+            .windows(2)
+            .map(|w| distance(place(w[0]), place(w[1])))
+            .sum();
+        let pairs: Vec<(usize, usize)> = a
+            .nodes
+            .iter()
+            .copied()
+            .zip(b.nodes.iter().rev().copied())
+            .collect();
+        let apart = |&&(n, m): &&(usize, usize)| {
+            let far = distance(place(n), place(m)) > tolerance * length;
+            far || !distance(place(n), place(m)).is_finite()
+        };
+        let Some(&(n, m)) = pairs.iter().find(apart) else {
+            return Ok(pairs);
+        };
+        let ([x, y], [v, w]) = (place(n), place(m));
+        let message = format!(
+            "the edges do not coincide: {} is at ({x:?}, {y:?}) and {} at ({v:?}, {w:?}), {:.3e} apart; \
+             at most {:.3e} is allowed (tolerance {tolerance:?} of the length {length:.4})",
+            self.nodes[n].name,
+            self.nodes[m].name,
+            distance(place(n), place(m)),
+            tolerance * length
+        );
+        Err(Fault::new(here.clone(), message))
+    }
+
+    /// Makes one node of those that are twins, the first of them, and numbers the rest anew.
+    pub(super) fn merge(&mut self, twins: &[(usize, usize)]) {
+        if twins.is_empty() {
+            return;
+        }
+        let mut root: Vec<usize> = (0..self.nodes.len()).collect();
+        fn find(root: &[usize], mut n: usize) -> usize {
+            while root[n] != n {
+                n = root[n];
+            }
+            n
+        }
+        for &(a, b) in twins {
+            let (a, b) = (find(&root, a), find(&root, b));
+            root[a.max(b)] = a.min(b);
+        }
+        let mut number = vec![0; root.len()];
+        let mut kept = Vec::with_capacity(root.len());
+        for (n, node) in std::mem::take(&mut self.nodes).into_iter().enumerate() {
+            let first = find(&root, n);
+            if first == n {
+                number[n] = kept.len();
+                kept.push(node);
+            } else {
+                // The first of its twins was numbered before.
+                number[n] = number[first];
+            }
+        }
+        self.nodes = kept;
+        for entry in &mut self.entries {
+            entry.nodes.iter_mut().for_each(|n| *n = number[*n]);
+            if entry.kind == EntryKind::Mesh {
+                let mut seen = HashSet::new();
+                entry.nodes.retain(|n| seen.insert(*n));
+            }
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! Nodes, chains and meshes by their names, and what to say where there is none of that name.
+
+use super::super::blocks::EDGES;
+use super::{Entry, EntryKind, Mesh, Names};
+use crate::format::error::{did_you_mean, quoted, some_of};
+use std::collections::HashSet;
+
+impl Names {
+    /// The number of a node by any of its names.
+    ///
+    /// # Errors
+    /// A message that tells which names there are.
+    pub fn node(&self, name: &str) -> Result<usize, String> {
+        let (entry, selector) = self.split(name)?;
+        let count = entry.nodes.len();
+        let index = match selector {
+            Selector::Whole if entry.kind == EntryKind::Single => 0,
+            Selector::Whole | Selector::All => return Err(entry.many(name, count)),
+            Selector::Index(index) => index,
+        };
+        Ok(entry.nodes[index])
+    }
+
+    /// The numbers of the nodes that a name stands for: all of a chain for `ID.all`, and of a block's edge for its name
+    /// alone; else one.
+    ///
+    /// # Errors
+    /// As [`Names::node`].
+    pub fn nodes(&self, name: &str) -> Result<Vec<usize>, String> {
+        match self.split(name)? {
+            (entry, Selector::All) => Ok(entry.nodes.clone()),
+            (entry, Selector::Whole) if entry.kind == EntryKind::Edge => Ok(entry.nodes.clone()),
+            _ => Ok(vec![self.node(name)?]),
+        }
+    }
+
+    /// The chain with an id.
+    pub(crate) fn chain(&self, id: &str) -> Result<&Entry, String> {
+        if let Some(&k) = self.index.get(id) {
+            let entry = &self.entries[k];
+            return match entry.kind {
+                EntryKind::Chain(_) | EntryKind::Edge => Ok(entry),
+                EntryKind::Single => Err(format!(
+                    "{id:?} is a single node; a chain is needed (Line, Arc, Through or Chain, or an edge of a Block)"
+                )),
+                EntryKind::Block(_) => Err(format!(
+                    "{id:?} is a block; name one of its edges, \"{id}.bottom\", \"{id}.right\", \"{id}.top\" or \"{id}.left\""
+                )),
+                EntryKind::Mesh => Err(format!(
+                    "{id:?} is a mesh; name an edge of one of its blocks, as \"{}.bottom\", or make a Chain of several",
+                    self.entries[k]
+                        .parts
+                        .first()
+                        .map_or("block", |&part| &self.entries[part].id)
+                )),
+            };
+        }
+        let chains = || {
+            self.entries
+                .iter()
+                .filter(|e| e.kind.per_element().is_some())
+                .map(|e| e.id.as_str())
+        };
+        Err(format!(
+            "no chain of nodes called {}{} (chains: {})",
+            quoted(id),
+            did_you_mean(id, chains()),
+            some_of(chains())
+        ))
+    }
+
+    /// The mesh with an id, of one block or of several.
+    ///
+    /// # Errors
+    /// A message that tells which meshes there are.
+    pub(crate) fn mesh(&self, id: &str) -> Result<Mesh, String> {
+        let meshes = || {
+            let is_mesh = |e: &&Entry| matches!(e.kind, EntryKind::Block(_) | EntryKind::Mesh);
+            self.entries.iter().filter(is_mesh).map(|e| e.id.as_str())
+        };
+        let Some(entry) = self.index.get(id).map(|&k| &self.entries[k]) else {
+            return Err(format!(
+                "no block called {}{} (blocks: {})",
+                quoted(id),
+                did_you_mean(id, meshes()),
+                some_of(meshes())
+            ));
+        };
+        let blocks: Vec<&Entry> = match entry.kind {
+            EntryKind::Block(_) => vec![entry],
+            EntryKind::Mesh => entry.parts.iter().map(|&k| &self.entries[k]).collect(),
+            _ => {
+                return Err(format!(
+                    "{id:?} is no block; a solid needs the mesh of one (blocks: {})",
+                    some_of(meshes())
+                ));
+            }
+        };
+        let mut made = Mesh {
+            nodes: entry.nodes.clone(),
+            elements: Vec::new(),
+            edges: Vec::new(),
+        };
+        for block in blocks {
+            let EntryKind::Block(grid) = block.kind else {
+                continue;
+            };
+            let elements = grid.elements();
+            made.elements
+                .extend(elements.map(|element| element.map(|n| block.nodes[n])));
+            let edges = EDGES
+                .iter()
+                .filter_map(|edge| self.chain(&format!("{}.{edge}", block.id)).ok());
+            made.edges.extend(edges.flat_map(Entry::elements));
+        }
+        // An edge that two blocks share is inside; each walks it its own way.
+        let walked: HashSet<(usize, usize)> = made.edges.iter().map(|e| (e[0], e[2])).collect();
+        made.edges.retain(|e| !walked.contains(&(e[2], e[0])));
+        Ok(made)
+    }
+
+    /// Position of the block with an id among the entries.
+    pub(super) fn block(&self, id: &str) -> Result<usize, String> {
+        let blocks = || {
+            let is_block = |e: &&Entry| matches!(e.kind, EntryKind::Block(_));
+            self.entries.iter().filter(is_block).map(|e| e.id.as_str())
+        };
+        let found = self.index.get(id).copied();
+        found
+            .filter(|&k| matches!(self.entries[k].kind, EntryKind::Block(_)))
+            .ok_or_else(|| {
+                format!(
+                    "no block called {}{} (blocks: {})",
+                    quoted(id),
+                    did_you_mean(id, blocks()),
+                    some_of(blocks())
+                )
+            })
+    }
+
+    fn split(&self, name: &str) -> Result<(&Entry, Selector), String> {
+        let Some((entry, selector)) = self.entry_of(name) else {
+            return Err(self.unknown(name));
+        };
+        let id = &entry.id;
+        if selector.is_empty() {
+            return Ok((entry, Selector::Whole));
+        }
+        if entry.kind == EntryKind::Single {
+            return Err(format!(
+                "{id:?} is a single node, not a chain; its only name is {id:?}"
+            ));
+        }
+        let found = match selector
+            .strip_prefix('@')
+            .filter(|_| entry.kind.per_element().is_some())
+        {
+            Some(fraction) => Ok(Selector::Index(at_fraction(
+                name,
+                fraction,
+                entry.nodes.len(),
+            )?)),
+            None => self.selected(name, &selector[1..], entry),
+        };
+        Ok((entry, found?))
+    }
+
+    /// The entry that a name begins with, an edge before its block, and the rest of the name.
+    fn entry_of<'n>(&self, name: &'n str) -> Option<(&Entry, &'n str)> {
+        let cut_from = |start: usize| {
+            let rest = name.get(start..).unwrap_or_default();
+            rest.find(['.', '@']).map_or(name.len(), |k| start + k)
+        };
+        let first = cut_from(0);
+        let second = cut_from(first + 1);
+        let found = |cut: usize| {
+            let (id, selector) = name.split_at(cut);
+            self.index.get(id).map(|&k| (&self.entries[k], selector))
+        };
+        found(second).or_else(|| found(first))
+    }
+
+    fn selected(&self, name: &str, selector: &str, entry: &Entry) -> Result<Selector, String> {
+        let count = entry.nodes.len();
+        let is_chain = entry.kind.per_element().is_some();
+        match selector {
+            "start" if is_chain => Ok(Selector::Index(0)),
+            "end" if is_chain => Ok(Selector::Index(count - 1)),
+            "all" => Ok(Selector::All),
+            _ => match selector.parse::<usize>() {
+                Ok(k) if (1..=count).contains(&k) => Ok(Selector::Index(k - 1)),
+                Ok(_) => Err(format!(
+                    "no node called {}: the {} has {count} nodes, \"{}.1\" to \"{}.{count}\"",
+                    quoted(name),
+                    match entry.kind {
+                        EntryKind::Block(_) => "block",
+                        EntryKind::Mesh => "mesh",
+                        _ => "chain",
+                    },
+                    entry.id,
+                    entry.id
+                )),
+                Err(_) => Err(self.unknown(name)),
+            },
+        }
+    }
+
+    fn unknown(&self, name: &str) -> String {
+        let mut known = Vec::new();
+        let mut shown = Vec::new();
+        for Entry {
+            id, nodes, kind, ..
+        } in &self.entries
+        {
+            known.push(id.clone());
+            match kind {
+                EntryKind::Single => shown.push(id.clone()),
+                EntryKind::Chain(_) | EntryKind::Edge => {
+                    known.extend(["start", "end", "all"].map(|which| format!("{id}.{which}")));
+                    shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
+                }
+                EntryKind::Block(_) | EntryKind::Mesh => {
+                    known.push(format!("{id}.all"));
+                    shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
+                }
+            }
+        }
+        let more = shown.len().saturating_sub(8);
+        shown.truncate(8);
+        let more = if more > 0 {
+            format!(" and {more} more")
+        } else {
+            String::new()
+        };
+        format!(
+            "no node called {}{} (nodes: {}{more})",
+            quoted(name),
+            did_you_mean(name, known.iter().map(String::as_str)),
+            shown.join(", ")
+        )
+    }
+}
+
+impl Entry {
+    /// What to say where one node is wanted and this, called `name`, has many.
+    fn many(&self, name: &str, count: usize) -> String {
+        let id = &self.id;
+        let (what, examples) = match self.kind {
+            EntryKind::Block(_) => (
+                "a block",
+                format!("\"{id}.left.start\" or \"{id}.{}\"", count.min(2)),
+            ),
+            EntryKind::Mesh => ("a mesh", format!("\"{id}.{}\"", count.min(2))),
+            kind => (
+                if kind == EntryKind::Edge {
+                    "an edge"
+                } else {
+                    "a chain"
+                },
+                format!("\"{id}.start\", \"{id}.end\" or \"{id}.{}\"", count.min(2)),
+            ),
+        };
+        format!("{name:?} is {what} of {count} nodes; name one of them, as {examples}")
+    }
+}
+
+/// What a name picks of an entry.
+enum Selector {
+    Whole,
+    All,
+    Index(usize),
+}
+
+/// Index of the node at a fraction of a chain of `count` nodes.
+fn at_fraction(name: &str, fraction: &str, count: usize) -> Result<usize, String> {
+    let last = count.saturating_sub(1) as f64;
+    let place = match fraction.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => value * last,
+        _ => {
+            return Err(format!(
+                "no node called {}: what follows @ is a number from 0 to 1",
+                quoted(name)
+            ));
+        }
+    };
+    let index = place.round();
+    if (place - index).abs() <= 1e-6 {
+        return Ok(index as usize);
+    }
+    Err(format!(
+        "no node called {}: the chain has {count} nodes; the nearest are at @{} and @{}",
+        quoted(name),
+        place.floor() / last,
+        place.ceil() / last
+    ))
+}
