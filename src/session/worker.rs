@@ -161,7 +161,7 @@ impl Drop for Worker {
     }
 }
 
-/// Goes on; none if nobody listens any more.
+/// Goes on; `None` if nobody listens any more.
 fn run(
     stepper: &mut Stepper,
     mut before: Strip,
@@ -193,7 +193,7 @@ fn run(
     news.send(Message::Done { interrupted, hits }).ok()
 }
 
-/// One minor iteration as a frame and its strip; none where the history is done.
+/// One minor iteration as a frame and its strip; `None` if the history is done.
 fn step(stepper: &mut Stepper, before: &Strip) -> Option<(Frame, Strip)> {
     let began = Instant::now();
     let event = Arc::new(stepper.step()?.clone());
@@ -218,7 +218,7 @@ fn step(stepper: &mut Stepper, before: &Strip) -> Option<(Frame, Strip)> {
     Some((frame, strip))
 }
 
-/// Takes given steps, as far as they can be taken; none if nobody listens any more.
+/// Takes given steps, as far as they can be taken; `None` if nobody listens any more.
 fn follow(
     stepper: &mut Stepper,
     mut before: Strip,
@@ -255,7 +255,7 @@ fn follow(
     news.send(Message::Done { interrupted, hits }).ok()
 }
 
-/// Does what was done before; none if nobody listens any more.
+/// Does what was done before; `None` if nobody listens any more.
 fn again(
     stepper: &mut Stepper,
     mut event: Option<Arc<Event>>,

@@ -4,7 +4,7 @@ use super::log::LogError;
 use super::plan::{Case, Plan};
 use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
-use super::verdict::Verdict;
+use super::verdict::RunVerdict;
 use crate::format::SceneError;
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
@@ -92,7 +92,7 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
             Outcome::Failed(failure) => {
                 break CaseEnd::Failed(Failed {
                     reason: Reason::from(failure),
-                    verdict: Verdict::of(failure),
+                    verdict: RunVerdict::of(failure),
                     increment: at.increment,
                     load: event.load_factor,
                     major: at.major,
