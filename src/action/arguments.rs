@@ -163,7 +163,7 @@ impl Entry {
         }
     }
 
-    /// The number of a breakpoint; none for all.
+    /// The number of a breakpoint; `None` for all.
     fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, Misread> {
         match words[..] {
             ["all"] => Ok(None),
@@ -330,7 +330,7 @@ fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Misread> {
     over.map(ChartOf::Settings).map_err(Misread::NoChart)
 }
 
-/// The choice that a word, or its beginning, stands for; none without a word.
+/// The choice that a word, or its beginning, stands for; `None` without a word.
 fn one_of<T: Copy>(
     words: &[&str],
     all: [T; 3],

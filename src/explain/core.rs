@@ -76,7 +76,7 @@ impl Core {
     }
 }
 
-/// Shrinks a problem that cycles from what its nodes bring; none where it does not, or where too many nodes take part.
+/// Shrinks a problem that cycles from what its nodes bring; `None` if it does not, or if too many nodes take part.
 pub fn core(whole: &InterfaceProblem) -> Option<Core> {
     let start = cycle(whole)?;
     let mut members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
@@ -124,7 +124,7 @@ fn changes(pattern: &[Mode]) -> bool {
     pattern.windows(2).any(|pair| pair[0] != pair[1])
 }
 
-/// The cycle into which the minor iterations of a frozen problem run; none where they settle or cannot be solved, or
+/// The cycle into which the minor iterations of a frozen problem run; `None` if they settle or cannot be solved, or
 /// where the settings' limit of minor iterations is too few to tell. Members are places in the problem.
 pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
     let mut nodes = problem.states();

@@ -27,13 +27,13 @@ pub struct Diagnosis {
     pub cycle: Cycle,
     /// What happens in each iteration of one period.
     pub phases: Vec<Phase>,
-    /// The fewest nodes that still cycle; none where that cannot be told.
+    /// The fewest nodes that still cycle; `None` if that cannot be told.
     pub core: Option<Core>,
     /// The problem of all nodes that take part, or of the core where those are too many for a census; the other nodes go
     /// on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
     /// few enough.
     pub problem: InterfaceProblem,
-    /// What is consistent in it; none where even the core is too large.
+    /// What is consistent in it; `None` if even the core is too large.
     pub census: Option<Census>,
     pub cause: Cause,
     /// What was tried on it, and whether it settles there.
@@ -91,7 +91,7 @@ pub enum Way {
 }
 
 impl Diagnosis {
-    /// Diagnoses a problem whose nodes' states start a cycle; none where they do not, or where it has more than
+    /// Diagnoses a problem whose nodes' states start a cycle; `None` if they do not, or if it has more than
     /// [`MOST_NODES`] nodes.
     pub fn of(problem: &InterfaceProblem) -> Option<Diagnosis> {
         if problem.nodes.len() > MOST_NODES {
@@ -132,7 +132,7 @@ impl Diagnosis {
 }
 
 /// The problem that goes round in a cycle: the whole one, or where that has many nodes only those that take part, all others
-/// going on with what they do. None where that is singular, or too large still. The states are where the cycle starts.
+/// going on with what they do. `None` if that is singular, or too large still. The states are where the cycle starts.
 pub fn cycling(problem: InterfaceProblem, cycle: &Cycle) -> Option<InterfaceProblem> {
     if problem.nodes.len() <= MOST_NODES {
         return Some(problem);

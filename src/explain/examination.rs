@@ -42,7 +42,7 @@ pub struct Examination {
 }
 
 impl Examination {
-    /// The starts that lead to a consistent state of the census; none where there is no such state.
+    /// The starts that lead to a consistent state of the census; `None` if there is no such state.
     pub fn starts(&self, number: usize) -> Option<Vec<Start>> {
         let started = started(self.problem.as_ref()?, self.census.as_ref()?, number)?;
         let start = |node: &crate::interface::problem::ProblemNode| Start {

@@ -27,7 +27,7 @@ pub struct Influence {
 }
 
 /// What the change of every node did to each of the nodes `targets`, from the iteration that the nodes go into with
-/// `before` to that with `after`; nodes that changed nothing are left out. None where either has no solution.
+/// `before` to that with `after`; nodes that changed nothing are left out. `None` if either has no solution.
 pub fn influences(
     problem: &InterfaceProblem,
     before: &[ContactState],
@@ -106,7 +106,7 @@ pub struct Way {
     pub before: usize,
 }
 
-/// What pushed a node in the iteration that comes after the way; none where that cannot be told.
+/// What pushed a node in the iteration that comes after the way; `None` if that cannot be told.
 pub fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
     stepper.restore(&way.state);
     let mut before: Vec<ContactState> = Vec::new();

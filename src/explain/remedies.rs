@@ -171,7 +171,7 @@ fn answers(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
     (0..count).filter_map(answer).collect()
 }
 
-/// Tries a remedy; none where it was stopped.
+/// Tries a remedy; `None` if it was stopped.
 pub fn attempt(
     stepper: &mut Stepper,
     state: &State,

@@ -413,7 +413,7 @@ fn not_found(why: NotFound) -> String {
     }
 }
 
-/// What accuracy round-off leaves; none where it leaves enough.
+/// What accuracy round-off leaves; `None` if it leaves enough.
 pub fn accuracy(norms: &Norms) -> Option<String> {
     (norms.noise > Norms::AUDIBLE).then(|| {
         format!(

@@ -35,7 +35,7 @@ impl Smaller {
     }
 }
 
-/// Looks for a consistent state at smaller increments from where the present one of a state starts. None where that cannot
+/// Looks for a consistent state at smaller increments from where the present one of a state starts. `None` if that cannot
 /// be told. The stepper is left anywhere.
 pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<Smaller> {
     let size = (state.load_factor - state.start.load_factor).abs();

@@ -3,7 +3,7 @@
 //! Paths name things by their ids where they have any, and by their position where not; a point's parts are `x` and
 //! `y`. One walk over the scene serves listing and setting, so that neither can know more than the other.
 
-use super::described::{Described, Place, Scalar, Visit};
+use super::described::{Described, Scalar, ScalarPlace, Visit};
 use super::error::{Path, nearest, quoted};
 use super::spec::Spec;
 use crate::model::Settings;
@@ -42,10 +42,10 @@ pub fn list(spec: &Spec) -> Vec<Listed> {
     all
 }
 
-/// The settings by their paths, and the words that each can be; none where it is a number.
+/// The settings by their paths, and the words that each can be; no words for a number.
 pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
     let mut all = Vec::new();
-    let place = Place::root().field("settings");
+    let place = ScalarPlace::root().field("settings");
     Settings::default().walk(&place, &mut |place, scalar| {
         let words: &[&str] = match scalar {
             Scalar::Choice(choice) => choice.names(),
@@ -171,7 +171,7 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
         group.friction.get_or_insert(friction);
     }
     spec.history.least.get_or_insert(least);
-    spec.walk(&Place::root(), visit);
+    spec.walk(&ScalarPlace::root(), visit);
     for (group, own) in spec.slaves.iter_mut().zip(own) {
         if !own && group.friction == Some(friction) {
             group.friction = None;

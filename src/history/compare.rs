@@ -29,7 +29,7 @@ pub struct NodeSide {
     /// Mode of the iteration, and of the next.
     pub mode: Mode,
     pub next: Mode,
-    /// Total forces after it, and the gap; none where the frame is thinned, or nothing was solved.
+    /// Total forces after it, and the gap; `None` if the frame is thinned, or nothing was solved.
     pub forces: Option<[f64; 2]>,
     pub gap: Option<f64>,
 }
@@ -57,11 +57,11 @@ pub struct Comparison {
     pub tips: [Side; 2],
     /// Where both can be compared.
     pub common: Option<[Side; 2]>,
-    /// Whether the states there are the same; none where there is no such place, or a frame is thinned.
+    /// Whether the states there are the same; `None` if there is no such place, or a frame is thinned.
     pub sameness: Option<Sameness>,
 }
 
-/// Compares two branches; none where one does not exist.
+/// Compares two branches; `None` if one does not exist.
 pub fn compare(tree: &Tree, a: usize, b: usize) -> Option<Comparison> {
     let tip = |branch: usize| side(tree, branch, tree.len(branch).checked_sub(1)?);
     let places = common(tree, a, b);

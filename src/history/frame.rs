@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub struct Frame {
     /// The state from which the next minor iteration goes on.
     pub state: State,
-    /// The last minor iteration; none at the start.
+    /// The last minor iteration; `None` at the start.
     pub event: Option<Arc<Event>>,
     /// What the user changed here, if this frame is due to that and not to a minor iteration.
     pub intervention: Option<Intervention>,

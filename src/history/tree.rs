@@ -58,7 +58,7 @@ pub struct Branch {
     pub label: String,
     /// Whether the user gave it its name.
     pub named: bool,
-    /// The branch that it left; none for the first.
+    /// The branch that it left; `None` for the first.
     pub parent: Option<usize>,
     /// Place on the line of the first point that is its own.
     pub from: usize,

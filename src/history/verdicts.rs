@@ -9,7 +9,7 @@ use crate::step::event::{Failure, Outcome, Position};
 
 /// How a branch ends, as far as it goes. Branches are numbers in [`Tree::branches`].
 #[derive(Debug, Clone, PartialEq)]
-pub enum Verdict {
+pub enum BranchEnd {
     /// In the middle of an increment, or nothing is solved in it yet.
     Running,
     /// At an accepted increment that no other branch has reached; nothing to compare with.
@@ -44,7 +44,7 @@ pub struct Summary {
     /// The last minor iteration on it.
     pub position: Position,
     pub load_factor: f64,
-    pub verdict: Verdict,
+    pub verdict: BranchEnd,
     /// What its own points cost, and its whole line.
     pub own: Cost,
     pub whole: Cost,
@@ -78,9 +78,9 @@ fn summary(tree: &Tree, number: usize) -> Option<Summary> {
 
 /// How a branch ends. It is compared with earlier branches only, so that the first of several alike is the one that
 /// the others are like.
-pub fn verdict(tree: &Tree, branch: usize) -> Verdict {
+pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
     let Some((frame, tip)) = tree.tip(branch) else {
-        return Verdict::Running;
+        return BranchEnd::Running;
     };
     let others = || (0..tree.branches().len()).filter(|&other| other < branch);
     match tip.kind {
@@ -91,7 +91,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> Verdict {
         | PointKind::Climbed
         | PointKind::Cut
         | PointKind::Refused
-        | PointKind::Major => Verdict::Running,
+        | PointKind::Major => BranchEnd::Running,
         PointKind::Cycle => {
             let own = frame
                 .event
@@ -110,24 +110,24 @@ pub fn verdict(tree: &Tree, branch: usize) -> Verdict {
             };
             others()
                 .find(same)
-                .map_or(Verdict::Cycle, |branch| Verdict::SameCycle { branch })
+                .map_or(BranchEnd::Cycle, |branch| BranchEnd::SameCycle { branch })
         }
         PointKind::Failed => match frame.event.as_deref().map(|event| &event.outcome) {
-            Some(Outcome::Failed(Failure::Diverged { .. })) => Verdict::Diverged,
-            _ => Verdict::Failed,
+            Some(Outcome::Failed(Failure::Diverged { .. })) => BranchEnd::Diverged,
+            _ => BranchEnd::Failed,
         },
         PointKind::Increment | PointKind::Jumped | PointKind::Last | PointKind::LastJumped => {
             let mut other = None;
             for earlier in others() {
                 match compare::sameness(tree, branch, earlier) {
                     Some((Sameness::Same, load)) => {
-                        return Verdict::Same {
+                        return BranchEnd::Same {
                             branch: earlier,
                             load,
                         };
                     }
                     Some((Sameness::Different, load)) => {
-                        other.get_or_insert(Verdict::Other {
+                        other.get_or_insert(BranchEnd::Other {
                             branch: earlier,
                             load,
                         });
@@ -135,7 +135,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> Verdict {
                     None => {}
                 }
             }
-            other.unwrap_or(Verdict::Accepted)
+            other.unwrap_or(BranchEnd::Accepted)
         }
     }
 }
@@ -165,19 +165,19 @@ fn alike(a: &Cycle, b: &Cycle) -> bool {
 }
 
 /// A verdict in words.
-pub fn describe(tree: &Tree, verdict: &Verdict) -> String {
+pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
     let b = |branch: &usize| format!("b{}", branch + 1);
     match verdict {
-        Verdict::Running => "running".into(),
-        Verdict::Accepted => "accepted".into(),
-        Verdict::Same { branch, load } => format!("same state as {} at load {load}", b(branch)),
-        Verdict::Other { branch, load } => {
+        BranchEnd::Running => "running".into(),
+        BranchEnd::Accepted => "accepted".into(),
+        BranchEnd::Same { branch, load } => format!("same state as {} at load {load}", b(branch)),
+        BranchEnd::Other { branch, load } => {
             format!("another valid state than {} at load {load}", b(branch))
         }
-        Verdict::SameCycle { branch } => format!("same cycle as {}", name(tree, *branch)),
-        Verdict::Cycle => "cycle".into(),
-        Verdict::Diverged => "diverged".into(),
-        Verdict::Failed => "failed".into(),
+        BranchEnd::SameCycle { branch } => format!("same cycle as {}", name(tree, *branch)),
+        BranchEnd::Cycle => "cycle".into(),
+        BranchEnd::Diverged => "diverged".into(),
+        BranchEnd::Failed => "failed".into(),
     }
 }
 

@@ -77,7 +77,7 @@ impl Watch {
         }
     }
 
-    /// Its value at a whole frame; none where nothing was solved for it.
+    /// Its value at a whole frame; `None` if nothing was solved for it.
     pub fn value(&self, frame: &Frame) -> Option<f64> {
         let event = frame.event.as_deref()?;
         match self.quantity {

@@ -344,7 +344,7 @@ fn spacing(problem: &InterfaceProblem) -> f64 {
 
 type Parts = (Matrix, Vec<f64>, Vec<[f64; 2]>);
 
-/// K, free and loads; none where something is rigid.
+/// K, free and loads; `None` if something is rigid.
 fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     let InterfaceResponse {
         stiffness: k,
@@ -380,7 +380,7 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     ))
 }
 
-/// W, free and no loads; none where something is loose.
+/// W, free and no loads; `None` if something is loose.
 fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
     let InterfaceResponse {
         stiffness: k,
@@ -554,7 +554,7 @@ fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) 
     .fold(0.0, f64::max)
 }
 
-/// The cycle that a scene's first minor iterations close; none where they end otherwise.
+/// The cycle that a scene's first minor iterations close; `None` if they end otherwise.
 fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
     let scene = Scene::from_text("what would be written", text, &[]).map_err(Box::new)?;
     let mut stepper = Stepper::new(Arc::new(scene.model));

@@ -81,10 +81,10 @@ pub struct SlaveRecord {
     pub mode: Mode,
     /// Mode of the next one.
     pub next: Mode,
-    /// The cell of Table 2 that fired, by the name that traces give it; none where nothing was solved.
+    /// The cell of Table 2 that fired, by the name that traces give it; `None` if nothing was solved.
     #[serde(with = "rule_name")]
     pub rule: Option<Rule>,
-    /// Gap, negative where the node penetrates; none where nothing was solved.
+    /// Gap, negative where the node penetrates; `None` if nothing was solved.
     pub gap: Option<f64>,
     pub f_n: f64,
     pub f_t: f64,

@@ -17,7 +17,7 @@ pub(crate) const EDGES: [&str; 4] = ["bottom", "right", "top", "left"];
 const SHARPEST: f64 = 1e-2;
 
 /// Lengths that differ by less, relatively, are meant to be the same.
-const SAME: f64 = 1e-6;
+const SAME_LENGTH: f64 = 1e-6;
 
 /// Number of elements of a block in its two directions, after refinement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -252,7 +252,7 @@ fn arc_side(
     let arm = |p: Point| (p.0 - center.0, p.1 - center.1);
     let (a, b) = (arm(ends.0), arm(ends.1));
     let (r, q) = (a.0.hypot(a.1), b.0.hypot(b.1));
-    if (r - q).abs() > SAME * r.max(q) {
+    if (r - q).abs() > SAME_LENGTH * r.max(q) {
         let message = format!(
             "the corners {:?} and {:?} are {r} and {q} away from the center; an arc needs equal radii",
             ends.0, ends.1
@@ -260,7 +260,7 @@ fn arc_side(
         return Err(Fault::new(path.clone(), message));
     }
     let turn = (a.0 * b.1 - a.1 * b.0).atan2(a.0 * b.0 + a.1 * b.1);
-    if turn.abs() > std::f64::consts::PI * (1.0 - SAME) {
+    if turn.abs() > std::f64::consts::PI * (1.0 - SAME_LENGTH) {
         let message = "the corners are opposite each other, so that the arc could go either way; divide the block";
         return Err(Fault::new(path.clone(), message));
     }
@@ -286,7 +286,7 @@ fn chain_side(
         return Err(Fault::new(path.clone(), "the chain is empty"));
     };
     let apart = |a: Point, b: Point| (a.0 - b.0).hypot(a.1 - b.1);
-    let near = SAME * apart(ends.0, ends.1);
+    let near = SAME_LENGTH * apart(ends.0, ends.1);
     let fits = |a: Point, b: Point| apart(a, ends.0).max(apart(b, ends.1)) <= near;
     let mut walked = points.to_vec();
     if !fits(first, last) {
@@ -309,7 +309,7 @@ fn chain_side(
     Ok(deviations(ends, stations, on_chain))
 }
 
-/// Deviations from the chord at all stations; none at the corners themselves.
+/// Deviations from the chord at all stations; zero at the corners themselves.
 fn deviations(ends: (Point, Point), stations: &[f64], at: impl Fn(f64) -> Point) -> Vec<Point> {
     let inside = |s: f64| s > 0.0 && s < 1.0;
     let one = |&s: &f64| {

@@ -38,7 +38,7 @@ pub type LinePlace = (usize, usize);
 #[derive(Debug, Clone)]
 pub struct Tried {
     pub place: LinePlace,
-    /// How many there are to try; none until that is known.
+    /// How many there are to try; `None` until that is known.
     pub all: Option<usize>,
     /// The one that is being tried now.
     pub now: String,
@@ -142,13 +142,13 @@ impl Background {
         self.waiting > 0
     }
 
-    /// What pushed a slave node at a place: none while it is not known; an inner none where it cannot be told.
+    /// What pushed a slave node at a place: `None` while it is not known; an inner `None` if it cannot be told.
     pub fn pushes(&self, place: LinePlace, slave: usize) -> Option<Option<&[Push]>> {
         let found = self.pushes.get(&(place, slave))?;
         Some(found.as_deref())
     }
 
-    /// What is known of the problem at a place; an inner none while it is being found out.
+    /// What is known of the problem at a place; an inner `None` while it is being found out.
     pub fn examination(&self, place: LinePlace) -> Option<Option<&Examination>> {
         Some(self.examinations.get(&place)?.1.as_ref())
     }
@@ -296,7 +296,7 @@ impl Drop for Background {
     }
 }
 
-/// Answers on the thread; none if nobody listens any more.
+/// Answers on the thread; `None` if nobody listens any more.
 fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
     match ask {
         Ask::Pushes(place, slave, way) => {

@@ -163,7 +163,7 @@ impl Session {
         verdicts::summaries(&self.tree)
     }
 
-    /// Two branches side by side, by number; none where one does not exist.
+    /// Two branches side by side, by number; `None` if one does not exist.
     pub fn compare(&self, a: usize, b: usize) -> Option<Comparison> {
         let count = self.tree.branches().len();
         (a < count && b < count)
@@ -181,7 +181,7 @@ impl Session {
         &self.watches
     }
 
-    /// The watches and their values at the cursor; none where nothing was solved for one.
+    /// The watches and their values at the cursor; `None` if nothing was solved for one.
     pub fn watched(&self) -> Vec<(&str, Option<f64>)> {
         let value = |watch: &Watch| watch.value(self.frame());
         self.watches

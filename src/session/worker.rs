@@ -163,7 +163,7 @@ impl Drop for Worker {
     }
 }
 
-/// Goes on; none if nobody listens any more.
+/// Goes on; `None` if nobody listens any more.
 fn run(
     stepper: &mut Stepper,
     mut before: Strip,
@@ -224,7 +224,7 @@ fn seen(stepper: &mut Stepper, before: &Strip, began: Instant) -> (Frame, Strip)
     (frame, strip)
 }
 
-/// Takes given steps, as far as they can be taken; none if nobody listens any more.
+/// Takes given steps, as far as they can be taken; `None` if nobody listens any more.
 fn follow(
     stepper: &mut Stepper,
     mut before: Strip,
@@ -263,7 +263,7 @@ fn follow(
     news.send(Message::Done { interrupted, hits }).ok()
 }
 
-/// Does what was done before; none if nobody listens any more.
+/// Does what was done before; `None` if nobody listens any more.
 fn again(
     stepper: &mut Stepper,
     mut event: Option<Arc<Event>>,

@@ -12,7 +12,7 @@
 
 use super::plan::Plan;
 use super::result::{CaseEnd, Run};
-use crate::outside::input::Unreadable;
+use crate::outside::input::{MARK, Unreadable};
 use crate::outside::shown;
 use std::fmt::Write;
 use std::path::Path;
@@ -122,29 +122,117 @@ pub fn comments<'a>(lines: impl IntoIterator<Item = &'a String>) -> String {
     lines.into_iter().map(comment).collect()
 }
 
-/// The fields of a line of a CSV file; quoted ones may have commas, and quotes twice.
-pub fn split(line: &str) -> Vec<String> {
-    let (mut fields, mut quoted) = (vec![String::new()], false);
-    let mut letters = line.chars().peekable();
-    while let Some(letter) = letters.next() {
-        let doubled = quoted && letter == '"' && letters.peek() == Some(&'"');
-        match (letter, fields.last_mut()) {
-            ('"', Some(field)) if doubled => {
-                letters.next();
-                field.push('"');
+/// A table that is read: CSV whose `#` lines are comments, with a header. Spaces around fields do not count.
+pub(super) struct Table<'a> {
+    file: &'a str,
+    text: &'a str,
+    header: Row,
+    /// The rows below the header, with as many fields as each has.
+    pub(super) rows: Vec<Row>,
+}
+
+/// A row of a [`Table`].
+pub(super) struct Row {
+    pub(super) fields: csv::StringRecord,
+    /// Byte at which its line begins.
+    start: usize,
+}
+
+impl<'a> Table<'a> {
+    /// Reads a text; messages call it `file`.
+    ///
+    /// # Errors
+    /// If there is no header.
+    pub(super) fn read(file: &'a str, text: &'a str) -> Result<Table<'a>, TableError> {
+        let text = text.strip_prefix(MARK).unwrap_or(text);
+        let wrong = |message: String| TableError::Wrong {
+            file: file.to_owned(),
+            line: 1,
+            column: 1,
+            message,
+        };
+        let mut reader = csv::ReaderBuilder::new();
+        reader.has_headers(false).flexible(true);
+        reader.trim(csv::Trim::All).comment(Some(b'#'));
+        let mut rows = Vec::new();
+        for fields in reader.from_reader(text.as_bytes()).into_records() {
+            let fields = fields.map_err(|error| wrong(error.to_string()))?;
+            let first = fields.get(0).unwrap_or_default();
+            if first.starts_with('#') || (first.is_empty() && fields.len() == 1) {
+                continue;
             }
-            ('"', _) => quoted = !quoted,
-            (',', _) if !quoted => fields.push(String::new()),
-            (letter, Some(field)) => field.push(letter),
-            (_, None) => {}
+            let start = fields.position().map_or(0, |at| at.byte() as usize);
+            let start = start + skipped(&text[start..]);
+            rows.push(Row { fields, start });
+        }
+        if rows.is_empty() {
+            return Err(wrong("there is no header".into()));
+        }
+        let header = rows.remove(0);
+        Ok(Table {
+            file,
+            text,
+            header,
+            rows,
+        })
+    }
+
+    /// The texts of its comments.
+    pub(super) fn comments(&self) -> impl Iterator<Item = &'a str> {
+        let lines = self.text.lines();
+        lines.filter_map(|line| line.strip_prefix('#').map(str::trim))
+    }
+
+    /// Names of its columns.
+    pub(super) fn heads(&self) -> Vec<&str> {
+        self.header.fields.iter().collect()
+    }
+
+    /// The header as it stands in the file.
+    pub(super) fn header_line(&self) -> &'a str {
+        self.line(&self.header).trim()
+    }
+
+    /// Refuses a row that has not as many fields as the header.
+    pub(super) fn check(&self, row: &Row) -> Result<(), TableError> {
+        let (has, wants) = (row.fields.len(), self.header.fields.len());
+        if has == wants {
+            return Ok(());
+        }
+        let message = format!("the row has {has} fields, the header {wants}");
+        Err(self.wrong(row, 0, message))
+    }
+
+    /// What is wrong with the header, or with the table as a whole.
+    pub(super) fn wrong_header(&self, message: String) -> TableError {
+        self.wrong(&self.header, 0, message)
+    }
+
+    /// What is wrong at a field (from 0) of a row.
+    pub(super) fn wrong(&self, row: &Row, field: usize, message: String) -> TableError {
+        TableError::Wrong {
+            file: self.file.to_owned(),
+            line: 1 + self.text[..row.start].matches('\n').count(),
+            column: column(self.line(row), field),
+            message,
         }
     }
-    fields
+
+    fn line(&self, row: &Row) -> &'a str {
+        self.text[row.start..].lines().next().unwrap_or_default()
+    }
+}
+
+/// Bytes of the comments and blank lines that a text begins with: the position of a record is before these.
+fn skipped(text: &str) -> usize {
+    let lines = text.split_inclusive('\n');
+    let skipped = lines.take_while(|line| line.trim().is_empty() || line.starts_with('#'));
+    skipped.map(str::len).sum()
 }
 
 /// The column, from 1 and in characters, at which field number `wanted` (from 0) of a line begins; behind the line where it
 /// has fewer.
-pub fn column(line: &str, wanted: usize) -> usize {
+fn column(line: &str, wanted: usize) -> usize {
     let (mut field, mut quoted) = (0, false);
     for (k, letter) in line.chars().enumerate() {
         if field == wanted {
@@ -167,8 +255,32 @@ mod tests {
     fn fields_split_as_they_were_joined() {
         let fields = ["a", "b,c", "", "say \"no\"", "✗"];
         let line: Vec<String> = fields.iter().map(|f| field(f)).collect();
-        assert_eq!(split(&line.join(",")), fields);
-        let places: Vec<usize> = (0..6).map(|k| column(&line.join(","), k)).collect();
+        let line = line.join(",");
+        let table = Table::read("x", &line).ok().unwrap();
+        assert_eq!(table.heads(), fields);
+        let places: Vec<usize> = (0..6).map(|k| column(&line, k)).collect();
         assert_eq!(places, [1, 3, 9, 10, 23, 24]);
+    }
+
+    #[test]
+    fn a_row_is_found_below_comments_blank_lines_and_a_field_of_two_lines() {
+        let text = "# \"a\n\n  # b\nh,i\r\n \t\n# c\n1,\"2\n3\"\n\n4, 5\n";
+        let table = Table::read("x", text).ok().unwrap();
+        assert_eq!(table.heads(), ["h", "i"]);
+        assert_eq!(table.header_line(), "h,i");
+        assert_eq!(table.comments().collect::<Vec<_>>(), ["\"a", "c"]);
+        let rows: Vec<Vec<&str>> = table
+            .rows
+            .iter()
+            .map(|row| row.fields.iter().collect())
+            .collect();
+        assert_eq!(rows, [["1", "2\n3"], ["4", "5"]]);
+        let wrong =
+            |row: usize, field| table.wrong(&table.rows[row], field, "!".into()).to_string();
+        assert_eq!(
+            [wrong(0, 1), wrong(1, 0), wrong(1, 1)],
+            ["x:7:3: !", "x:10:1: !", "x:10:3: !"]
+        );
+        assert_eq!(table.wrong_header("!".into()).to_string(), "x:4:1: !");
     }
 }

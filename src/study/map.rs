@@ -12,7 +12,7 @@ use super::origin;
 use super::plan::{Case, Plan};
 use super::result::{CaseEnd, Run};
 use super::run::{RunError, Watch, one, pool};
-use super::verdict::Verdict;
+use super::verdict::RunVerdict;
 use crate::model::{Model, Watched};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -31,8 +31,8 @@ const DEFAULT_STRATEGY: &str = "ladder";
 /// What a run came to, as far as a map needs it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ended {
-    /// What it failed by, in which increment, at which load factor; none where it went to the end.
-    pub failed: Option<(Verdict, u32, f64)>,
+    /// What it failed by, in which increment, at which load factor; `None` if it went to the end.
+    pub failed: Option<(RunVerdict, u32, f64)>,
     pub increments: u64,
     pub majors: u64,
     pub minors: u64,
@@ -70,7 +70,7 @@ pub enum MonitorKind {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
     pub ended: Ended,
-    pub verdict: Verdict,
+    pub verdict: RunVerdict,
     /// The case that it was compared with (its own number: it is a reference), and the largest difference of a monitor
     /// of its end, over the largest value of that kind.
     pub reference: Option<(usize, f64)>,
@@ -83,7 +83,7 @@ pub struct Map {
     pub title: String,
     /// Differences above it are wrong branches.
     pub tolerance: f64,
-    /// One a case of the plan; none where it was stopped before.
+    /// One a case of the plan; `None` if it was stopped before.
     pub cells: Vec<Option<Cell>>,
 }
 
@@ -102,7 +102,7 @@ pub struct Panel {
 }
 
 impl Ended {
-    /// What a run came to; none where it was stopped from outside.
+    /// What a run came to; `None` if it was stopped from outside.
     pub fn of(run: &Run, model: &Model) -> Option<Ended> {
         let failed = match &run.end {
             CaseEnd::Finished => None,
@@ -179,8 +179,8 @@ impl Cell {
         let glyph = self.verdict.glyph();
         let jumped = if self.ended.jumped > 0 { "↯" } else { "" };
         let label = match self.verdict {
-            Verdict::Cycle { period, .. } => format!("{glyph}{period}"),
-            Verdict::Failed(reason) => format!("{glyph}{}", reason.letter()),
+            RunVerdict::Cycle { period, .. } => format!("{glyph}{period}"),
+            RunVerdict::Failed(reason) => format!("{glyph}{}", reason.letter()),
             _ => format!("{glyph}{}", self.verdict.letter()),
         };
         label + jumped
@@ -243,8 +243,8 @@ impl Map {
                 references[k].and_then(|r: usize| Some((r, own.difference(ended[r].as_ref()?))));
             let verdict = match (own.failed, compared) {
                 (Some((verdict, ..)), _) => verdict,
-                (None, Some((_, difference))) if difference > tolerance => Verdict::Wrong,
-                (None, _) => Verdict::Right,
+                (None, Some((_, difference))) if difference > tolerance => RunVerdict::Wrong,
+                (None, _) => RunVerdict::Right,
             };
             Some(Cell {
                 verdict,

@@ -223,7 +223,7 @@ pub fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
     all
 }
 
-/// What `2x` means: twice what the scene has; none where it is no multiple, or there is no number to be multiplied.
+/// What `2x` means: twice what the scene has; `None` if it is no multiple, or there is no number to be multiplied.
 fn multiple(scene: &Scene, path: &str, value: &str) -> Option<String> {
     let factor: f64 = value.strip_suffix('x')?.parse().ok()?;
     let all = paths::list(&scene.spec);

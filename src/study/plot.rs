@@ -190,7 +190,7 @@ struct Layout {
     /// Lines above and below the plot.
     title: Vec<String>,
     footer: Vec<String>,
-    /// Curves named in the legend; none where there is nothing to tell apart.
+    /// Curves named in the legend; 0 if there is nothing to tell apart.
     entries: usize,
 }
 

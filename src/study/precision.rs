@@ -63,11 +63,11 @@ pub struct Point {
     pub increments: u64,
     /// Number of equations of the bodies.
     pub unknowns: usize,
-    /// Why it did not get to its end; none where it did.
+    /// Why it did not get to its end; `None` if it did.
     pub failed: Option<String>,
     /// Increments that were accepted although a loop had not settled.
     pub unsettled: usize,
-    /// None where it failed, or where it is itself the reference.
+    /// `None` if it failed, or if it is itself the reference.
     pub error: Option<f64>,
     /// Whether it is itself the reference.
     pub reference: bool,
@@ -211,7 +211,7 @@ pub fn run(
     Ok(precision)
 }
 
-/// Runs a case some times; none where it was stopped from outside.
+/// Runs a case some times; `None` if it was stopped from outside.
 fn measured(
     case: &Case,
     series: usize,

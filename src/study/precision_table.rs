@@ -1,9 +1,9 @@
 //! Work-precision charts as tables: written, and read again.
 
-use super::csv::TableError;
+use super::csv::{Table, TableError};
 use super::precision::{Cost, Point, Precision, mark_front};
 use crate::format::error::quoted;
-use crate::outside::input::{self, MARK, TABLE_BYTES};
+use crate::outside::input::{self, TABLE_BYTES};
 use crate::outside::shown;
 use std::fmt::Write;
 use std::path::Path;
@@ -35,50 +35,30 @@ pub fn read(
     cost: Cost,
     target: Option<f64>,
 ) -> Result<Vec<Precision>, TableError> {
-    let wrong = |line: usize, column: usize, message: String| TableError::Wrong {
-        file: name.to_owned(),
-        line,
-        column,
-        message,
-    };
-    let text = text.strip_prefix(MARK).unwrap_or(text);
-    let comments = text.lines().filter_map(|line| line.strip_prefix('#'));
-    let about = comments.map(|line| shown::cut(line.trim(), MOST_COMMENT));
+    let table = Table::read(name, text)?;
+    let about = table.comments().map(|line| shown::cut(line, MOST_COMMENT));
     let about: Vec<String> = about.take(MOST_COMMENTS).collect();
-    let lines = text
-        .lines()
-        .enumerate()
-        .map(|(k, line)| (k + 1, line.trim_end()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (first, header) = lines
-        .next()
-        .ok_or_else(|| wrong(1, 1, "there is no header".into()))?;
-    let heads = super::csv::split(header);
+    let heads = table.heads();
     for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
-        if !heads.iter().any(|head| head == wanted) {
+        if !heads.contains(&wanted) {
             let message = format!("it is no table of a chart: it has no column {wanted}");
-            return Err(wrong(first, 1, message));
+            return Err(table.wrong_header(message));
         }
     }
     let mut charts: Vec<Precision> = Vec::new();
     let mut runs = 0;
-    for (line, text) in lines {
-        let fields = super::csv::split(text);
-        if fields.len() != heads.len() {
-            let (has, wants) = (fields.len(), heads.len());
-            let message = format!("the row has {has} fields, the header {wants}");
-            return Err(wrong(line, 1, message));
-        }
-        let place = |head: &str| heads.iter().position(|own| own == head);
-        let word = |head: &str| place(head).map_or("", |k| fields[k].as_str());
-        let at = |head: &str| place(head).map_or(1, |k| super::csv::column(text, k));
+    for row in &table.rows {
+        table.check(row)?;
+        let place = |head: &str| heads.iter().position(|own| *own == head);
+        let word = |head: &str| place(head).map_or("", |k| &row.fields[k]);
+        let wrong = |head: &str, message| table.wrong(row, place(head).unwrap_or(0), message);
         for head in ["scene", "series", "run", "status"] {
             let letters = word(head).chars().count();
             if letters > MOST_NAME {
                 let message = format!(
                     "the text under {head} has {letters} characters; it must have {MOST_NAME} at most"
                 );
-                return Err(wrong(line, at(head), message));
+                return Err(wrong(head, message));
             }
         }
         let number = |head: &str| match word(head) {
@@ -88,7 +68,7 @@ pub fn read(
                 let none = || {
                     let word = quoted(word);
                     let message = format!("{word} under {head} is no number that can be drawn");
-                    wrong(line, at(head), message)
+                    wrong(head, message)
                 };
                 value.map(Some).ok_or_else(none)
             }
@@ -99,7 +79,7 @@ pub fn read(
             let message = format!(
                 "the table has more than {MOST_RUNS} runs; no chart of so many can be read"
             );
-            return Err(wrong(line, 1, message));
+            return Err(table.wrong(row, 0, message));
         }
         let (scene, own) = (word("scene"), word("series"));
         if charts.last().is_none_or(|chart| chart.scene != scene) {
@@ -148,7 +128,7 @@ pub fn read(
     }
     let last = charts
         .last_mut()
-        .ok_or_else(|| wrong(first, 1, "it has no rows".into()))?;
+        .ok_or_else(|| table.wrong_header("it has no rows".into()))?;
     last.about = about;
     Ok(charts)
 }

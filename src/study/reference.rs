@@ -4,10 +4,10 @@
 //! path of the load factor turns round, `leg` (from 1; without it, a new leg begins after the load of each corner). What
 //! `stickslip run --csv` writes is one.
 
-use super::csv::{TableError, column};
+use super::csv::{Table, TableError};
 use super::result::Run;
 use crate::format::error::{quoted, shortened};
-use crate::outside::input::{self, MARK, TABLE_BYTES};
+use crate::outside::input::{self, TABLE_BYTES};
 use std::path::Path;
 
 /// Loads that differ by less than this part of the largest are the same.
@@ -75,28 +75,13 @@ impl Reference {
     /// # Errors
     /// As [`Reference::open`].
     pub fn read(name: &str, text: &str, path: &[f64]) -> Result<Reference, TableError> {
-        let wrong = |line: usize, column: usize, message: String| TableError::Wrong {
-            file: name.to_owned(),
-            line,
-            column,
-            message,
-        };
-        let text = text.strip_prefix(MARK).unwrap_or(text);
-        let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line));
-        let about: Vec<&str> = text
-            .lines()
-            .filter_map(|line| line.strip_prefix('#').map(str::trim))
-            .collect();
-        let mut lines =
-            lines.filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));
-        let (first, header) = lines
-            .next()
-            .ok_or_else(|| wrong(1, 1, "there is no header".into()))?;
-        let heads: Vec<&str> = header.split(',').map(str::trim).collect();
+        let table = Table::read(name, text)?;
+        let about: Vec<&str> = table.comments().collect();
+        let heads = table.heads();
         let place = |wanted: &str| heads.iter().position(|head| *head == wanted);
         let load = place("load").ok_or_else(|| {
-            let header = quoted(header.trim());
-            wrong(first, 1, format!("the header has no column load: {header}"))
+            let header = quoted(table.header_line());
+            table.wrong_header(format!("the header has no column load: {header}"))
         })?;
         let leg = place("leg");
         let words = ["load", "leg", "increment", "majors", "minors"];
@@ -105,19 +90,13 @@ impl Reference {
             .collect();
         let mut rows: Vec<Point> = Vec::new();
         let mut legs = Legs::new(path);
-        for (line, text) in lines {
-            let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-            if fields.len() != heads.len() {
-                let (has, wants) = (fields.len(), heads.len());
-                let message = format!("the row has {has} fields, the header {wants}");
-                return Err(wrong(line, 1, message));
-            }
+        for row in &table.rows {
+            table.check(row)?;
             let number = |k: usize| {
-                let value = fields[k].parse::<f64>().ok();
+                let value = row.fields[k].parse::<f64>().ok();
                 let none = || {
-                    let (word, head) = (quoted(fields[k]), shortened(heads[k]));
-                    let message = format!("{word} under {head} is no number");
-                    wrong(line, column(text, k), message)
+                    let (word, head) = (quoted(&row.fields[k]), shortened(heads[k]));
+                    table.wrong(row, k, format!("{word} under {head} is no number"))
                 };
                 value.filter(|v| v.is_finite()).ok_or_else(none)
             };
@@ -137,7 +116,7 @@ impl Reference {
             });
         }
         if rows.is_empty() {
-            return Err(wrong(first, 1, "it has no rows".into()));
+            return Err(table.wrong_header("it has no rows".into()));
         }
         Ok(Reference {
             source: [&[name], &about[..]].concat().join(" "),

@@ -2,7 +2,7 @@
 
 use super::read::AxisQuantity;
 use super::reason::Reason;
-use super::verdict::Verdict;
+use super::verdict::RunVerdict;
 
 /// A run, as far as it went.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +51,7 @@ pub enum CaseEnd {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Failed {
     pub reason: Reason,
-    pub verdict: Verdict,
+    pub verdict: RunVerdict,
     pub increment: u32,
     /// The load factor that was tried.
     pub load: f64,
@@ -62,7 +62,7 @@ pub struct Failed {
 }
 
 impl Run {
-    /// The value of a quantity in a row of this run; none where the scene has no such monitor.
+    /// The value of a quantity in a row of this run; `None` if the scene has no such monitor.
     pub fn value(&self, row: &Row, quantity: &AxisQuantity) -> Option<f64> {
         match quantity {
             AxisQuantity::Increment => Some(f64::from(row.increment)),

@@ -4,7 +4,7 @@ use super::log::LogError;
 use super::plan::{Case, Plan};
 use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
-use super::verdict::Verdict;
+use super::verdict::RunVerdict;
 use crate::format::SceneError;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
@@ -101,7 +101,7 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
             let event = stepper.event();
             CaseEnd::Failed(Failed {
                 reason: Reason::from(&failure),
-                verdict: Verdict::of(&failure),
+                verdict: RunVerdict::of(&failure),
                 increment: event.position.increment,
                 load: event.load_factor,
                 major: event.position.major,

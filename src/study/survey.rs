@@ -5,7 +5,7 @@ use super::origin;
 use super::random::Population;
 use super::run::{RunError, Watch, pool};
 use super::trial::{Judged, Trial, Variant, try_variants};
-use super::verdict::Verdict;
+use super::verdict::RunVerdict;
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::num::NonZeroUsize;
@@ -16,7 +16,7 @@ use std::path::Path;
 pub struct Survey {
     pub population: Population,
     pub variants: Vec<Variant>,
-    /// One a problem, in order; none where it was stopped before.
+    /// One a problem, in order; `None` if it was stopped before.
     pub judged: Vec<Option<Judged>>,
 }
 
@@ -152,17 +152,17 @@ impl Tally {
     fn count(&mut self, solvable: bool, trial: &Trial) {
         if !solvable {
             self.unsolvable += 1;
-            self.admitted += usize::from(trial.verdict == Verdict::NoAnswer);
-            self.invented += usize::from(trial.verdict == Verdict::Wrong);
+            self.admitted += usize::from(trial.verdict == RunVerdict::NoAnswer);
+            self.invented += usize::from(trial.verdict == RunVerdict::Wrong);
             return;
         }
         self.solvable += 1;
         *match trial.verdict {
-            Verdict::Right => &mut self.solved,
-            Verdict::Wrong => &mut self.wrong,
-            Verdict::Cycle { .. } => &mut self.cycled,
-            Verdict::NoAnswer => &mut self.denied,
-            Verdict::Diverged | Verdict::Failed(_) => &mut self.failed,
+            RunVerdict::Right => &mut self.solved,
+            RunVerdict::Wrong => &mut self.wrong,
+            RunVerdict::Cycle { .. } => &mut self.cycled,
+            RunVerdict::NoAnswer => &mut self.denied,
+            RunVerdict::Diverged | RunVerdict::Failed(_) => &mut self.failed,
         } += 1;
     }
 

@@ -12,7 +12,7 @@
 
 use super::random::{Drawn, Population};
 use super::reason::Reason;
-use super::verdict::Verdict;
+use super::verdict::RunVerdict;
 use crate::format::condensed::{Matrix, Problem};
 use crate::format::{SceneError, paths};
 use crate::interface::census::census;
@@ -53,7 +53,7 @@ pub struct Judged {
 /// What one variant made of one problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
-    pub verdict: Verdict,
+    pub verdict: RunVerdict,
     pub majors: u64,
     pub minors: u64,
     /// Largest violation of Coulomb's law and of equilibrium in the end, relatively; infinite where there is no end.
@@ -64,11 +64,11 @@ impl Judged {
     /// Whether the problem has an answer: by census, or since a run found one where the census has none (where assumptions
     /// have a whole line of solutions, which it does not look into).
     pub fn solvable(&self) -> bool {
-        self.answers > 0 || self.trials.iter().any(|t| t.verdict == Verdict::Right)
+        self.answers > 0 || self.trials.iter().any(|t| t.verdict == RunVerdict::Right)
     }
 }
 
-/// Tries one problem of a population with all variants; none where `stop` says so in between.
+/// Tries one problem of a population with all variants; `None` if `stop` says so in between.
 ///
 /// # Errors
 /// If a variant's settings will not do.
@@ -119,7 +119,7 @@ fn answers(scene: &Scene) -> usize {
 fn one(problem: &Problem, scene: Scene) -> Trial {
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let mut trial = Trial {
-        verdict: Verdict::Failed(Reason::MinorLimit),
+        verdict: RunVerdict::Failed(Reason::MinorLimit),
         majors: 0,
         minors: 0,
         violation: f64::INFINITY,
@@ -135,11 +135,11 @@ fn one(problem: &Problem, scene: Scene) -> Trial {
         RunEnd::Finished => {
             trial.violation = violation(problem, &stepper);
             trial.verdict = match trial.violation <= TOLERANCE {
-                true => Verdict::Right,
-                false => Verdict::Wrong,
+                true => RunVerdict::Right,
+                false => RunVerdict::Wrong,
             };
         }
-        RunEnd::Failed(failure) => trial.verdict = Verdict::of(&failure),
+        RunEnd::Failed(failure) => trial.verdict = RunVerdict::of(&failure),
         RunEnd::Spent | RunEnd::Interrupted => {}
         RunEnd::Stopped(never) => match never {},
     }

@@ -8,7 +8,7 @@ use std::fmt;
 
 /// What a run came to. Its letter comes first wherever it is shown, its colour second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Verdict {
+pub enum RunVerdict {
     /// It went to the end, and its end is right as far as can be told.
     Right,
     /// It went to the end, and to a wrong one: no state that Coulomb's law allows, or another branch than the reference.
@@ -23,79 +23,79 @@ pub enum Verdict {
     Failed(Reason),
 }
 
-impl Verdict {
+impl RunVerdict {
     /// What a failure is worth.
-    pub fn of(failure: &Failure) -> Verdict {
+    pub fn of(failure: &Failure) -> RunVerdict {
         match failure {
-            Failure::Cycle(cycle) => Verdict::Cycle {
+            Failure::Cycle(cycle) => RunVerdict::Cycle {
                 period: cycle.period,
                 majors: false,
             },
-            Failure::MajorCycle(round) => Verdict::Cycle {
+            Failure::MajorCycle(round) => RunVerdict::Cycle {
                 period: round.period,
                 majors: true,
             },
-            Failure::Diverged { .. } => Verdict::Diverged,
+            Failure::Diverged { .. } => RunVerdict::Diverged,
             // That nothing was found where not all could be tried says nothing about the problem.
-            Failure::NoAnswer { .. } | Failure::NotFound(NotFound::Ray) => Verdict::NoAnswer,
-            other => Verdict::Failed(Reason::from(other)),
+            Failure::NoAnswer { .. } | Failure::NotFound(NotFound::Ray) => RunVerdict::NoAnswer,
+            other => RunVerdict::Failed(Reason::from(other)),
         }
     }
 
     /// Its letter.
     pub fn letter(self) -> char {
         match self {
-            Verdict::Right => 'C',
-            Verdict::Wrong => 'W',
-            Verdict::Cycle { .. } => 'O',
-            Verdict::Diverged => 'D',
-            Verdict::NoAnswer => 'N',
-            Verdict::Failed(_) => 'F',
+            RunVerdict::Right => 'C',
+            RunVerdict::Wrong => 'W',
+            RunVerdict::Cycle { .. } => 'O',
+            RunVerdict::Diverged => 'D',
+            RunVerdict::NoAnswer => 'N',
+            RunVerdict::Failed(_) => 'F',
         }
     }
 
     /// Its glyph.
     pub fn glyph(self) -> char {
         match self {
-            Verdict::Right => '✓',
-            Verdict::Wrong => '≠',
-            Verdict::Cycle { .. } => '↺',
-            Verdict::Diverged => '↗',
-            Verdict::NoAnswer => '∅',
-            Verdict::Failed(_) => '✗',
+            RunVerdict::Right => '✓',
+            RunVerdict::Wrong => '≠',
+            RunVerdict::Cycle { .. } => '↺',
+            RunVerdict::Diverged => '↗',
+            RunVerdict::NoAnswer => '∅',
+            RunVerdict::Failed(_) => '✗',
         }
     }
 
     /// What it is called in tables: a word without blanks.
     pub fn word(self) -> &'static str {
         match self {
-            Verdict::Right => "converged",
-            Verdict::Wrong => "wrong",
-            Verdict::Cycle { .. } => "cycle",
-            Verdict::Diverged => "diverged",
-            Verdict::NoAnswer => "no-answer",
-            Verdict::Failed(_) => "failed",
+            RunVerdict::Right => "converged",
+            RunVerdict::Wrong => "wrong",
+            RunVerdict::Cycle { .. } => "cycle",
+            RunVerdict::Diverged => "diverged",
+            RunVerdict::NoAnswer => "no-answer",
+            RunVerdict::Failed(_) => "failed",
         }
     }
 
     /// What the word leaves out: a cycle's period, the reason of a failure; else empty.
     pub fn detail(self) -> String {
         match self {
-            Verdict::Cycle { period, .. } => period.to_string(),
-            Verdict::Failed(reason) => reason.to_string(),
+            RunVerdict::Cycle { period, .. } => period.to_string(),
+            RunVerdict::Failed(reason) => reason.to_string(),
             _ => String::new(),
         }
     }
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for RunVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Verdict::Cycle { period, majors } => {
+            RunVerdict::Cycle { period, majors } => {
                 let of = if *majors { "majors" } else { "minors" };
                 write!(f, "{period}-cycle of {of}")
             }
-            Verdict::Failed(reason) => write!(f, "{reason}"),
+            RunVerdict::Failed(reason) => write!(f, "{reason}"),
             other => f.write_str(other.word()),
         }
     }

@@ -5,7 +5,7 @@ use super::plot::PlotError;
 use super::reason::Reason;
 use super::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest};
 use super::survey::{Survey, Tally};
-use super::verdict::Verdict;
+use super::verdict::RunVerdict;
 
 /// Height of a row of bars or cells.
 const ROW: f64 = 28.0;
@@ -17,31 +17,31 @@ const CELL: f64 = 44.0;
 const NONE: (f64, f64) = (430.0, 470.0);
 const WHITE: Colour = (255, 255, 255);
 
-fn colour(verdict: Verdict) -> Colour {
+fn colour(verdict: RunVerdict) -> Colour {
     match verdict {
-        Verdict::Right => (0, 158, 115),
-        Verdict::Wrong => (213, 94, 0),
-        Verdict::Cycle { .. } => (230, 159, 0),
-        Verdict::Diverged => (204, 121, 167),
-        Verdict::NoAnswer => (86, 180, 233),
-        Verdict::Failed(_) => (60, 60, 60),
+        RunVerdict::Right => (0, 158, 115),
+        RunVerdict::Wrong => (213, 94, 0),
+        RunVerdict::Cycle { .. } => (230, 159, 0),
+        RunVerdict::Diverged => (204, 121, 167),
+        RunVerdict::NoAnswer => (86, 180, 233),
+        RunVerdict::Failed(_) => (60, 60, 60),
     }
 }
 
 /// Every kind of verdict once, as the legend has them.
-const KINDS: [(Verdict, &str); 6] = [
-    (Verdict::Right, "converged"),
-    (Verdict::Wrong, "wrong branch or state"),
+const KINDS: [(RunVerdict, &str); 6] = [
+    (RunVerdict::Right, "converged"),
+    (RunVerdict::Wrong, "wrong branch or state"),
     (
-        Verdict::Cycle {
+        RunVerdict::Cycle {
             period: 0,
             majors: false,
         },
         "cycle, with its period",
     ),
-    (Verdict::Diverged, "diverged"),
-    (Verdict::NoAnswer, "said to have no answer"),
-    (Verdict::Failed(Reason::MinorLimit), "other failure"),
+    (RunVerdict::Diverged, "diverged"),
+    (RunVerdict::NoAnswer, "said to have no answer"),
+    (RunVerdict::Failed(Reason::MinorLimit), "other failure"),
 ];
 
 /// The legend, in a line that is broken where it must be.
@@ -67,7 +67,7 @@ fn legend(sheet: &mut Sheet) -> Result<(), PlotError> {
 }
 
 /// A coloured rectangle with letters in it.
-fn letter(sheet: &mut Sheet, at: (f64, f64), size: (f64, f64), verdict: Verdict, text: &str) {
+fn letter(sheet: &mut Sheet, at: (f64, f64), size: (f64, f64), verdict: RunVerdict, text: &str) {
     sheet.bar(at, size, colour(verdict));
     let middle = (at.0 + 0.5 * size.0, at.1 + 0.5 * size.1);
     sheet.text(middle, text, LABEL, WHITE, Anchor::Middle);

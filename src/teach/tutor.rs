@@ -123,7 +123,7 @@ impl Tutor {
         self.at
     }
 
-    /// The present step; none when it is over.
+    /// The present step; `None` when it is over.
     pub fn step(&self) -> Option<&Step> {
         self.lesson.steps.get(self.at)
     }

@@ -109,7 +109,7 @@ fn mix(from: Dot, to: Dot, part: f64) -> Dot {
     ]
 }
 
-/// The part of a line inside the rectangle from (0, 0) to `size` (Liang and Barsky). None if there is none, or if
+/// The part of a line inside the rectangle from (0, 0) to `size` (Liang and Barsky). `None` if there is none, or if
 /// an end is not a number.
 fn clip(from: Dot, to: Dot, size: [f64; 2]) -> Option<(Dot, Dot)> {
     if !from.iter().chain(&to).all(|x| x.is_finite()) {

@@ -2,7 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. None for key releases and
+/// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. `None` for key releases and
 /// for keys that the table never names.
 pub fn name(key: &KeyEvent) -> Option<String> {
     if key.kind == KeyEventKind::Release || key.modifiers.contains(KeyModifiers::ALT) {

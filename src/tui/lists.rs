@@ -192,7 +192,7 @@ fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
     at.saturating_add_signed(by).min(last)
 }
 
-/// Where a step along the timeline leads; none where it is no such step.
+/// Where a step along the timeline leads; `None` if it is no such step.
 fn along(step: Step, count: isize, view: &View) -> Option<usize> {
     let last = view.frames.len().saturating_sub(1);
     let by = match step {

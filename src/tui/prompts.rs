@@ -167,7 +167,7 @@ impl App {
         self.attempt(action, None, view)
     }
 
-    /// What the prompt in the message line asks; none where nothing is asked.
+    /// What the prompt in the message line asks; `None` if nothing is asked.
     pub fn question(&self, view: Option<&View>) -> Option<String> {
         let view = view?;
         match &self.overlay {

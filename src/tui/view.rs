@@ -26,7 +26,7 @@ pub struct View<'a> {
     pub model: &'a Model,
     /// The history, oldest first; never empty.
     pub frames: &'a [Frame],
-    /// The compact records of the same points; none in tests by hand.
+    /// The compact records of the same points; empty in tests by hand.
     pub strips: &'a [Strip],
     /// The whole history, and what was found out beside it; tests by hand have neither.
     pub tree: Option<&'a Tree>,
@@ -60,13 +60,13 @@ impl<'a> View<'a> {
         view
     }
 
-    /// What is found out about the problem that is solved next from here; an inner none while that is at work.
+    /// What is found out about the problem that is solved next from here; an inner `None` while that is at work.
     pub fn examination(&self) -> Option<Option<&'a Examination>> {
         self.background?
             .examination((self.tree?.current(), self.cursor))
     }
 
-    /// What pushed a slave node in the shown minor iteration; an inner none where that cannot be told.
+    /// What pushed a slave node in the shown minor iteration; an inner `None` if that cannot be told.
     pub fn pushes(&self, slave: usize) -> Option<Option<&'a [Push]>> {
         self.background?
             .pushes((self.tree?.current(), self.cursor), slave)
@@ -77,7 +77,7 @@ impl<'a> View<'a> {
         &self.frames[self.cursor]
     }
 
-    /// The minor iteration that led to the shown frame; none at the start, and none where the increment starts again,
+    /// The minor iteration that led to the shown frame; `None` at the start, and if the increment starts again,
     /// since what was found before that is not about this state.
     pub fn event(&self) -> Option<&'a Event> {
         let (event, next) = (self.frame().event.as_deref()?, self.frame().state.next);

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use stickslip::study::map::{Ended, Map, MonitorKind, Seen, TOLERANCE};
-use stickslip::study::verdict::Verdict;
+use stickslip::study::verdict::RunVerdict;
 use stickslip::study::{Plan, Study, Vary};
 
 fn command(directory: &Path, arguments: &[&str]) -> Command {
@@ -271,7 +271,7 @@ fn ended(end: f64) -> Option<Ended> {
 fn ends_are_compared_with_the_finest_run_of_the_same_problem() {
     let mut cycled = ended(0.0);
     cycled.as_mut().unwrap().failed = Some((
-        Verdict::Cycle {
+        RunVerdict::Cycle {
             period: 3,
             majors: false,
         },
@@ -290,20 +290,20 @@ fn ends_are_compared_with_the_finest_run_of_the_same_problem() {
     let verdict = |k: usize| map.cells[k].as_ref().unwrap().verdict;
     let reference = |k: usize| map.cells[k].as_ref().unwrap().reference;
     // Off by 0.01 of 2: half a percent.
-    assert_eq!(verdict(0), Verdict::Right);
+    assert_eq!(verdict(0), RunVerdict::Right);
     assert_eq!(reference(0).unwrap().0, 2);
-    assert_eq!(verdict(2), Verdict::Right);
-    assert_eq!(verdict(4), Verdict::Wrong);
+    assert_eq!(verdict(2), RunVerdict::Right);
+    assert_eq!(verdict(4), RunVerdict::Wrong);
     // At 20 degrees the finest run failed, and the next finest is the reference.
     assert_eq!(
         verdict(3),
-        Verdict::Cycle {
+        RunVerdict::Cycle {
             period: 3,
             majors: false
         }
     );
     assert_eq!((reference(1).unwrap().0, reference(3)), (5, None));
-    assert_eq!(verdict(1), Verdict::Wrong);
+    assert_eq!(verdict(1), RunVerdict::Wrong);
     assert_eq!(map.cells[3].as_ref().unwrap().label(), "↺3");
     let csv = map.csv();
     assert!(csv.contains("increment=0.1, angle=10"), "{csv}");
@@ -327,7 +327,7 @@ fn a_run_that_nothing_can_be_compared_with_says_so() {
     assert!(
         cells
             .iter()
-            .all(|c| c.verdict == Verdict::Right && c.reference.is_none())
+            .all(|c| c.verdict == RunVerdict::Right && c.reference.is_none())
     );
     assert!(map.csv().contains("# Nothing was compared"));
 }

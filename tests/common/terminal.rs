@@ -161,7 +161,7 @@ pub fn read(
     })
 }
 
-/// Tries again and again, until there is something. None if there never is.
+/// Tries again and again, until there is something. `None` if there never is.
 pub fn patiently<T>(mut attempt: impl FnMut() -> Option<T>) -> Option<T> {
     let begin = Instant::now();
     loop {

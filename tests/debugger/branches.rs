@@ -3,7 +3,7 @@
 use stickslip::history::compare::Sameness;
 use stickslip::history::frame::Frame;
 use stickslip::history::strip::PointKind;
-use stickslip::history::verdicts::Verdict;
+use stickslip::history::verdicts::BranchEnd;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, To, Unit};
 use stickslip::scene::Scene;
@@ -53,7 +53,7 @@ fn set(session: &mut Session, path: &str, value: &str) -> String {
     submit(session, Command::Set { path, value })
 }
 
-fn verdicts(session: &Session) -> Vec<Verdict> {
+fn verdicts(session: &Session) -> Vec<BranchEnd> {
     session.branches().into_iter().map(|b| b.verdict).collect()
 }
 
@@ -202,21 +202,21 @@ fn ends_are_judged_as_cycle_same_cycle_accepted_same_state_and_running() {
     forward(&mut session, Unit::Run, 1);
     assert_eq!(
         verdicts(&session),
-        [Verdict::Cycle, Verdict::SameCycle { branch: 0 }]
+        [BranchEnd::Cycle, BranchEnd::SameCycle { branch: 0 }]
     );
     // The way out, twice, from different iterations of the cycle; the second only begun at first.
     for step in [1, 2] {
         branch(&mut session, "b1");
         submit(&mut session, Command::Goto { step: step - 1 });
         force(&mut session, Mode::Sliding);
-        assert_eq!(verdicts(&session).last(), Some(&Verdict::Running));
+        assert_eq!(verdicts(&session).last(), Some(&BranchEnd::Running));
         forward(&mut session, Unit::Run, 1);
     }
     assert_eq!(
         verdicts(&session)[2..],
         [
-            Verdict::Accepted,
-            Verdict::Same {
+            BranchEnd::Accepted,
+            BranchEnd::Same {
                 branch: 2,
                 load: 1.0
             }
@@ -230,7 +230,7 @@ fn ends_are_judged_as_cycle_same_cycle_accepted_same_state_and_running() {
     let rougher = verdicts(&session)[4].clone();
     assert_eq!(
         rougher,
-        Verdict::Other {
+        BranchEnd::Other {
             branch: 2,
             load: 1.0
         }

@@ -59,7 +59,7 @@ impl Law {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Breach {
     pub law: Law,
-    /// Slave number; none where the whole is out of balance.
+    /// Slave number; `None` if the whole is out of balance.
     pub slave: Option<usize>,
     /// By how much: a part of the scene's extent (gap), or of the largest force; of slips the smaller of both, that by which
     /// the node has slipped and that which friction lacks.
@@ -225,7 +225,7 @@ impl Sides<'_> {
         best.unwrap_or_default()
     }
 
-    /// Signed distance of the closest of all surfaces; none where that is an end, past which the node lies.
+    /// Signed distance of the closest of all surfaces; `None` if that is an end, past which the node lies.
     fn gap(&self, chains: &[Chain], p: Point) -> Option<f64> {
         let mut closest: Option<(f64, Option<f64>)> = None;
         for &surface in self.surfaces {

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use stickslip::explain::remedies::TrialEnd;
-use stickslip::history::verdicts::Verdict;
+use stickslip::history::verdicts::BranchEnd;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
 use stickslip::record::journal::{Journal, Record};
@@ -255,7 +255,7 @@ fn remedies_are_measured_and_the_chosen_one_is_done_again_in_a_branch_of_its_own
         session.frame().event.as_ref().unwrap().outcome,
         Outcome::Increment { .. }
     ));
-    assert_eq!(branches[0].verdict, Verdict::Cycle, "nothing is lost");
+    assert_eq!(branches[0].verdict, BranchEnd::Cycle, "nothing is lost");
 }
 
 #[test]
@@ -275,10 +275,10 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
         good += 1;
     }
     assert_eq!(good, 7);
-    let ends: Vec<Verdict> = session.branches().into_iter().map(|b| b.verdict).collect();
-    assert_eq!(ends[0], Verdict::Cycle);
+    let ends: Vec<BranchEnd> = session.branches().into_iter().map(|b| b.verdict).collect();
+    assert_eq!(ends[0], BranchEnd::Cycle);
     assert!(
-        matches!(ends[2], Verdict::Same { branch: 1, .. }),
+        matches!(ends[2], BranchEnd::Same { branch: 1, .. }),
         "{ends:?}"
     );
 }

@@ -21,43 +21,43 @@ pub(crate) use types::{OWN_DEFAULTS, blank_form, known, link, read_blank};
 
 /// A place that a walk has come to, by both its names.
 #[derive(Clone)]
-pub(crate) struct Place {
+pub(crate) struct ScalarPlace {
     /// As a person types it.
     pub(crate) name: String,
     /// As the file has it.
     pub(crate) at: Path,
 }
 
-impl Place {
+impl ScalarPlace {
     /// The scene itself.
-    pub(crate) fn root() -> Place {
-        Place {
+    pub(crate) fn root() -> ScalarPlace {
+        ScalarPlace {
             name: String::new(),
             at: Path::default(),
         }
     }
 
-    pub(crate) fn field(&self, key: &str) -> Place {
+    pub(crate) fn field(&self, key: &str) -> ScalarPlace {
         let name = match self.name.as_str() {
             "" => key.to_owned(),
             name => format!("{name}.{key}"),
         };
         let at = self.at.then(key);
-        Place { name, at }
+        ScalarPlace { name, at }
     }
 
     /// An entry of a list: by its name if it has one, else by its position from 0.
-    fn entry(&self, called: Option<&str>, index: usize) -> Place {
+    fn entry(&self, called: Option<&str>, index: usize) -> ScalarPlace {
         let name = match called {
             Some(id) => format!("{}.{id}", self.name),
             None => format!("{}[{index}]", self.name),
         };
         let at = self.at.then(index);
-        Place { name, at }
+        ScalarPlace { name, at }
     }
 
     /// A part of a tuple, which has a name only here.
-    fn part(&self, name: &str, index: usize) -> Place {
+    fn part(&self, name: &str, index: usize) -> ScalarPlace {
         self.entry(Some(name), index)
     }
 }
@@ -136,14 +136,14 @@ pub(crate) trait Choice {
 }
 
 /// What a walk does at every scalar.
-pub(crate) type Visit<'v> = dyn FnMut(&Place, Scalar<'_>) + 'v;
+pub(crate) type Visit<'v> = dyn FnMut(&ScalarPlace, Scalar<'_>) + 'v;
 
 /// What can stand in a scene file.
 pub(crate) trait Described: Sized {
     /// Visits every scalar in it, in the order of the file.
-    fn walk(&mut self, place: &Place, visit: &mut Visit<'_>);
+    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>);
     /// Visits an optional one where there is one.
-    fn walk_optional(this: &mut Option<Self>, place: &Place, visit: &mut Visit<'_>) {
+    fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace, visit: &mut Visit<'_>) {
         if let Some(given) = this {
             given.walk(place, visit);
         }
@@ -188,7 +188,7 @@ fn types_of<T: Described>(_: &T, into: &mut Vec<Type>) -> Result<(), String> {
 macro_rules! scalars {
     ($($type:ty, $scalar:ident, $kind:literal, $blank:literal, $shown:literal;)*) => {
         $(impl Described for $type {
-            fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+            fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
                 visit(place, Scalar::$scalar(self));
             }
             fn kind() -> String {
@@ -212,11 +212,11 @@ scalars! {
 }
 
 impl Described for f64 {
-    fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
         visit(place, Scalar::Number(self));
     }
     /// An optional number can be set where there is none.
-    fn walk_optional(this: &mut Option<Self>, place: &Place, visit: &mut Visit<'_>) {
+    fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace, visit: &mut Visit<'_>) {
         visit(place, Scalar::Optional(this));
     }
     fn kind() -> String {
@@ -231,7 +231,7 @@ impl Described for f64 {
 }
 
 impl<T: Described> Described for Option<T> {
-    fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
         T::walk_optional(self, place, visit);
     }
     fn kind() -> String {
@@ -249,7 +249,7 @@ impl<T: Described> Described for Option<T> {
 }
 
 impl<T: Described> Described for Vec<T> {
-    fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
         for (k, entry) in self.iter_mut().enumerate() {
             let place = place.entry(entry.called(), k);
             entry.walk(&place, visit);
@@ -274,7 +274,7 @@ impl<T: Described> Described for Vec<T> {
 macro_rules! pairs {
     ($($part:ty, $first:literal, $second:literal, $kind:literal;)*) => {
         $(impl Described for ($part, $part) {
-            fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+            fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
                 self.0.walk(&place.part($first, 0), visit);
                 self.1.walk(&place.part($second, 1), visit);
             }

@@ -3,7 +3,7 @@
 
 use super::types::{Form, OWN_DEFAULTS, Type, known, lines_of, link, of_words, read_blank};
 use super::words::{of_word, word, words};
-use super::{Choice, Described, Place, Scalar, Visit, field_of, one_of, types_of};
+use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
 use crate::model::documented::text;
 use crate::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Friction, Geometry, InitialState, Jumps, Law,
@@ -14,7 +14,7 @@ use crate::model::{
 macro_rules! fields {
     ($name:ident { $($part:ident),* $(,)? }) => {
         impl Described for $name {
-            fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+            fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
                 let $name { $($part),* } = self;
                 $($part.walk(&place.field(stringify!($part)), visit);)*
             }
@@ -58,7 +58,7 @@ macro_rules! words {
             }
 
             impl Described for $type {
-                fn walk(&mut self, place: &Place, visit: &mut Visit<'_>) {
+                fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
                     visit(place, Scalar::Choice(self));
                 }
                 fn kind() -> String {

@@ -3,7 +3,7 @@
 use crate::explain::number;
 use crate::history::compare::{self, Sameness, Side};
 use crate::history::tree::Tree;
-use crate::history::verdicts::{Summary, Verdict};
+use crate::history::verdicts::{BranchEnd, Summary};
 use crate::history::{branches, verdicts};
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
@@ -93,14 +93,14 @@ fn line<'a>(
     ])
 }
 
-fn glyph(verdict: &Verdict, app: &App) -> (&'static str, Style) {
+fn glyph(verdict: &BranchEnd, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
     match verdict {
-        Verdict::Running => ("▸", theme.text),
-        Verdict::Accepted | Verdict::Same { .. } => ("✓", theme.good),
-        Verdict::Other { .. } => ("≠", theme.warning),
-        Verdict::Cycle | Verdict::SameCycle { .. } => ("↺", theme.bad),
-        Verdict::Diverged | Verdict::Failed => ("✗", theme.bad),
+        BranchEnd::Running => ("▸", theme.text),
+        BranchEnd::Accepted | BranchEnd::Same { .. } => ("✓", theme.good),
+        BranchEnd::Other { .. } => ("≠", theme.warning),
+        BranchEnd::Cycle | BranchEnd::SameCycle { .. } => ("↺", theme.bad),
+        BranchEnd::Diverged | BranchEnd::Failed => ("✗", theme.bad),
     }
 }
 

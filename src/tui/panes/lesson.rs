@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
-/// Rows that the lesson wants at a width, border included; none without a lesson.
+/// Rows that the lesson wants at a width, border included; 0 without a lesson.
 pub fn rows(app: &App, width: u16) -> u16 {
     let inner = usize::from(width.saturating_sub(2));
     match &app.lesson {

@@ -62,7 +62,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
 }
 
-/// What the judge found worst of the last accepted increment; none before the first.
+/// What the judge found worst of the last accepted increment; `None` before the first.
 fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
     let verdict = view.frame().state.start.verdict.as_ref()?;
     let worst = verdict.largest()?;
