@@ -2,7 +2,7 @@
 
 use super::base::{Error, Exit, SetArgs, say, tell};
 use super::interrupt::Interrupt;
-use crate::contact::judge::Law;
+use crate::contact::laws::Law;
 use crate::explain::audit::{Audit, Found};
 use crate::explain::judged;
 use crate::explain::names;

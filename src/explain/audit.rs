@@ -5,7 +5,7 @@
 //! a slave's body, and increments in which friction gave work.
 
 use crate::contact::feet::place;
-use crate::contact::judge::{Finding, Law};
+use crate::contact::laws::{Finding, Law};
 use crate::model::Model;
 use crate::model::{BodyKind, Solid};
 use crate::step::event::Outcome;

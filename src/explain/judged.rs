@@ -1,6 +1,6 @@
 //! What the judge found, in words: the law, the node, the amount.
 
-use crate::contact::judge::{Finding, Law, Numbers};
+use crate::contact::laws::{Finding, Law, Numbers};
 use crate::explain::names::slave;
 use crate::model::Model;
 

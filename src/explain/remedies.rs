@@ -6,7 +6,7 @@
 //! that the chosen one can be done again in a branch.
 
 use super::examination::examine;
-use crate::contact::judge::Law;
+use crate::contact::laws::Law;
 use crate::contact::record::{ContactRecord, Forced};
 use crate::explain::names;
 use crate::interface::method::NotFound;

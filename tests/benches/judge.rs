@@ -5,7 +5,8 @@
 
 use std::sync::Arc;
 use std::time::Instant;
-use stickslip::contact::judge::{Judge, Scales, Seen};
+use stickslip::contact::judge::{Judge, Seen};
+use stickslip::contact::laws::Scales;
 use stickslip::model::Model;
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;

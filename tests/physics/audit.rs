@@ -4,7 +4,7 @@ use crate::common::scene;
 use crate::program::{code, err, out, program};
 use std::path::Path;
 use std::sync::Arc;
-use stickslip::contact::judge::Law;
+use stickslip::contact::laws::Law;
 use stickslip::explain::audit::Audit;
 use stickslip::explain::remedies::{self, TrialEnd};
 use stickslip::model::Mode;

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 use stickslip::contact::balance::{self, Forces};
-use stickslip::contact::judge::{Judge, Law, Scales, Seen, Verdict};
+use stickslip::contact::judge::{Judge, Seen};
+use stickslip::contact::laws::{Law, Scales, Verdict};
 use stickslip::model::InitialState;
 use stickslip::model::{Contact, Surface};
 use stickslip::model::{Friction, Mode};

@@ -4,7 +4,7 @@
 //! the reaction. Internal forces do not depend on where a body is, so their sum and the sum of their moments vanish; the
 //! same then holds for the reactions and the loads together.
 
-use crate::contact::judge::{Finding, Law, Numbers, Scales, Verdict};
+use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::model::{BodyKind, Model};
 
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.

@@ -5,6 +5,7 @@ pub mod corner;
 pub mod feet;
 pub mod geometric_tangent;
 pub mod judge;
+pub mod laws;
 pub mod projection;
 pub mod record;
 pub mod state;

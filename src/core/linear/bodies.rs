@@ -1,7 +1,8 @@
 //! Our own bodies as a source: beams, continua and given matrices, over surfaces that are followed by projection.
 
 use crate::contact::balance::{self, Forces};
-use crate::contact::judge::{Judge, Scales, Seen, Verdict};
+use crate::contact::judge::{Judge, Seen};
+use crate::contact::laws::{Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::pierced;

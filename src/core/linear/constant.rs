@@ -9,7 +9,7 @@
 //!
 //! The smallest thing that can be stepped, and an example of what another code has to give ([`crate::linear::source`]).
 
-use crate::contact::judge::{Finding, Law, Numbers, Scales, Verdict};
+use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};

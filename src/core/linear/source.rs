@@ -5,7 +5,7 @@
 //! minor iterations have settled, the source takes the forces back: it moves its bodies, follows the slave nodes over
 //! their surfaces, and linearises anew. Whoever can do this can be stepped.
 
-use crate::contact::judge::Verdict;
+use crate::contact::laws::Verdict;
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};

@@ -1,6 +1,6 @@
 //! What one minor iteration did, typed.
 
-use crate::contact::judge::Finding;
+use crate::contact::laws::Finding;
 use crate::contact::record::ContactRecord;
 use crate::interface::method::NotFound;
 use crate::interface::minor_history::Cycle;

@@ -1,6 +1,6 @@
 //! Increments: accepted, cut into halves, damped, or failed.
 
-use crate::contact::judge::{Finding, Verdict};
+use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::Mode;

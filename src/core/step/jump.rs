@@ -12,7 +12,7 @@
 //! Near a limit point the halves may have no end at all, where the whole increment has one beyond. Where they fail, the suspected
 //! increment is taken whole after all, and is a jump if it still moves beyond what is expected.
 
-use crate::contact::judge::Verdict;
+use crate::contact::laws::Verdict;
 use crate::linear::norms::Norms;
 use crate::model::Jumps;
 use crate::step::event::{Failure, Outcome};

@@ -3,7 +3,7 @@
 //! A state is cheap to clone, since what changes seldom is shared; restoring one and going on gives the same bits as
 //! never having left. What can be computed again from it (geometry, stiffness, factors) is not in it.
 
-use crate::contact::judge::Verdict;
+use crate::contact::laws::Verdict;
 use crate::contact::state::ContactState;
 use crate::fem::assembly::history_len;
 use crate::interface::method::Searched;

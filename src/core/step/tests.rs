@@ -2,7 +2,7 @@
 
 use super::drive::{RunEnd, Until};
 use super::stepper::Stepper;
-use crate::contact::judge::Law;
+use crate::contact::laws::Law;
 use crate::interface::census::census;
 use crate::linear::constant::Constant;
 use crate::model::{

@@ -6,7 +6,7 @@
 //! seemed to. Where it cannot be cut, it fails. What the user asked for is marked and never refused: held modes, readings
 //! of the paper that leave the law, and limits that are to be accepted.
 
-use crate::contact::judge::{Finding, Law, Verdict};
+use crate::contact::laws::{Finding, Law, Verdict};
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::linear::norms::Norms;
