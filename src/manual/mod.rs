@@ -84,9 +84,11 @@ pub fn contents() -> String {
 /// A line of a page that holds a word that was searched for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hit {
+    /// The page.
     pub topic: &'static str,
     /// The heading under which it stands; that of the page at its top.
     pub heading: String,
+    /// The line itself.
     pub line: String,
 }
 

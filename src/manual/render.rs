@@ -12,15 +12,20 @@ const INDENT: usize = 4;
 /// How a piece of a line is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Style {
+    /// As the text around it.
     Plain,
+    /// A heading.
     Heading,
+    /// Bold.
     Strong,
+    /// What is typed or shown literally.
     Code,
 }
 
 /// A line of a page.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Line {
+    /// The texts of the line, from left to right, each with its style.
     pub pieces: Vec<(Style, String)>,
 }
 
@@ -46,6 +51,7 @@ impl Line {
         }
     }
 
+    /// Whether the line is a heading.
     pub fn is_heading(&self) -> bool {
         self.pieces
             .iter()

@@ -15,10 +15,17 @@ use tempfile::NamedTempFile;
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
+    /// There is a file of that name, and it was not asked to overwrite it.
     #[error("{}: the file exists already, and nothing is overwritten unasked", .0.display())]
     Exists(PathBuf),
+    /// The system refused.
     #[error("{}: it cannot be written: {source}", path.display())]
-    Failed { path: PathBuf, source: io::Error },
+    Failed {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
 }
 
 /// A file in the making. It appears under its name when it is finished, and leaves nothing behind when it is not.

@@ -14,16 +14,28 @@ pub const RECORD_BYTES: u64 = 256 << 20;
 /// Why a file is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum Unreadable {
+    /// The system refused.
     #[error("the file cannot be read: {0}")]
     Failed(#[from] io::Error),
     /// What it is instead of a file.
     #[error("it is {0}, and only a regular file is read")]
     NoFile(&'static str),
+    /// The file is larger than any such file is.
     #[error("the file has more than {} MiB; {what}", most >> 20)]
-    TooLarge { most: u64, what: &'static str },
+    TooLarge {
+        /// Most bytes that are read.
+        most: u64,
+        /// Words that say what such a file is.
+        what: &'static str,
+    },
     /// Where the first byte stands that is no text.
     #[error("the file is not text in UTF-8")]
-    NoText { line: usize, column: usize },
+    NoText {
+        /// Line of the first byte that is no UTF-8, from 1.
+        line: usize,
+        /// Column of it in characters, from 1.
+        column: usize,
+    },
 }
 
 impl Unreadable {
