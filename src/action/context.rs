@@ -19,6 +19,7 @@ pub struct Context<'a> {
     pub selected: usize,
     /// Names of the built-in scenes, and of the built-in lessons.
     pub scenes: &'a [String],
+    /// Lessons that the program carries.
     pub lessons: &'a [Builtin],
 }
 

@@ -7,7 +7,9 @@ use crate::study::Vary;
 /// What a key or a typed line means.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
+    /// A command for the session.
     Session(Command),
+    /// What concerns the terminal alone.
     Ui(Ui),
 }
 
@@ -33,7 +35,9 @@ pub enum Ui {
     Move(Step),
     /// Select a slave node, by slave number.
     Select(usize),
+    /// Give the focus to the next pane.
     NextPane,
+    /// Give the focus to the pane before.
     PreviousPane,
     /// Give the pane with the focus the whole screen, or take it back.
     Zoom,
@@ -49,7 +53,9 @@ pub enum Ui {
     Chart(ChartOf),
     /// The shape larger, smaller, and all of it.
     Enlarge,
+    /// The shape smaller.
     Shrink,
+    /// All of the shape.
     Fit,
     /// Sort the slave nodes: like this, or in the next way.
     Sort(Option<Sort>),
@@ -69,38 +75,55 @@ pub enum Ui {
     Predict(Option<Whose>),
     /// Ask for what an action still needs.
     Ask(Question),
+    /// Open the line for typed commands.
     CommandLine,
     /// Load another scene, by file or built-in name.
     Open(String),
+    /// Show the list of all actions.
     Help,
     /// Show this page of the manual.
     Manual(&'static manual::Page),
+    /// Draw the whole screen again.
     Redraw,
+    /// Give the terminal back to the shell until it resumes the program (Ctrl-Z).
     Suspend,
     /// Leave whatever is open: a count, a prompt, a zoomed pane.
     Cancel,
+    /// Leave the program.
     Quit,
 }
 
 /// A step inside a pane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
+    /// One row up.
     Up,
+    /// One row down.
     Down,
+    /// To the left.
     Left,
+    /// To the right.
     Right,
+    /// One page up.
     PageUp,
+    /// One page down.
     PageDown,
+    /// To the beginning.
     First,
+    /// To the end.
     Last,
 }
 
 /// A pane that has a key of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Page {
+    /// All iterations so far.
     Timeline,
+    /// Why the iterations cycle.
     Diagnosis,
+    /// All branches, and how they ended.
     Branches,
+    /// What gets past a failure.
     Remedies,
 }
 
@@ -116,6 +139,7 @@ pub enum Sort {
 }
 
 impl Sort {
+    /// All, in the order in which the key goes through them.
     pub const ALL: [Sort; 3] = [Sort::Scene, Sort::Margin, Sort::Gap];
 
     /// The word for it.
@@ -131,6 +155,7 @@ impl Sort {
 /// Which slave nodes the table shows; the selected one is always there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filter {
+    /// All of them.
     All,
     /// Those that touch, or whose mode changes.
     Active,
@@ -139,6 +164,7 @@ pub enum Filter {
 }
 
 impl Filter {
+    /// All, in the order in which the key goes through them.
     pub const ALL: [Filter; 3] = [Filter::All, Filter::Active, Filter::Surface];
 
     /// The word for it.
@@ -163,6 +189,7 @@ pub enum Whose {
 }
 
 impl Whose {
+    /// All three.
     pub const ALL: [Whose; 3] = [Whose::Selected, Whose::Changed, Whose::Off];
 
     /// The word for it.

@@ -9,12 +9,19 @@ use crate::record::command::{Command, Exported, To, Unit};
 /// Heading under which help lists an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Group {
+    /// Going through the iterations.
     Go,
+    /// Interfering with the solver.
     Change,
+    /// Branches of the history.
     Branches,
+    /// Breakpoints and watches.
     Breakpoints,
+    /// Looking around.
     Look,
+    /// Lessons and predictions.
     Learn,
+    /// The program itself.
     Program,
 }
 
@@ -47,13 +54,17 @@ impl Group {
 /// One action: how it is called, which keys do it, what it does.
 #[derive(Debug)]
 pub struct Entry {
+    /// Its name, as it is typed.
     pub name: &'static str,
     /// Arguments as help shows them; those in brackets may be left out.
     pub arguments: &'static str,
+    /// The keys that do it.
     pub keys: &'static [&'static str],
+    /// The heading under which help lists it.
     pub group: Group,
     /// Word in the footer; empty where the footer leaves it out.
     pub label: &'static str,
+    /// What help says of it.
     pub help: &'static str,
     pub(super) verb: Verb,
 }

@@ -17,18 +17,24 @@ const POINTS: usize = 8;
 /// What was found where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Found {
+    /// From 1.
     pub increment: u32,
+    /// λ at the end of the increment.
     pub load_factor: f64,
+    /// The worst violation of a contact law there.
     pub finding: Finding,
 }
 
 /// A master's node inside the body of slave nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inside {
+    /// From 1.
     pub increment: u32,
+    /// λ at the end of the increment.
     pub load_factor: f64,
     /// Number of the node and of the body in the scene.
     pub node: usize,
+    /// Number of the body in the model, from 0.
     pub body: usize,
     /// How far it is from the outline (length).
     pub depth: f64,
@@ -39,6 +45,7 @@ pub struct Inside {
 pub struct Audit {
     /// Accepted increments, and those of them that were only marked.
     pub increments: u32,
+    /// Those of them that were only marked.
     pub marked: u32,
     /// The worst place of each law over all increments that were not marked, in the order of [`Law::ALL`].
     pub worst: [Option<Found>; 8],

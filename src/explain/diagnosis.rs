@@ -35,6 +35,7 @@ pub struct Diagnosis {
     pub problem: InterfaceProblem,
     /// What is consistent in it; `None` if even the core is too large.
     pub census: Option<Census>,
+    /// Why it cycles.
     pub cause: Cause,
     /// What was tried on it, and whether it settles there.
     pub ways: Vec<(Way, bool)>,
@@ -56,6 +57,7 @@ pub struct Push {
     pub node: usize,
     /// The modes that the pushing node had in the iteration before and in this one.
     pub from_modes: [Mode; 2],
+    /// Which change pushed which node.
     pub influence: Influence,
     /// What was tested.
     pub tested: Tested,

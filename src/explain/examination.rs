@@ -23,8 +23,10 @@ pub const NOT_CONDENSED: &str =
 /// Why it cannot be told whether the minor iterations cycle.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Untold {
+    /// The solver does not condense, so that there is no interface problem.
     #[error("{NOT_CONDENSED}")]
     NotCondensed,
+    /// There are too many nodes; the text says how many.
     #[error("{0}")]
     TooMany(String),
 }
@@ -38,6 +40,7 @@ pub struct Examination {
     pub cycles: bool,
     /// The problem that the census was held over.
     pub problem: Option<InterfaceProblem>,
+    /// All consistent states; `None` if they were not counted.
     pub census: Option<Census>,
 }
 

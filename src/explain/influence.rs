@@ -21,8 +21,11 @@ pub struct Influence {
     pub from: usize,
     /// Change of the other node's gap and slip (length) and forces that is due to it.
     pub gap: f64,
+    /// Change of its slip, length.
     pub slip: f64,
+    /// Change of its normal force; compression is positive.
     pub f_n: f64,
+    /// Change of its tangential force.
     pub f_t: f64,
 }
 
@@ -94,11 +97,13 @@ pub struct Push {
     pub slave: usize,
     /// Its modes in the iteration before and in this one.
     pub modes: [Mode; 2],
+    /// What the changes of other nodes do to it.
     pub influence: Influence,
 }
 
 /// How to come to the iteration that is looked at: from a state, by steps done before.
 pub struct Way {
+    /// The state after the way.
     pub state: Box<State>,
     /// Minor iterations (none) and interventions, up to the state that the shown iteration started from.
     pub steps: Vec<Option<Intervention>>,

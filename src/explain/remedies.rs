@@ -46,6 +46,7 @@ pub enum TrialEnd {
     Converged,
     /// A state was accepted, as held modes or the settings want it, that the judge found against this law.
     Against(Law),
+    /// It failed.
     Failed(Failure),
     /// The budget is used up.
     Budget,
@@ -74,9 +75,13 @@ pub struct Left {
 /// What a remedy did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
+    /// What was tried, as the list calls it.
     pub label: String,
+    /// How it ended.
     pub end: TrialEnd,
+    /// Minor iterations that it took.
     pub minors: u32,
+    /// Major iterations that it took.
     pub majors: u32,
     /// Factorizations of the bodies: one a major iteration, or one a minor where the system is not condensed.
     pub factorizations: u32,

@@ -57,10 +57,14 @@ pub struct Contact {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Contacts", deny_unknown_fields)]
 pub struct Problem {
+    /// What it is, in one line.
     pub title: String,
+    /// What there is to say of it. Default: empty.
     #[serde(default)]
     pub about: String,
+    /// The contacts, in the order of the rows and columns of `matrix`.
     pub contacts: Vec<Contact>,
+    /// How what carries them answers.
     pub matrix: Matrix,
     /// Displacement under no force, at load factor 1: two components a contact, or none at all. Default: none.
     #[serde(default)]
@@ -72,6 +76,7 @@ pub struct Problem {
     /// Default: one increment from 0 to 1.
     #[serde(default = "at_once")]
     pub history: History,
+    /// How it is solved. Default: as for a scene.
     #[serde(default)]
     pub settings: Settings,
 }

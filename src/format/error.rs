@@ -63,6 +63,22 @@ macro_rules! at {
 }
 pub(crate) use at;
 
+/// Why a scalar of a scene cannot be set.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NotSet {
+    /// No scalar has this path; the message says what is near it.
+    #[error("{0}")]
+    NoScalar(String),
+    /// The value cannot be read as one of the scalar's kind.
+    #[error("{value} will not do; it must be {kind}")]
+    NoValue {
+        /// What was typed, in quotes.
+        value: String,
+        /// What would do: "a number", "one of lagged, consistent".
+        kind: String,
+    },
+}
+
 /// Something wrong at a place of a [`Spec`](super::Spec), before anybody has looked for its line.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fault {

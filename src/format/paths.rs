@@ -4,7 +4,7 @@
 //! `y`. One walk over the scene serves listing and setting, so that neither can know more than the other.
 
 use super::described::{Described, Scalar, ScalarPlace, Visit};
-use super::error::{Path, nearest, quoted};
+use super::error::{NotSet, Path, nearest, quoted};
 use super::spec::Spec;
 use crate::model::Settings;
 
@@ -22,7 +22,9 @@ pub struct Override {
 /// A scalar of a scene, its value, and what it may be.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
+    /// Its path, as a person types it.
     pub path: String,
+    /// Its value, as a person types it.
     pub value: String,
     /// What can be set: "a number", "one of lagged, consistent".
     pub kind: String,
@@ -59,8 +61,8 @@ pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
 /// Sets one scalar. Whether the scene is sound with it shows when it is compiled.
 ///
 /// # Errors
-/// A message, if there is no such path or the value is not of its kind.
-pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, String> {
+/// If there is no such path, or the value is not of its kind.
+pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, NotSet> {
     let path = path.trim();
     let mut done = None;
     walk(spec, &mut |place, scalar| {
@@ -74,7 +76,7 @@ pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, String>
             value: value.trim().to_owned(),
             at: result?,
         }),
-        None => Err(unknown(spec, path)),
+        None => Err(NotSet::NoScalar(unknown(spec, path))),
     }
 }
 

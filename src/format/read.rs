@@ -128,7 +128,7 @@ pub(crate) fn unread(file: &str, error: Unreadable) -> SceneError {
 }
 
 /// The path without names of variants.
-fn plain(path: &serde_path_to_error::Path) -> Path {
+pub(crate) fn plain(path: &serde_path_to_error::Path) -> Path {
     let step = |segment: &Segment| match segment {
         Segment::Seq { index } => Some(Step::Index(*index)),
         Segment::Map { key } => Some(Step::Key(key.clone())),

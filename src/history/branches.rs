@@ -9,7 +9,9 @@ use crate::step::intervene::Intervention;
 /// What a stretch of the history cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cost {
+    /// Minor iterations.
     pub minors: u64,
+    /// Major iterations.
     pub majors: u64,
     /// Accepted increments.
     pub increments: u64,
@@ -20,8 +22,10 @@ pub struct Cost {
 /// Why a word names no branch.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoBranch {
+    /// No branch has this name; what branches there are.
     #[error("no branch is called '{0}'; there are {1}")]
     Unknown(String, String),
+    /// Several branches have names like this; which.
     #[error("'{0}' could be {1}")]
     Ambiguous(String, String),
 }

@@ -15,14 +15,25 @@ use std::str::FromStr;
 pub enum Condition {
     /// A node is solved in another mode next: from a given one or any, to a given one or any.
     Mode {
+        /// Slave number, from 0; `None` for any.
         node: Option<usize>,
+        /// The mode before; `None` for any.
         from: Option<Mode>,
+        /// The mode after; `None` for any.
         to: Option<Mode>,
     },
     /// A node's margin falls below a value (force or length), in single precision.
-    Margin { node: Option<usize>, below: f64 },
+    Margin {
+        /// Slave number, from 0; `None` for any.
+        node: Option<usize>,
+        /// The value, force or length as the test that is nearest to switching has it.
+        below: f64,
+    },
     /// A node changes its interface element, or loses or finds one.
-    Element { node: Option<usize> },
+    Element {
+        /// Slave number, from 0; `None` for any.
+        node: Option<usize>,
+    },
     /// The minor iterations cycle.
     Cycle,
     /// A major iteration leaves a larger relative residual than it started from.
@@ -37,8 +48,11 @@ pub enum Condition {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename = "Place")]
 pub struct RunPlace {
+    /// From 1.
     pub increment: u32,
+    /// From 1.
     pub major: u32,
+    /// From 1.
     pub minor: u32,
 }
 
@@ -76,7 +90,9 @@ impl fmt::Display for RunPlace {
 pub struct Breakpoint {
     /// Its number, from 1; never used twice in a session.
     pub id: u32,
+    /// When it stops a run.
     pub condition: Condition,
+    /// Whether it stops one at present.
     pub enabled: bool,
 }
 

@@ -19,7 +19,9 @@ pub const SAME_STATE: f64 = 1e-7;
 /// Whether two states are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sameness {
+    /// They are.
     Same,
+    /// They are not.
     Different,
 }
 
@@ -28,24 +30,30 @@ pub enum Sameness {
 pub struct NodeSide {
     /// Mode of the iteration, and of the next.
     pub mode: Mode,
+    /// Mode of the next iteration.
     pub next: Mode,
     /// Total forces after it, and the gap; `None` if the frame is thinned, or nothing was solved.
     pub forces: Option<[f64; 2]>,
+    /// Gap, length; negative is penetration.
     pub gap: Option<f64>,
 }
 
 /// One branch at one place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Side {
+    /// Its number in [`Tree::branches`].
     pub branch: usize,
     /// Place on the branch's line.
     pub at: usize,
+    /// Increment, major and minor iteration there.
     pub position: Position,
+    /// λ there.
     pub load_factor: f64,
     /// One entry a slave node.
     pub nodes: Vec<NodeSide>,
     /// Relative residual and violation of the interface: after the major iteration where it ended here, else before.
     pub residual: f64,
+    /// Relative violation of the interface conditions at the same time; `None` if it was not measured.
     pub interface: Option<f64>,
     /// From the root to here.
     pub cost: Cost,
@@ -54,6 +62,7 @@ pub struct Side {
 /// Two branches.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
+    /// Both at their ends.
     pub tips: [Side; 2],
     /// Where both can be compared.
     pub common: Option<[Side; 2]>,

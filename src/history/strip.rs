@@ -106,6 +106,7 @@ pub struct Strip {
     pub load_factor: f64,
     /// Leg of the load path on which the next increment lies.
     pub leg: u32,
+    /// What happened there.
     pub kind: PointKind,
     /// Relative residual about which the minor iteration was linearised.
     pub residual: f64,

@@ -15,11 +15,24 @@ pub enum BranchEnd {
     /// At an accepted increment that no other branch has reached; nothing to compare with.
     Accepted,
     /// Displacements and forces are those of an earlier branch at the same load.
-    Same { branch: usize, load: f64 },
+    Same {
+        /// The earlier branch.
+        branch: usize,
+        /// λ at which both were compared.
+        load: f64,
+    },
     /// An earlier branch accepted another state at the same load; this one is as valid.
-    Other { branch: usize, load: f64 },
+    Other {
+        /// The earlier branch.
+        branch: usize,
+        /// λ at which both were compared.
+        load: f64,
+    },
     /// The cycle that an earlier branch ends in, too, in the same increment.
-    SameCycle { branch: usize },
+    SameCycle {
+        /// The earlier branch.
+        branch: usize,
+    },
     /// A cycle.
     Cycle,
     /// The residual or the displacements grew out of all bounds.
@@ -35,18 +48,23 @@ pub struct Summary {
     pub number: usize,
     /// `b2: beam.5 sliding`
     pub name: String,
+    /// Number of the branch that it left; `None` for the first.
     pub parent: Option<usize>,
     /// Place on its line of the first point of its own.
     pub from: usize,
     /// Number of points on its line, those that it shares included.
     pub length: usize,
+    /// Whether it is the one that the session is on.
     pub is_current: bool,
     /// The last minor iteration on it.
     pub position: Position,
+    /// λ there.
     pub load_factor: f64,
+    /// How it ends.
     pub verdict: BranchEnd,
     /// What its own points cost, and its whole line.
     pub own: Cost,
+    /// What its whole line cost.
     pub whole: Cost,
 }
 

@@ -9,11 +9,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename = "Quantity")]
 pub enum WatchQuantity {
+    /// Gap, length; negative is penetration.
     Gap,
+    /// Normal force; compression is positive.
     NormalForce,
+    /// Tangential force.
     TangentialForce,
+    /// The friction bound T_max, force.
     BoundUpdate,
+    /// Slip, length.
     Slip,
+    /// How far the node is from switching, force or length.
     Margin,
     /// Relative residual before the present major iteration.
     Residual,
@@ -22,6 +28,7 @@ pub enum WatchQuantity {
 }
 
 impl WatchQuantity {
+    /// All, in the order in which they are offered.
     pub const ALL: [WatchQuantity; 8] = [
         WatchQuantity::Gap,
         WatchQuantity::NormalForce,
@@ -58,6 +65,7 @@ impl WatchQuantity {
 pub struct Watch {
     /// What the user calls it.
     pub name: String,
+    /// What is watched.
     pub quantity: WatchQuantity,
     /// Slave number, where the quantity is a node's.
     pub slave: usize,

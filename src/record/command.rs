@@ -12,26 +12,49 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Command {
     /// Forward by `count` of `unit`.
-    Forward { unit: Unit, count: u32 },
+    Forward {
+        /// What is counted.
+        unit: Unit,
+        /// How many of it.
+        count: u32,
+    },
     /// Back by `count` of `unit`; exact.
-    Back { unit: Unit, count: u32 },
+    Back {
+        /// What is counted.
+        unit: Unit,
+        /// How many of it.
+        count: u32,
+    },
     /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
     Force {
+        /// Slave number, from 0.
         slave: usize,
+        /// The mode that it is to have.
         mode: Mode,
+        /// Until it is released, and not only for the next minor iteration.
         hold: bool,
     },
     /// Give a slave node back to Table 2.
-    Release { slave: usize },
+    Release {
+        /// Slave number, from 0.
+        slave: usize,
+    },
     /// Change the increment size and start the present increment again.
     Increment(f64),
     /// Change a scalar that may change during a run: `friction.angle`, `friction.cohesion`, `settings.*`.
-    Set { path: String, value: String },
+    Set {
+        /// Its path, as a person types it.
+        path: String,
+        /// Its value, as a person types it.
+        value: String,
+    },
     /// Start several slave nodes at once from a state that is known.
     Assume(Vec<Start>),
     /// Take these steps in a new branch of this name: minor iterations (none) and interventions.
     Follow {
+        /// What the branch is called.
         label: String,
+        /// The steps, in order; `None` is a minor iteration.
         steps: Vec<Option<Intervention>>,
     },
     /// Find out why the minor iterations cycle from the shown state, or which states are consistent; of these slave
@@ -40,7 +63,10 @@ pub enum Command {
     /// Try every remedy from the shown state.
     Remedies,
     /// Go to a point of the current branch's line, by its place; the start is 0.
-    Goto { step: usize },
+    Goto {
+        /// Place on the branch's line, from 0.
+        step: usize,
+    },
     /// Go to the tip of another branch.
     Branch(To),
     /// Call the current branch so.
@@ -56,7 +82,12 @@ pub enum Command {
     /// Delete a breakpoint by its number, or all.
     Delete(Option<u32>),
     /// Switch a breakpoint by its number, or all, on or off.
-    Enable { id: Option<u32>, on: bool },
+    Enable {
+        /// Number of the breakpoint; `None` for all.
+        id: Option<u32>,
+        /// On, or else off.
+        on: bool,
+    },
     /// Watch a number.
     Watch(Watch),
     /// End a watch, by its name.
@@ -64,13 +95,18 @@ pub enum Command {
     /// Write the core of the cycle that the shown state runs into, or its whole frozen interface problem, as a scene of
     /// its own. `overwrite` only when asked.
     Export {
+        /// What is written.
         what: Exported,
+        /// Where to.
         file: PathBuf,
+        /// Whether a file of that name may be overwritten.
         overwrite: bool,
     },
     /// Write a snapshot of the shown state. `overwrite` only when asked.
     Snapshot {
+        /// Where to; `None` for a name made of the scene's.
         file: Option<PathBuf>,
+        /// Whether a file of that name may be overwritten.
         overwrite: bool,
     },
     /// Begin a journal in a new file, with all that was done; none tells where it is.
@@ -80,21 +116,27 @@ pub enum Command {
 /// What can be written as a scene of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Exported {
+    /// The fewest nodes that still cycle.
     Core,
+    /// The whole interface problem.
     Whole,
 }
 
 /// Which branch.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum To {
+    /// The next one in the list.
     Next,
+    /// The one before in the list.
     Previous,
+    /// The one of that name.
     Named(String),
 }
 
 /// How far a motion goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unit {
+    /// One minor iteration.
     Minor,
     /// To the end of the present major iteration.
     Major,

@@ -25,7 +25,9 @@ pub const TOLERANCE: f64 = 1e-9;
 pub struct Difference {
     /// What it is, as `beam.end f_n`.
     pub what: String,
+    /// What the left one has, as text.
     pub left: String,
+    /// What the right one has, as text.
     pub right: String,
     /// For numbers: how far they are apart, and how far they may be.
     pub apart: Option<(f64, f64)>,
@@ -34,6 +36,7 @@ pub struct Difference {
 /// All that differs; prints as a table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Differences {
+    /// What differs.
     pub rows: Vec<Difference>,
 }
 

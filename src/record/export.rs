@@ -55,15 +55,27 @@ pub enum NoExport {
         "no unknown moves {0} along the surface or across it: the support carries what acts there, and no matrix says so"
     )]
     Carried(String),
+    /// The matrix is larger than a scene file may be.
     #[error(
         "the matrix of {nodes} nodes takes {mebibytes} MiB, and a scene file can have {}; a core is smaller",
         read::FILE_BYTES >> 20
     )]
-    Large { nodes: usize, mebibytes: usize },
+    Large {
+        /// Nodes of the problem.
+        nodes: usize,
+        /// What its matrix would take, in units of 2^20 bytes.
+        mebibytes: usize,
+    },
     #[error("the problem cannot be written as a matrix: {0}")]
     NoMatrix(String),
+    /// The scene cycles, and otherwise than the problem.
     #[error("the core cycles with period {period}, and what would be written has {found}")]
-    OtherCycle { period: u32, found: String },
+    OtherCycle {
+        /// Iterations of one period of the problem's cycle.
+        period: u32,
+        /// What the scene does.
+        found: String,
+    },
     #[error(transparent)]
     Parted(#[from] Parted),
 }
@@ -81,8 +93,14 @@ pub enum Parted {
     Singular(u32),
     #[error("minor iteration {0} cannot be solved")]
     Unsolved(u32),
+    /// The scene's iteration is not the problem's.
     #[error("they part in minor iteration {minor}, by {by:.1e}")]
-    Apart { minor: u32, by: f64 },
+    Apart {
+        /// Number of the minor iteration, from 1.
+        minor: u32,
+        /// How far they are apart, relatively.
+        by: f64,
+    },
 }
 
 /// Where a problem was frozen.

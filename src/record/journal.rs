@@ -55,12 +55,15 @@ enum Line {
 pub struct Entry {
     /// When it was done, in seconds since 1970.
     pub at: u64,
+    /// What was done.
     pub command: Command,
     /// New minor iterations that it solved, and increments that were accepted among them.
     pub solved: u64,
+    /// Increments that were accepted among the new minor iterations.
     pub accepted: u64,
     /// Branch, and place on its line, afterwards.
     pub branch: usize,
+    /// Place on the branch's line afterwards, from 0.
     pub cursor: usize,
     /// Digest of the state there ([`digest`]).
     pub digest: String,
@@ -71,42 +74,74 @@ pub struct Entry {
 /// Why a journal cannot be written, read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalError {
+    /// The system refused.
     #[error("{}: the journal cannot be {doing}: {source}", file.display())]
     File {
+        /// The journal.
         file: PathBuf,
+        /// What was tried, as "written".
         doing: &'static str,
+        /// Why.
         source: io::Error,
     },
+    /// It cannot be read.
     #[error("{}: the journal cannot be read: {why}", file.display())]
-    Unread { file: PathBuf, why: Unreadable },
+    Unread {
+        /// The journal.
+        file: PathBuf,
+        /// Why.
+        why: Unreadable,
+    },
+    /// A new journal was wanted, and there is a file of that name.
     #[error("{}: the file exists already; `stickslip resume` goes on with a journal", .0.display())]
     Exists(PathBuf),
+    /// Another session has it.
     #[error("{}: another session is writing this journal", .0.display())]
     Busy(PathBuf),
+    /// The system names no directory for journals.
     #[error(
         "there is no place for journals: this system names no home directory; --journal FILE names a file"
     )]
     NoPlace,
+    /// There is none in this directory.
     #[error("there is no journal in {}; `stickslip SCENE` writes one", .0.display())]
     NoJournal(PathBuf),
+    /// A line of it cannot be read.
     #[error("{file}:{line}:{column}: {message}")]
     Damaged {
+        /// The journal.
         file: String,
+        /// From 1.
         line: usize,
+        /// From 1, in characters.
         column: usize,
+        /// What is wrong there.
         message: String,
     },
+    /// It is of another format than this program knows.
     #[error("{file}: the journal has format {found}, and this program knows only format {FORMAT}")]
-    Format { file: String, found: u32 },
+    Format {
+        /// The journal.
+        file: String,
+        /// Its format.
+        found: u32,
+    },
+    /// The scene in it is unsound.
     #[error("{file}:1: the journal's scene is unsound: {source}")]
     Scene {
+        /// The journal.
         file: String,
+        /// What is wrong with the scene.
         source: Box<SceneError>,
     },
+    /// Done again, a command leads to another state than the journal says.
     #[error("{file}:{line}: replayed, it is not what it was: {message}")]
     Differs {
+        /// The journal.
         file: String,
+        /// Line of the command, from 1.
         line: usize,
+        /// What differs.
         message: String,
     },
 }
@@ -114,9 +149,11 @@ pub enum JournalError {
 /// Where the journal of a session is to be.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Keep {
+    /// There is none.
     Nowhere,
     /// In the user's directory for journals.
     Default,
+    /// In this file.
     File(PathBuf),
 }
 
@@ -275,6 +312,7 @@ impl Journal {
 pub struct Record {
     /// What messages call it.
     pub file: String,
+    /// The first line: the scene, and who wrote it.
     pub header: Header,
     /// Entries, with their lines.
     pub entries: Vec<(usize, Entry)>,

@@ -51,7 +51,9 @@ pub struct Snapshot {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Applied {
+    /// Minor iterations that had been done before it.
     pub step: u64,
+    /// What was done.
     pub intervention: Intervention,
 }
 
@@ -61,12 +63,15 @@ pub struct Applied {
 pub struct Recorded {
     /// Load factor at the end of the last minor iteration's increment.
     pub load_factor: f64,
+    /// How the iterations stand.
     pub status: Status,
     /// Residual at the start of the last major iteration.
     pub before: Option<Norms>,
     /// Residual at its end, if it has ended.
     pub after: Option<Norms>,
+    /// One a slave node, in the order of the scene.
     pub slaves: Vec<SlaveRecord>,
+    /// One a node that moves.
     pub displacements: Vec<Displacement>,
     /// Shear forces of shear-rigid beams, body by body.
     pub shear: Vec<f64>,
@@ -76,6 +81,7 @@ pub struct Recorded {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlaveRecord {
+    /// The node's name.
     pub node: String,
     /// Mode of the last minor iteration.
     pub mode: Mode,
@@ -86,10 +92,15 @@ pub struct SlaveRecord {
     pub rule: Option<Rule>,
     /// Gap, negative where the node penetrates; `None` if nothing was solved.
     pub gap: Option<f64>,
+    /// Normal force; compression is positive.
     pub f_n: f64,
+    /// Tangential force.
     pub f_t: f64,
+    /// The friction bound T_max, force.
     pub t_max: f64,
+    /// Slip, length.
     pub slip: f64,
+    /// Whether its mode was forced by hand.
     pub forced: Forced,
 }
 
@@ -115,8 +126,11 @@ mod rule_name {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Displacement {
+    /// The node's name.
     pub node: String,
+    /// Along x, length.
     pub x: f64,
+    /// Along y, length.
     pub y: f64,
     /// Only beam nodes turn.
     pub rotation: Option<f64>,
@@ -125,25 +139,46 @@ pub struct Displacement {
 /// Why a snapshot cannot be written, read or computed again.
 #[derive(Debug, thiserror::Error)]
 pub enum SnapshotError {
+    /// It cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// It cannot be read.
     #[error("{}", why.of(file))]
-    Unreadable { file: String, why: Unreadable },
+    Unreadable {
+        /// The file.
+        file: String,
+        /// Why.
+        why: Unreadable,
+    },
+    /// It is no snapshot, or a damaged one.
     #[error("{file}:{line}:{column}: {message}")]
     Syntax {
+        /// The file.
         file: String,
+        /// From 1.
         line: usize,
+        /// From 1, in characters.
         column: usize,
+        /// What is wrong there.
         message: String,
     },
+    /// It is of another format than this program knows.
     #[error(
         "{file}: the snapshot has format {found}, and this program knows only format {FORMAT}; read it with the version that wrote it"
     )]
-    Format { file: String, found: u32 },
+    Format {
+        /// The file.
+        file: String,
+        /// Its format.
+        found: u32,
+    },
+    /// The state cannot be written as text.
     #[error("the snapshot cannot be written as text: {0}")]
     Unwritable(ron::Error),
+    /// The scene in it is unsound.
     #[error("the snapshot's scene is unsound: {0}")]
     Scene(#[from] SceneError),
+    /// Its steps cannot be done again.
     #[error("it cannot be computed again: {0}")]
     Replay(String),
 }

@@ -218,9 +218,9 @@ fn changed(
     mut overrides: Vec<Override>,
 ) -> Result<(Spec, Vec<Override>), SceneError> {
     for (path, value) in changes {
-        let change = paths::set(&mut spec, path, value).map_err(|message| SceneError {
+        let change = paths::set(&mut spec, path, value).map_err(|why| SceneError {
             set: Some(error::shortened(&format!("{path}={value}"))),
-            ..SceneError::whole(name, message)
+            ..SceneError::whole(name, why.to_string())
         })?;
         overrides.retain(|earlier| earlier.at != change.at);
         overrides.push(change);

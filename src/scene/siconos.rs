@@ -41,12 +41,14 @@ pub struct Broken {
     pub line: usize,
     /// Column, from 1.
     pub column: usize,
+    /// What is wrong, and what would be right.
     pub message: String,
 }
 
 /// How to write W.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Storage {
+    /// All entries, row by row.
     Dense,
     /// Blocks of 2 by 2, those that are zero left out.
     Blocks,

@@ -37,6 +37,7 @@ pub type LinePlace = (usize, usize);
 /// The remedies that were tried from a place, as far as they are.
 #[derive(Debug, Clone)]
 pub struct Tried {
+    /// The place that it starts from.
     pub place: LinePlace,
     /// How many there are to try; `None` until that is known.
     pub all: Option<usize>,
@@ -50,10 +51,15 @@ pub struct Tried {
 
 /// A scene to be written of the problem that is frozen at a state.
 pub struct Export {
+    /// What is written.
     pub what: Exported,
+    /// Where to.
     pub file: PathBuf,
+    /// Whether a file of that name may be overwritten.
     pub overwrite: bool,
+    /// What the file says of where it comes from.
     pub origin: Origin,
+    /// The shown state.
     pub state: Box<State>,
 }
 

@@ -75,9 +75,9 @@ impl Session {
         if let Some(friction) = controls.friction.first() {
             spec.friction = *friction;
         }
-        paths::set(&mut spec, path, value).map_err(Refusal::Setting)?;
+        paths::set(&mut spec, path, value)?;
         let sound =
-            Scene::from_spec(&self.scene.name, spec).map_err(|e| Refusal::Setting(e.message))?;
+            Scene::from_spec(&self.scene.name, spec).map_err(|e| Refusal::Unsound(e.message))?;
         if path.starts_with("settings.") {
             Ok(Intervention::Settings(sound.model.settings))
         } else if path.starts_with("friction.") {

@@ -1,6 +1,7 @@
 //! Why a session does not do what it is told, or not again what it did.
 
 use super::background::NotWritten;
+use crate::format::error::NotSet;
 use crate::history::branches::NoBranch;
 use crate::outside::files::FileError;
 use crate::record::journal::JournalError;
@@ -18,9 +19,12 @@ pub enum Refusal {
     /// The solver does not take an intervention.
     #[error("{0}")]
     Intervention(crate::step::intervene::Refusal),
-    /// A setting that there is not, or a value that it cannot have.
+    /// A setting that there is not, or a value that is not of its kind.
+    #[error(transparent)]
+    NotSet(#[from] NotSet),
+    /// A value of its kind that the scene cannot have.
     #[error("{0}")]
-    Setting(String),
+    Unsound(String),
     #[error(
         "{path} cannot change during a run; friction.*, settings.* and history.increment can (or start again with --set {path}={value})"
     )]

@@ -26,23 +26,34 @@ pub enum Job {
     /// Minor iterations from a state, until so many of a unit are complete, or a breakpoint holds, or a failure, or the
     /// end. `before` is the strip of the frame that it starts from.
     Run {
+        /// Where it starts.
         state: Box<State>,
+        /// Strip of the frame that it starts from.
         before: Box<Strip>,
+        /// What is counted.
         unit: Unit,
+        /// How many of it.
         count: u32,
+        /// Where it stops before.
         breakpoints: Vec<Breakpoint>,
     },
     /// Steps that are given, from a state: each a minor iteration, or an intervention. `before` is the strip of the frame
     /// that it starts from.
     Follow {
+        /// Where it starts.
         state: Box<State>,
+        /// Strip of the frame that it starts from.
         before: Box<Strip>,
+        /// The steps, in order; `None` is a minor iteration.
         steps: Vec<Option<Intervention>>,
     },
     /// The same steps as once before, from a state: each a minor iteration, or an intervention.
     Again {
+        /// Where it starts.
         state: Box<State>,
+        /// The last minor iteration before that state.
         event: Option<Arc<Event>>,
+        /// The steps, in order; `None` is a minor iteration.
         steps: Vec<Option<Intervention>>,
     },
 }
@@ -56,7 +67,12 @@ pub enum Message {
     /// A step done again.
     Again(Box<State>, Option<Arc<Event>>),
     /// The job is over; the breakpoints at which it stopped.
-    Done { interrupted: bool, hits: Vec<u32> },
+    Done {
+        /// Whether it was stopped from outside.
+        interrupted: bool,
+        /// Numbers of the breakpoints at which it stopped.
+        hits: Vec<u32>,
+    },
     /// The thread is gone.
     Died,
 }

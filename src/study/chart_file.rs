@@ -23,6 +23,7 @@ use std::path::PathBuf;
 /// A chart before anything is run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
+    /// What the chart is called.
     pub title: String,
     /// As `Scene::open` takes it.
     pub scene: String,
@@ -49,8 +50,11 @@ pub enum Truth {
 /// Runs that are drawn as one line: the product of what is varied.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
+    /// What the legend calls it.
     pub name: String,
+    /// What is varied in it.
     pub vary: Vec<Vary>,
+    /// What is set for all of its runs, path and value.
     pub set: Vec<(String, String)>,
 }
 

@@ -20,13 +20,24 @@ use std::path::Path;
 /// Why a table cannot be read: where, and what is wrong.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
+    /// The file cannot be read at all.
     #[error("{}", why.of(file))]
-    Unreadable { file: String, why: Unreadable },
+    Unreadable {
+        /// The file.
+        file: String,
+        /// Why.
+        why: Unreadable,
+    },
+    /// Something in it is wrong.
     #[error("{file}:{line}:{column}: {message}")]
     Wrong {
+        /// The file.
         file: String,
+        /// From 1.
         line: usize,
+        /// From 1, in characters.
         column: usize,
+        /// What is wrong there.
         message: String,
     },
 }

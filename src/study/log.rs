@@ -18,19 +18,43 @@ use std::sync::Mutex;
 /// Why results could not be kept, or taken up.
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
+    /// The system refused.
     #[error("{}: {source}", path.display())]
-    File { path: PathBuf, source: io::Error },
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The file cannot be read.
     #[error("{}", why.of(&path.display().to_string()))]
-    Unread { path: PathBuf, why: Unreadable },
+    Unread {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        why: Unreadable,
+    },
+    /// Another run has the file.
     #[error("{}: another run writes to it at present", .0.display())]
     Busy(PathBuf),
+    /// The file is of something else.
     #[error("{}:1:1: this is no file of kept results (it would begin with {ours:?}); it is left alone", path.display())]
-    Foreign { path: PathBuf, ours: String },
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// How a file of results begins.
+        ours: String,
+    },
+    /// A line of it cannot be read.
     #[error("{}:{line}:{column}: this result cannot be read: {message}", path.display())]
     Broken {
+        /// The file.
         path: PathBuf,
+        /// From 1.
         line: usize,
+        /// From 1, in characters.
         column: usize,
+        /// What is wrong there.
         message: String,
     },
 }
@@ -50,7 +74,9 @@ pub struct Log {
 /// A result that was there, and its line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found<T> {
+    /// Line of the file, from 1.
     pub line: usize,
+    /// The result.
     pub value: T,
 }
 

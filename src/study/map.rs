@@ -33,8 +33,11 @@ const DEFAULT_STRATEGY: &str = "ladder";
 pub struct Ended {
     /// What it failed by, in which increment, at which load factor; `None` if it went to the end.
     pub failed: Option<(RunVerdict, u32, f64)>,
+    /// Accepted increments.
     pub increments: u64,
+    /// Major iterations.
     pub majors: u64,
+    /// Minor iterations.
     pub minors: u64,
     /// Increments that were accepted although a loop had not settled.
     pub unsettled: u64,
@@ -48,10 +51,13 @@ pub struct Ended {
 /// A monitor of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
+    /// The monitor's name.
     pub name: String,
+    /// What it is, which says with what its differences are compared.
     pub kind: MonitorKind,
     /// Its value in the end, and the largest magnitude that it ever had.
     pub end: f64,
+    /// The largest magnitude that it ever had.
     pub largest: f64,
 }
 
@@ -59,8 +65,11 @@ pub struct Seen {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename = "Kind")]
 pub enum MonitorKind {
+    /// A displacement or gap.
     Length,
+    /// An angle, radians.
     Rotation,
+    /// A force.
     Force,
     /// A length that is a measure of error, and is not compared.
     Drift,
@@ -69,7 +78,9 @@ pub enum MonitorKind {
 /// A cell of a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
+    /// What the run came to.
     pub ended: Ended,
+    /// What that is worth.
     pub verdict: RunVerdict,
     /// The case that it was compared with (its own number: it is a reference), and the largest difference of a monitor
     /// of its end, over the largest value of that kind.
@@ -79,7 +90,9 @@ pub struct Cell {
 /// A stability map.
 #[derive(Debug, Clone)]
 pub struct Map {
+    /// What was run.
     pub plan: Plan,
+    /// What the map is called.
     pub title: String,
     /// Differences above it are wrong branches.
     pub tolerance: f64,
@@ -94,8 +107,11 @@ pub struct Panel {
     pub name: String,
     /// Names of what runs to the right and downwards.
     pub x: String,
+    /// Name of what runs downwards.
     pub y: String,
+    /// Values that run to the right.
     pub columns: Vec<String>,
+    /// Values that run downwards.
     pub rows: Vec<String>,
     /// Numbers of cases, row by row.
     pub cells: Vec<Vec<usize>>,

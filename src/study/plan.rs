@@ -12,14 +12,19 @@ const MOST_CASES: usize = 100_000;
 /// What is run.
 #[derive(Debug, Clone)]
 pub struct Plan {
+    /// What its author asked for.
     pub study: Study,
+    /// What it is called.
     pub title: String,
     /// What differs between the cases: `scene` if there are several, then the varied paths.
     pub columns: Vec<String>,
+    /// The runs, in the order of the table.
     pub cases: Vec<Case>,
     /// Names of all monitors, in the order in which the scenes first have them.
     pub monitors: Vec<String>,
+    /// What runs to the right in its figure.
     pub x: AxisQuantity,
+    /// What runs upwards in its figure.
     pub y: AxisQuantity,
 }
 

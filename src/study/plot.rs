@@ -13,9 +13,13 @@ use std::sync::OnceLock;
 /// Curves over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
+    /// What stands above it.
     pub title: String,
+    /// What runs to the right.
     pub x: Axis,
+    /// What runs upwards.
     pub y: Axis,
+    /// Its curves, in the order of the legend.
     pub curves: Vec<Curve>,
     /// Lines below the chart that say what it was made from; long ones are broken.
     pub footer: Vec<String>,
@@ -24,6 +28,7 @@ pub struct Chart {
 /// What a chart runs along.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
+    /// What it is called.
     pub name: String,
     /// It counts something: it starts at zero and has whole numbers only.
     pub counts: bool,
@@ -32,9 +37,11 @@ pub struct Axis {
 /// One line with markers, and a line of the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
+    /// What the legend calls it.
     pub label: String,
     /// Finite numbers.
     pub points: Vec<(f64, f64)>,
+    /// What its last point is.
     pub end: CurveEnd,
 }
 

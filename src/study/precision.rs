@@ -29,7 +29,9 @@ const LONG: f64 = 20.0;
 /// A work-precision chart of one scene.
 #[derive(Debug, Clone)]
 pub struct Precision {
+    /// The scene's name.
     pub scene: String,
+    /// What the chart is called.
     pub title: String,
     /// The monitors whose errors count.
     pub monitors: Vec<String>,
@@ -37,7 +39,9 @@ pub struct Precision {
     pub about: Vec<String>,
     /// Names of the series.
     pub series: Vec<String>,
+    /// The runs.
     pub points: Vec<Point>,
+    /// What is counted as cost.
     pub cost: Cost,
     /// The error that is wanted, if any.
     pub target: Option<f64>,
@@ -56,10 +60,15 @@ pub struct Point {
     pub settings: Vec<(String, String)>,
     /// Median processor time (seconds), of so many repetitions.
     pub seconds: f64,
+    /// How many repetitions.
     pub repeats: usize,
+    /// Factorizations of the bodies.
     pub factorizations: u64,
+    /// Major iterations.
     pub majors: u64,
+    /// Minor iterations.
     pub minors: u64,
+    /// Accepted increments.
     pub increments: u64,
     /// Number of equations of the bodies.
     pub unknowns: usize,
@@ -78,9 +87,12 @@ pub struct Point {
 /// What is counted as cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
+    /// Processor time, seconds.
     #[default]
     Time,
+    /// Factorizations of the bodies.
     Factorizations,
+    /// Minor iterations.
     Minors,
 }
 
@@ -116,7 +128,9 @@ impl Cost {
 /// How a chart is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
+    /// What is counted as cost.
     pub cost: Cost,
+    /// The error that is wanted, if any; relative.
     pub target: Option<f64>,
     /// Repetitions of every run, of which the median time counts.
     pub repeats: usize,
@@ -125,8 +139,10 @@ pub struct Measure {
 /// Why a chart could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PrecisionError {
+    /// The scene is unsound.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The table of the reference cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
     /// There is nothing to compare with.

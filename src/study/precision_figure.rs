@@ -24,7 +24,9 @@ pub const NOTHING: f64 = 1e-16;
 /// An axis in decades.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Decades {
+    /// Exponent of ten at its beginning.
     pub low: i32,
+    /// Exponent of ten at its end.
     pub high: i32,
 }
 

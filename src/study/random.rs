@@ -27,6 +27,7 @@ const RIDGE: f64 = 0.02;
 /// A set of random problems.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Population {
+    /// What the random numbers start from; the same problems for the same one.
     pub seed: u64,
     /// How many.
     pub count: usize,
@@ -37,15 +38,20 @@ pub struct Population {
 /// A random problem, and of what kind it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
+    /// The problem.
     pub problem: Problem,
+    /// How its body is given.
     pub form: Form,
+    /// Whether it has cohesion.
     pub cohesive: bool,
 }
 
 /// How the body behind the contacts is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
+    /// A stiffness.
     Stiffness,
+    /// A compliance.
     Compliance,
     /// A compliance that some force does not move at all.
     Singular,

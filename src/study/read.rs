@@ -18,11 +18,10 @@ use super::builtin;
 use crate::format::error::{Path, SceneError, Step, did_you_mean, quoted};
 use crate::format::locate::{locate, too_deep};
 use crate::format::notation::options;
-use crate::format::read::{plainly, shallow, text};
+use crate::format::read::{plain, plainly, shallow, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
-use serde_path_to_error::Segment;
 use std::fmt;
 
 /// What is to be run, before anybody has looked whether the scenes have it.
@@ -48,17 +47,22 @@ pub struct Study {
 /// One setting and the values that it takes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Vary {
+    /// Path of the setting.
     pub path: String,
+    /// Its values, as a person types them.
     pub values: Vec<String>,
 }
 
 /// Why a text does not say what is varied.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoVary {
+    /// There is no list of values.
     #[error("it must be PATH=A,B,C, as history.increment=0.01,0.02")]
     NoValues,
+    /// The text after `=` begins as a range and is none.
     #[error("{0}: a range is LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, as 0.01..0.1/4")]
     NoRange(String),
+    /// Even ratios are wanted between ends that have none.
     #[error("{0}: even ratios need ends above 0")]
     NoRatios(String),
 }
@@ -117,9 +121,13 @@ fn spread(value: &str) -> Result<Vec<String>, NoVary> {
 /// A number that every accepted increment has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AxisQuantity {
+    /// Number of the increment.
     Increment,
+    /// The load factor λ.
     Load,
+    /// Major iterations of the increment.
     Majors,
+    /// Minor iterations of the increment.
     Minors,
     /// A monitor of the scene, by its name.
     Monitor(String),
@@ -352,16 +360,6 @@ fn message(error: &ron::Error) -> String {
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
         other => plainly(other),
     }
-}
-
-/// The path without names of variants.
-fn plain(path: &serde_path_to_error::Path) -> Path {
-    let step = |segment: &Segment| match segment {
-        Segment::Seq { index } => Some(Step::Index(*index)),
-        Segment::Map { key } => Some(Step::Key(key.clone())),
-        Segment::Enum { .. } | Segment::Unknown => None,
-    };
-    Path(path.iter().filter_map(step).collect())
 }
 
 /// Whether a text is a study: it names scenes, or varies something, which no scene does. It need not be sound.

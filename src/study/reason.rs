@@ -7,17 +7,29 @@ use std::fmt;
 /// Why an increment failed, in a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Reason {
+    /// The minor iterations cycle.
     MinorCycle,
+    /// The minor iterations reached their limit.
     MinorLimit,
+    /// The major iterations reached their limit.
     MajorLimit,
+    /// The major iterations cycle.
     MajorCycle,
+    /// The system of equations is singular.
     Singular,
+    /// The residual or the displacements grew out of all bounds.
     Diverged,
+    /// A slave node is held where it penetrates.
     OverConstrained,
+    /// The judge refused the state.
     Refused,
+    /// All assumptions were tried, and none is consistent.
     NoAnswer,
+    /// The search found no answer, and could not try all.
     NotFound,
+    /// Round-off leaves no accuracy.
     RoundOff,
+    /// The increment leapt to a state far from the one that was predicted.
     Jump,
 }
 

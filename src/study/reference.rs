@@ -20,6 +20,7 @@ pub struct Reference {
     pub source: String,
     /// Names of its columns.
     pub monitors: Vec<String>,
+    /// Its rows, in the order of the path.
     pub rows: Vec<Point>,
 }
 
@@ -28,6 +29,7 @@ pub struct Reference {
 pub struct Point {
     /// Leg of the path on which it lies, from 0.
     pub leg: usize,
+    /// The load factor λ.
     pub load: f64,
     /// One a column.
     pub values: Vec<f64>,

@@ -15,14 +15,18 @@ pub struct Run {
     pub rows: Vec<Row>,
     /// Major iterations that were begun in all, those of attempts that were cut or damped included.
     pub begun: u64,
+    /// How it ended.
     pub end: CaseEnd,
 }
 
 /// One accepted increment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
+    /// From 1.
     pub increment: u32,
+    /// The load factor λ at its end.
     pub load: f64,
+    /// Major iterations of the increment.
     pub majors: u32,
     /// All minor iterations, also those of majors that were tried again.
     pub minors: u64,
@@ -50,14 +54,19 @@ pub enum CaseEnd {
 /// Where and why a run failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Failed {
+    /// Why.
     pub reason: Reason,
+    /// What the run is worth.
     pub verdict: RunVerdict,
+    /// The increment that failed, from 1.
     pub increment: u32,
     /// The load factor that was tried.
     pub load: f64,
+    /// The major iteration in which it failed, from 1.
     pub major: u32,
     /// Minor iterations that the increment took until then.
     pub minors: u64,
+    /// Loops that were cut off by a limit whose being reached is accepted.
     pub unsettled: u32,
 }
 

@@ -29,10 +29,13 @@ pub struct Watch<'a> {
 /// Why a study could not be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
+    /// The threads cannot be started.
     #[error("no threads to run on: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// A scene is unsound.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The results cannot be kept, or taken up.
     #[error(transparent)]
     Log(#[from] LogError),
 }

@@ -11,8 +11,11 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// Red, green and blue.
 pub type Colour = (u8, u8, u8);
 
+/// Letters and axes.
 pub const BLACK: Colour = (0, 0, 0);
+/// What is less important.
 pub const GREY: Colour = (90, 90, 90);
+/// Lines of a grid.
 pub const PALE: Colour = (225, 225, 225);
 /// Colours that colour-blind readers can tell apart (Okabe and Ito), without the yellow that white paper swallows.
 pub const COLOURS: [Colour; 7] = [
@@ -27,7 +30,9 @@ pub const COLOURS: [Colour; 7] = [
 
 /// Sizes of letters.
 pub const TITLE: f64 = 22.0;
+/// Letters at axes and in legends.
 pub const LABEL: f64 = 15.0;
+/// Letters of a footer.
 pub const SMALL: f64 = 13.0;
 /// Air around everything.
 pub const MARGIN: f64 = 16.0;
@@ -35,30 +40,46 @@ pub const MARGIN: f64 = 16.0;
 /// Where a text stands about its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
+    /// To the right of it.
     Left,
+    /// About it.
     Middle,
+    /// To the left of it.
     Right,
 }
 
 /// Something drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
+    /// A line of text.
     Text {
+        /// Its point: to the right and downwards, pixels.
         at: (f64, f64),
+        /// The text.
         text: String,
+        /// Size of its letters, pixels.
         size: f64,
+        /// Its colour.
         colour: Colour,
+        /// Where it stands about its point.
         anchor: Anchor,
         /// Read from below upwards.
         upright: bool,
     },
+    /// A line through points.
     Line {
+        /// The points: to the right and downwards, pixels.
         points: Vec<(f64, f64)>,
+        /// How wide the line is, pixels.
         width: f64,
+        /// Its colour.
         colour: Colour,
     },
+    /// A filled polygon.
     Fill {
+        /// Its corners: to the right and downwards, pixels.
         corners: Vec<(f64, f64)>,
+        /// Its colour.
         colour: Colour,
     },
 }
@@ -66,8 +87,11 @@ pub enum Shape {
 /// A drawing; later shapes lie above earlier ones.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
+    /// Pixels.
     pub width: f64,
+    /// Pixels.
     pub height: f64,
+    /// What is drawn, from below upwards.
     pub shapes: Vec<Shape>,
 }
 

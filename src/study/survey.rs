@@ -14,7 +14,9 @@ use std::path::Path;
 /// What is tried, and what came of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Survey {
+    /// The problems.
     pub population: Population,
+    /// What is tried on each of them.
     pub variants: Vec<Variant>,
     /// One a problem, in order; `None` if it was stopped before.
     pub judged: Vec<Option<Judged>>,
@@ -25,14 +27,19 @@ pub struct Survey {
 pub struct Tally {
     /// Problems with an answer, and what the runs on them came to.
     pub solvable: usize,
+    /// Those of them that ended in a right state.
     pub solved: usize,
+    /// Those that ended in a wrong one.
     pub wrong: usize,
+    /// Those whose iterations went round for ever.
     pub cycled: usize,
+    /// Those that failed in another way.
     pub failed: usize,
     /// Said to have no answer, wrongly.
     pub denied: usize,
     /// Problems without an answer, and those of them that were said to have none.
     pub unsolvable: usize,
+    /// Those without an answer that were said to have none.
     pub admitted: usize,
     /// Those that ended in a state, which is wrong.
     pub invented: usize,

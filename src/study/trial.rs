@@ -33,16 +33,20 @@ const MOST_MINORS: u64 = 20_000;
 /// Settings to try, path by path, and what they are called.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Variant {
+    /// What they are called.
     pub name: String,
+    /// Path and value of each.
     pub settings: Vec<(String, String)>,
 }
 
 /// What one random problem came to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judged {
+    /// Number of its contacts.
     pub nodes: usize,
     /// Name of its form, and whether it has cohesion.
     pub form: String,
+    /// Whether it has cohesion.
     pub cohesive: bool,
     /// Number of its answers by census.
     pub answers: usize,
@@ -53,8 +57,11 @@ pub struct Judged {
 /// What one variant made of one problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
+    /// What the run is worth.
     pub verdict: RunVerdict,
+    /// Major iterations.
     pub majors: u64,
+    /// Minor iterations.
     pub minors: u64,
     /// Largest violation of Coulomb's law and of equilibrium in the end, relatively; infinite where there is no end.
     pub violation: f64,

@@ -14,7 +14,12 @@ pub enum RunVerdict {
     /// It went to the end, and to a wrong one: no state that Coulomb's law allows, or another branch than the reference.
     Wrong,
     /// Its iterations go round for ever; minor iterations, or major ones.
-    Cycle { period: u32, majors: bool },
+    Cycle {
+        /// Iterations of one period.
+        period: u32,
+        /// Whether the major iterations go round, and not the minor ones.
+        majors: bool,
+    },
     /// It grew out of all bounds.
     Diverged,
     /// It said that there is no answer: all assumptions were tried, or Lemke's pivoting ended on a ray.

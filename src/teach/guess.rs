@@ -19,7 +19,9 @@ pub struct Guess {
     /// The frame that predictions are about, and the nodes predicted there.
     at: usize,
     said: BTreeMap<usize, Mode>,
+    /// Predictions that were right.
     pub right: u32,
+    /// Predictions that were wrong.
     pub wrong: u32,
 }
 

@@ -32,26 +32,42 @@ pub enum LessonQuantity {
 /// What a slave node has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nodal {
+    /// Gap, length; negative is penetration.
     Gap,
+    /// Normal force; compression is positive.
     Fn,
+    /// Tangential force.
     Ft,
+    /// The friction bound T_max, force.
     TMax,
+    /// Slip, length.
     Slip,
+    /// Mode of the shown iteration.
     Mode,
+    /// Mode of the next iteration.
     Next,
+    /// The cell of Table 2 that fired, in words.
     Reason,
 }
 
 /// What the solve has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Whole {
+    /// The load factor λ.
     Load,
+    /// Size of the increment, in load factors.
     Increment,
+    /// Angle of friction, degrees.
     Angle,
+    /// Coefficient of friction.
     Tan,
+    /// Cohesion, force.
     Cohesion,
+    /// Number of consistent states.
     Answers,
+    /// Minor iterations until they settle or cycle.
     Minors,
+    /// Iterations of one period of the cycle.
     Period,
 }
 

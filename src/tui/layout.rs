@@ -72,9 +72,13 @@ pub struct Choice {
 /// Where everything stands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
+    /// The line at the top.
     pub status: Rect,
+    /// The panes that are shown, and where.
     pub panes: Vec<(Pane, Rect)>,
+    /// The line for messages and prompts.
     pub message: Rect,
+    /// The keys at the bottom.
     pub footer: Rect,
     /// Whether not all panes are on the screen, so that Tab turns pages.
     pub paged: bool,

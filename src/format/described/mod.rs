@@ -14,7 +14,7 @@ mod model;
 mod types;
 mod words;
 
-use super::error::{Path, quoted};
+use super::error::{NotSet, Path, quoted};
 use crate::model::documented::{Lines, text};
 pub use types::{Field, Form, Type};
 pub(crate) use types::{OWN_DEFAULTS, blank_form, known, link, read_blank};
@@ -98,9 +98,12 @@ impl Scalar<'_> {
         }
     }
 
-    pub(crate) fn set(self, text: &str) -> Result<(), String> {
+    pub(crate) fn set(self, text: &str) -> Result<(), NotSet> {
         let kind = self.kind();
-        let wrong = || format!("{} will not do; it must be {kind}", quoted(text));
+        let wrong = || NotSet::NoValue {
+            value: quoted(text),
+            kind: kind.clone(),
+        };
         let number = || {
             let finite = text.parse::<f64>().ok().filter(|x| x.is_finite());
             finite.ok_or_else(wrong)

@@ -7,7 +7,9 @@ use serde::de::DeserializeOwned;
 /// A type of the scene file, as the reference shows it.
 #[derive(Debug, Clone)]
 pub struct Type {
+    /// Its name, as the file has it.
     pub name: &'static str,
+    /// Its doc comment.
     pub docs: String,
     /// One without a name for a struct; for an enum one for each variant.
     pub forms: Vec<Form>,
@@ -18,14 +20,18 @@ pub struct Type {
 pub struct Form {
     /// The variant's or the word's name, as the file has it.
     pub name: Option<&'static str>,
+    /// Its doc comment; empty for a struct.
     pub docs: String,
+    /// Its fields, in the order of the file; empty for a word.
     pub fields: Vec<Field>,
 }
 
 /// A field of a form.
 #[derive(Debug, Clone)]
 pub struct Field {
+    /// Its name, as the file has it.
     pub name: &'static str,
+    /// Its doc comment.
     pub docs: String,
     /// What may be written.
     pub kind: String,
