@@ -124,7 +124,8 @@ pub mod step;
 pub mod strategy;
 
 pub use interface::method::Method;
-pub use interface::problem::{InterfaceProblem, Trials};
+pub use interface::problem::InterfaceProblem;
+pub use interface::trials::Trials;
 pub use linear::source::Source;
 pub use model::{Mode, Model, Settings, Strategy};
 pub use step::intervene::Intervention;

@@ -6,7 +6,8 @@
 use crate::contact::state::ContactState;
 use crate::interface::minor_history::Cycle;
 use crate::interface::minor_history::MinorHistory;
-use crate::interface::problem::{InterfaceProblem, Trials};
+use crate::interface::problem::InterfaceProblem;
+use crate::interface::trials::Trials;
 use crate::model::Mode;
 use crate::strategy::method;
 

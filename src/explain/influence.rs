@@ -7,8 +7,9 @@
 use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, Motion};
 use crate::interface::kinematics::NodeIncrement;
-use crate::interface::minor;
-use crate::interface::problem::{InterfaceProblem, Trials};
+use crate::interface::problem::InterfaceProblem;
+use crate::interface::rows;
+use crate::interface::trials::Trials;
 use crate::model::Mode;
 use crate::step::intervene::Intervention;
 use crate::step::state::State;
@@ -42,7 +43,7 @@ pub fn influences(
     trials.given(after)?;
     let mut found = vec![Vec::new(); targets.len()];
     for (from, node) in problem.nodes.iter().enumerate() {
-        let rows = minor::rows(
+        let rows = rows::rows(
             &after[from],
             node.kinematics.as_ref(),
             &node.friction,

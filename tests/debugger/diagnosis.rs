@@ -4,7 +4,8 @@
 use crate::common::{Run, force, go_on, run, scene};
 use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
 use stickslip::explain::influence::influences;
-use stickslip::interface::problem::{InterfaceProblem, Trials};
+use stickslip::interface::problem::InterfaceProblem;
+use stickslip::interface::trials::Trials;
 use stickslip::model::Mode;
 use stickslip::step::event::Failure;
 use stickslip::step::state::Status;

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip::contact::table2::{Numbers, Rule, decide};
 use stickslip::interface::method::{Choice, Known, Method};
-use stickslip::interface::problem::Trials;
+use stickslip::interface::trials::Trials;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::drive::{RunEnd, Until};

@@ -8,7 +8,7 @@ use stickslip::format::condensed::{Contact, Matrix, Problem};
 use stickslip::format::spec::History;
 use stickslip::interface::census::{Census, census};
 use stickslip::interface::method::NotFound;
-use stickslip::interface::problem::Trials;
+use stickslip::interface::trials::Trials;
 use stickslip::linear::singular::Singular;
 use stickslip::model::{Friction, Mode, Model, Settings};
 use stickslip::model::{InitialState, Jumps, Strategy};

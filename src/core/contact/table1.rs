@@ -56,12 +56,12 @@ pub struct Known {
     /// Total tangential force F_t^(k−1).
     pub f_t: f64,
     /// The tangential force of sliding.
-    pub limit: Limit,
+    pub limit: FrictionBound,
 }
 
 /// The tangential force of a sliding node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Limit {
+pub enum FrictionBound {
     /// T_max of the previous minor iteration.
     Lagged(f64),
     /// T_max follows F_n within the solve: sign · (coefficient · F_n + cohesion).
@@ -110,8 +110,8 @@ pub fn gone(d_n: f64, d_t: f64, force: f64) -> Equation {
 
 fn sliding(known: &Known) -> Equation {
     let (d_n, value) = match known.limit {
-        Limit::Lagged(t_max) => (0.0, t_max - known.f_t),
-        Limit::Consistent {
+        FrictionBound::Lagged(t_max) => (0.0, t_max - known.f_t),
+        FrictionBound::Consistent {
             sign,
             coefficient,
             cohesion,
@@ -156,7 +156,7 @@ mod tests {
         slip: 0.0,
         f_n: 3.0,
         f_t: -1.0,
-        limit: Limit::Lagged(-1.7),
+        limit: FrictionBound::Lagged(-1.7),
     };
 
     #[test]
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_consistent_limit_makes_the_total_force_obey_coulomb_for_any_increment() {
-        let limit = Limit::Consistent {
+        let limit = FrictionBound::Consistent {
             sign: -1.0,
             coefficient: 0.5,
             cohesion: 0.1,

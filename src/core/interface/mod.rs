@@ -14,3 +14,5 @@ pub mod minor;
 pub mod minor_history;
 pub mod problem;
 pub mod response;
+pub mod rows;
+pub mod trials;

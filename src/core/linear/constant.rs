@@ -13,9 +13,9 @@ use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::minor;
 use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::interface::response::InterfaceResponse;
+use crate::interface::rows;
 use crate::linalg::SolveError;
 use crate::linear::condensed::Condensed;
 use crate::linear::norms::Norms;
@@ -256,7 +256,7 @@ impl Source for ConstantSource {
         for (k, state) in at.contacts.iter().enumerate() {
             let over = self.kinematics(k);
             let friction = state.friction(&at.friction[k]);
-            let rows = minor::rows(state, over.as_ref(), &friction, &at.settings);
+            let rows = rows::rows(state, over.as_ref(), &friction, &at.settings);
             for (component, row) in rows.iter().enumerate() {
                 self.condensed.place_row(k, component, row, [0.0; 2]);
             }

@@ -4,7 +4,6 @@ use crate::contact::geometric_tangent::Variation;
 use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
-use crate::linear::condensation::Condensation;
 use crate::model::Model;
 
 /// What moves, in a slave node's equations: one Cartesian displacement with its share in u_S* − u_S.
@@ -125,18 +124,24 @@ impl Interface {
         }
     }
 
-    /// Finds its places, unless it has them, in the condensed bodies.
-    pub fn find_unknowns(&mut self, model: &Model, bodies: &Condensation) {
+    /// Finds its places, unless it has them, in condensed bodies: `number` gives the number of an equation among their
+    /// unknowns, `place` that of an entry in their matrices.
+    pub fn find_unknowns(
+        &mut self,
+        model: &Model,
+        number: impl Fn(usize) -> Option<usize>,
+        place: impl Fn(usize, usize) -> Option<usize>,
+    ) {
         if std::mem::replace(&mut self.placed, true) {
             return;
         }
         for link in &mut self.links {
-            link.unknown = model.dofs.equation[link.dof].and_then(|e| bodies.number(e));
+            link.unknown = model.dofs.equation[link.dof].and_then(&number);
         }
         self.pairs.clear();
         for row in &self.links {
-            let place = |col: &Link| bodies.place(row.unknown?, col.unknown?);
-            self.pairs.extend(self.links.iter().map(place));
+            let pair = |col: &Link| place(row.unknown?, col.unknown?);
+            self.pairs.extend(self.links.iter().map(pair));
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::contact::table1::Equation;
 use crate::fem::assembly::{Assembly, Moved};
 use crate::fem::element::Assembled;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::minor;
+use crate::interface::rows;
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::linear::condensation::Condensation;
 use crate::linear::condensed::Condensed;
@@ -254,7 +254,8 @@ impl System {
             self.interfaces.iter_mut().for_each(|i| i.placed = false);
         }
         for interface in &mut self.interfaces {
-            interface.find_unknowns(model, bodies);
+            let place = |row, column| bodies.place(row, column);
+            interface.find_unknowns(model, |e| bodies.number(e), place);
         }
         Ok(())
     }
@@ -380,7 +381,7 @@ impl System {
     pub(super) fn rows(&self, s: usize, at: &At<'_>) -> [Equation; 2] {
         let (node, kinematics) = (&at.contacts[s], self.kinematics(s));
         let friction = node.friction(&at.friction[s]);
-        minor::rows(node, kinematics.as_ref(), &friction, &at.settings)
+        rows::rows(node, kinematics.as_ref(), &friction, &at.settings)
     }
 
     /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.

@@ -136,7 +136,7 @@ impl Stepper {
         (next.increment, next.attempt) = (next.increment + 1, 1);
         let whole = || {
             let (start, increment) = (&self.state.start, self.state.controls.increment);
-            SubIncrement::whole(&self.model, start, increment)
+            SubIncrement::whole(&self.model, start.place(), increment)
         };
         self.state.sub_increment = self.state.sub_increment.next().unwrap_or_else(whole);
         self.state.begin();

@@ -2,8 +2,9 @@
 
 use crate::contact::record::ContactRecord;
 use crate::contact::table2::Ties;
-use crate::interface::minor::{self, Check, carried};
+use crate::interface::minor::{self, Check};
 use crate::interface::minor_history::Cycle;
+use crate::interface::rows::carried;
 use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
 use crate::model::{self, AtCycle, AtLimit};

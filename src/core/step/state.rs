@@ -12,8 +12,8 @@ use crate::linear::source::{Accepted, At};
 use crate::model::least;
 use crate::model::{Friction, Model, Settings};
 use crate::step::event::{Failure, Position};
-use crate::step::jump::Pace;
 use crate::step::major_history::MajorHistory;
+use crate::step::pace::Pace;
 use crate::step::sub_increment::SubIncrement;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
@@ -128,6 +128,13 @@ pub struct Controls {
     pub settings: Settings,
 }
 
+impl IncrementStart {
+    /// Load factor and leg of the path.
+    pub fn place(&self) -> (f64, usize) {
+        (self.load_factor, self.leg)
+    }
+}
+
 impl State {
     /// Our own bodies before their first increment.
     pub fn new(model: &Model) -> Self {
@@ -158,7 +165,7 @@ impl State {
             history,
             verdict: None,
         };
-        let sub_increment = SubIncrement::whole(model, &start, controls.increment);
+        let sub_increment = SubIncrement::whole(model, start.place(), controls.increment);
         let target = sub_increment.target();
         State {
             next: Position {

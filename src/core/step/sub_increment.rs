@@ -1,7 +1,6 @@
 //! Increments along the path of the load factor, whole or cut into halves.
 
 use crate::model::Model;
-use crate::step::state::IncrementStart;
 use serde::{Deserialize, Serialize};
 
 /// An increment, or what it was cut to: a part of it, halved some times.
@@ -18,11 +17,11 @@ pub struct SubIncrement {
 }
 
 impl SubIncrement {
-    /// The whole increment after `start`.
-    pub fn whole(model: &Model, start: &IncrementStart, increment: f64) -> Self {
+    /// The whole increment from a load factor on a leg of the path.
+    pub fn whole(model: &Model, (from, leg): (f64, usize), increment: f64) -> Self {
         SubIncrement {
-            from: start.load_factor,
-            to: next_load_factor(&model.path, start, increment),
+            from,
+            to: next_load_factor(&model.path, (from, leg), increment),
             cut: 0,
             part: 0,
         }
@@ -61,14 +60,14 @@ impl SubIncrement {
     }
 }
 
-/// The load factor one increment after `start` along the path; the end of the leg where it is that close.
-pub fn next_load_factor(path: &[f64], start: &IncrementStart, increment: f64) -> f64 {
-    let target = path[start.leg + 1];
-    let left = target - start.load_factor;
+/// The load factor one increment further along the path; the end of the leg where it is that close.
+fn next_load_factor(path: &[f64], (from, leg): (f64, usize), increment: f64) -> f64 {
+    let target = path[leg + 1];
+    let left = target - from;
     if left.abs() <= increment * (1.0 + 1e-9) {
         return target;
     }
-    tidy(start.load_factor + increment * left.signum(), path)
+    tidy(from + increment * left.signum(), path)
 }
 
 /// MajorHistory off what summing decimal increments leaves behind, so that 0.07 is not 0.07000000000000002.

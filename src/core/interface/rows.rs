@@ -1,0 +1,60 @@
+//! Table 1's equations of a node, those in which nothing can move left to the support.
+
+use crate::contact::state::ContactState;
+use crate::contact::table1::{Equation, FrictionBound, Known, equations, gone};
+use crate::interface::kinematics::NodeKinematics;
+use crate::model::{BoundUpdate, Friction, Mode, Settings};
+
+/// Table 1's equations of a node, normal and tangential. An equation in which no unknown takes part is replaced by zero
+/// force, and the supports carry that component ([`carried`]).
+pub fn rows(
+    node: &ContactState,
+    kinematics: Option<&NodeKinematics>,
+    friction: &Friction,
+    settings: &Settings,
+) -> [Equation; 2] {
+    let limit = match settings.t_max {
+        BoundUpdate::Lagged => FrictionBound::Lagged(node.t_max),
+        BoundUpdate::Consistent => FrictionBound::Consistent {
+            sign: node.sign,
+            coefficient: friction.coefficient(),
+            cohesion: friction.cohesion,
+        },
+    };
+    let known = Known {
+        gap: kinematics.map_or(0.0, |k| k.gap),
+        ratio: node.ratio,
+        slip: node.slipped(settings),
+        f_n: node.f_n,
+        f_t: node.f_t,
+        limit,
+    };
+    supported(node.mode, &known, moves(kinematics))
+}
+
+/// Table 1's equations, with zero force where the supports carry it.
+pub fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equation; 2] {
+    let [mut normal, mut tangential] = equations(mode, known);
+    let carried = carried(mode, moves);
+    if carried[0] {
+        normal = gone(1.0, 0.0, known.f_n);
+    }
+    if carried[1] {
+        tangential = gone(0.0, 1.0, known.f_t);
+    }
+    [normal, tangential]
+}
+
+/// Whether any unknown takes part in the normal and in the tangential motion; both false without a surface.
+pub fn moves(kinematics: Option<&NodeKinematics>) -> [bool; 2] {
+    kinematics.map_or([false; 2], |k| k.moves)
+}
+
+/// Which force components (normal, tangential) are left to the supports: those with which the mode would hold a motion in
+/// which no unknown takes part.
+pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
+    [
+        mode != Mode::Free && !moves[0],
+        mode == Mode::Fixed && !moves[1],
+    ]
+}

@@ -1,0 +1,137 @@
+//! Trials of assumptions and minor iterations on an interface problem by itself.
+
+use crate::contact::record::ContactRecord;
+use crate::contact::state::ContactState;
+use crate::contact::table1::Equation;
+use crate::interface::kinematics::NodeIncrement;
+use crate::interface::method::Method;
+use crate::interface::minor::{self, Check};
+use crate::interface::problem::{
+    Answer, Assumed, InterfaceProblem, ProblemNode, SINGULAR, node_answer,
+};
+use crate::interface::rows;
+use crate::linalg::DenseFactors;
+
+/// Solves one set of equations after the other, with room made once.
+pub struct Trials<'a> {
+    problem: &'a InterfaceProblem,
+    matrix: Vec<f64>,
+    z: Vec<f64>,
+    dense: DenseFactors,
+}
+
+impl<'a> Trials<'a> {
+    /// Room for trials of a problem. `None` if there is no memory.
+    pub fn new(problem: &'a InterfaceProblem) -> Option<Self> {
+        let count = problem.relation.count();
+        Some(Trials {
+            problem,
+            matrix: vec![0.0; count * count],
+            z: vec![0.0; count],
+            dense: DenseFactors::new(count, 1).ok()?,
+        })
+    }
+
+    /// The answer to an assumption, one entry a node. `None` if its equations are singular.
+    pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
+        let problem = self.problem;
+        let given = self.solve(|s, node| node.equations(assumed[s], &problem.settings))?;
+        let nodes = problem.nodes.iter().zip(assumed).zip(given);
+        Some(Answer {
+            nodes: nodes
+                .map(|((node, &assumed), given)| node_answer(problem, node, assumed, given))
+                .collect(),
+        })
+    }
+
+    /// One minor iteration: solves for what the nodes bring, and leaves in them what they bring into the next. Returns what
+    /// it did at each node, and whether all modes and T_max have settled. `None` if the equations are singular.
+    pub fn minor(
+        &mut self,
+        nodes: &mut [ContactState],
+        method: &'static dyn Method,
+    ) -> Option<(Vec<ContactRecord>, bool)> {
+        let problem = self.problem;
+        let given = self.given(nodes)?;
+        let forces = nodes.iter().zip(&given).flat_map(|(node, given)| {
+            [node.f_n + given.force[0], node.f_t + given.force[1]].map(f64::abs)
+        });
+        let ties = problem.ties(forces.fold(problem.force, f64::max));
+        let check = Check {
+            settings: problem.settings,
+            method,
+            ties,
+            stiffness: problem.spring,
+        };
+        let mut settled = true;
+        let before = nodes.to_vec();
+        let all = nodes.iter_mut().zip(&problem.nodes).zip(given);
+        let mut records: Vec<ContactRecord> = all
+            .map(|((state, node), given)| {
+                let (record, still) = minor::check(
+                    state,
+                    node.kinematics.as_ref(),
+                    given,
+                    &node.friction,
+                    &check,
+                );
+                settled &= still;
+                record
+            })
+            .collect();
+        if method.is_single(false) {
+            minor::one_at_a_time(nodes, &before, &mut records);
+        }
+        Some((records, settled))
+    }
+
+    /// Solves Table 1's equations for what the nodes bring, without a check of the modes. `None` if they are singular.
+    pub fn given(&mut self, nodes: &[ContactState]) -> Option<Vec<NodeIncrement>> {
+        let settings = self.problem.settings;
+        self.solve(|s, node| {
+            rows::rows(
+                &nodes[s],
+                node.kinematics.as_ref(),
+                &node.friction,
+                &settings,
+            )
+        })
+    }
+
+    /// Derivative of the last solution by the right-hand side of equation k (0 normal, 1 tangential) of a node: one entry a
+    /// node. `None` if it is not finite.
+    pub fn answers_to(&mut self, slave: usize, k: usize) -> Option<Vec<NodeIncrement>> {
+        self.z.fill(0.0);
+        self.z[2 * slave + k] = 1.0;
+        self.dense.solve(&mut self.z).ok()?;
+        let relation = &self.problem.relation;
+        let change = |s: usize| {
+            let [force, motion] = relation.change(&self.z, s);
+            NodeIncrement { force, motion }
+        };
+        Some((0..self.problem.nodes.len()).map(change).collect())
+    }
+
+    fn solve(
+        &mut self,
+        equations: impl Fn(usize, &ProblemNode) -> [Equation; 2],
+    ) -> Option<Vec<NodeIncrement>> {
+        let relation = &self.problem.relation;
+        for (s, node) in self.problem.nodes.iter().enumerate() {
+            for (k, row) in equations(s, node).iter().enumerate() {
+                self.z[2 * s + k] =
+                    relation.place_row(s, k, row, node.prescribed, &mut self.matrix);
+            }
+        }
+        self.dense.factor(&self.matrix);
+        if self.dense.inverse_norm() > SINGULAR || self.dense.solve(&mut self.z).is_err() {
+            return None;
+        }
+        let nodes = self.problem.nodes.iter().enumerate();
+        let given = |(s, node): (usize, &ProblemNode)| {
+            let [force, motion] = relation.answer(&self.z, s, node.prescribed);
+            NodeIncrement { force, motion }
+        };
+        Some(nodes.map(given).collect())
+    }
+}
