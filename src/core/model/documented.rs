@@ -41,6 +41,8 @@ macro_rules! doc_line {
     };
 }
 
+pub(crate) use doc_line;
+
 /// Defines a struct of plain fields, or an enum of plain words, and gives it `DOCS`.
 macro_rules! documented {
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
@@ -66,8 +68,8 @@ macro_rules! documented {
             /// What the source says of it and of its parts.
             pub const DOCS: $crate::model::documented::Docs = $crate::model::documented::Docs {
                 name: stringify!($name),
-                lines: &[$($crate::doc_line!($($meta)*)),*],
-                parts: &[$((stringify!($part), &[$($crate::doc_line!($($part_meta)*)),*])),*],
+                lines: &[$($crate::model::documented::doc_line!($($meta)*)),*],
+                parts: &[$((stringify!($part), &[$($crate::model::documented::doc_line!($($part_meta)*)),*])),*],
             };
         }
     };
