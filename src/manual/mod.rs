@@ -1,6 +1,6 @@
 //! The manual: Markdown pages, one a topic. `stickslip help TOPIC` and `:help TOPIC` show them, and rustdoc does here.
 //!
-//! What a page says of the program is made by the program (`tests/manual.rs`; `README=write` renews it), or the page
+//! What a page says of the program is made by the program (`tests/files/manual.rs`; `README=write` renews it), or the page
 //! names the command or the test that it comes from.
 
 pub mod render;

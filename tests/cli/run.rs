@@ -471,3 +471,17 @@ fn ctrl_c_ends_a_run_with_130_and_whole_files() {
     let csv = std::fs::read_to_string(directory.path().join("a.csv")).unwrap();
     assert!(whole_rows(&csv) > 1);
 }
+
+/// Journals that were written before the solver became a package of its own, and its names the field's: what they hold of
+/// every state is a digest of all its fields with their names.
+#[test]
+fn journals_of_an_earlier_revision_lead_to_the_same_bits() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/journals");
+    let entries = std::fs::read_dir(folder).unwrap();
+    let journals: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    assert!(journals.len() >= 2, "{journals:?}");
+    for journal in journals {
+        let output = ran(&["resume", "--check", &journal.to_string_lossy()]);
+        assert_eq!(code(&output), 0, "{}: {}", journal.display(), err(&output));
+    }
+}
