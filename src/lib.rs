@@ -6,7 +6,7 @@
 //! program stands on them:
 //!
 //! - [`outside`]: what comes from outside and goes there: files that are read and written, texts of others that are shown.
-//! - [`format`]: the scene file as its author writes it: read, located, described, and set by paths.
+//! - [`format`](mod@format): the scene file as its author writes it: read, located, described, and set by paths.
 //! - [`scene`]: what to solve: a [`format::Spec`] becomes a checked [`model::Model`].
 //! - [`explain`]: what happened, why, and what could be done about it, in the words that all front ends share.
 //! - [`study`]: many runs of a scene: sweeps, stability maps, work-precision charts.

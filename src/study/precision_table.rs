@@ -24,7 +24,7 @@ pub fn open(file: &Path) -> Result<String, TableError> {
         .map_err(|why| TableError::unreadable(file, why))
 }
 
-/// Charts from a table as [`csv`] writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
+/// Charts from a table as [`csv`](fn@csv) writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
 /// missing, and the runs need not be of this program.
 ///
 /// # Errors

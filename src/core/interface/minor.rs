@@ -1,7 +1,7 @@
 //! One minor iteration at one slave node: Table 1's equations before the solve, the strategy's verdict after it.
 //!
 //! These are pure functions of what the node brings and what the solve gave, so that a minor iteration on an interface
-//! problem alone ([`super::problem::Trials`]) is the same as one of the stepper.
+//! problem alone ([`super::trials::Trials`]) is the same as one of the stepper.
 
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;

@@ -1,6 +1,6 @@
 //! Nodes and their names: chains laid out, aliases resolved.
 //!
-//! [`checks`] refuses what cannot be laid out before any is made; `layout` makes nodes and chains, `joints` meshes of
+//! `checks` refuses what cannot be laid out before any is made; `layout` makes nodes and chains, `joints` meshes of
 //! several blocks; `lookup` finds nodes by their names.
 
 pub(crate) mod checks;
