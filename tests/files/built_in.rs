@@ -1,7 +1,7 @@
 //! Built-in scenes are sound, found, and numbered as the solver wants.
 
 use crate::scenes::{PINNED, pinned, with};
-use stickslip::contact::projection::{footing, project};
+use stickslip::contact::projection::{project, projection_at};
 use stickslip::model::BodyKind;
 use stickslip::scene::cost::Cost;
 use stickslip::scene::{Scene, builtin};
@@ -94,7 +94,7 @@ fn built_in_slaves_start_on_the_outward_side() {
                 continue;
             };
             over += 1;
-            let gap = footing(&model.surfaces, spot, &positions, at).gap;
+            let gap = projection_at(&model.surfaces, spot, &positions, at).gap;
             assert!(gap > -1e-12 * model.length, "{}: {gap}", builtin.name);
         }
         assert!(over > 0, "{}", builtin.name);

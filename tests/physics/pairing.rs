@@ -2,7 +2,7 @@
 //! solids or to nobody, over borders of elements and corners of surfaces, from one body to the next.
 
 use crate::common::{Run, run, two_blocks};
-use stickslip::contact::projection::{footing, project};
+use stickslip::contact::projection::{project, projection_at};
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 
@@ -49,7 +49,7 @@ fn assert_sound(run: &Run) {
                 state.f_n
             );
             if let Some(spot) = project(at, &model.surfaces, &slave.surfaces, &x, None) {
-                let gap = footing(&model.surfaces, spot, &x, at).gap;
+                let gap = projection_at(&model.surfaces, spot, &x, at).gap;
                 // Inside means a little: a node deep behind a surface is on the other side of a body.
                 assert!(
                     gap > -near || gap < -0.2 * model.length,

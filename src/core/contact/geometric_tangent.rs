@@ -34,35 +34,42 @@ pub struct Variation {
 impl Variation {
     /// The variation for the displacement along `axis` (0 x, 1 y) of a node. `weight` is the node's share in u_S* − u_S (−1
     /// for the slave, N_i for master nodes), and `slope` the derivative of that share by ξ (0 for the slave).
-    pub fn new(footing: &Projection, curve: &Curve, axis: usize, weight: f64, slope: f64) -> Self {
-        let (n, t) = (footing.normal, tangent(footing.normal));
+    pub fn new(
+        projection: &Projection,
+        curve: &Curve,
+        axis: usize,
+        weight: f64,
+        slope: f64,
+    ) -> Self {
+        let (n, t) = (projection.normal, tangent(projection.normal));
         let tilt = n[axis] * slope;
         Variation {
             normal: -weight * n[axis],
             tilt,
             stretch: t[axis] * slope,
-            travel: (-weight * curve.slope[axis] + footing.gap * tilt) / stiffness(footing, curve),
+            travel: (-weight * curve.slope[axis] + projection.gap * tilt)
+                / stiffness(projection, curve),
         }
     }
 }
 
 /// m − g k: vanishes where S* is no longer unique.
-fn stiffness(footing: &Projection, curve: &Curve) -> f64 {
-    squared(curve) - footing.gap * bend(footing, curve)
+fn stiffness(projection: &Projection, curve: &Curve) -> f64 {
+    squared(curve) - projection.gap * bend(projection, curve)
 }
 
 fn squared(curve: &Curve) -> f64 {
     curve.slope[0] * curve.slope[0] + curve.slope[1] * curve.slope[1]
 }
 
-fn bend(footing: &Projection, curve: &Curve) -> f64 {
-    footing.normal[0] * curve.bend[0] + footing.normal[1] * curve.bend[1]
+fn bend(projection: &Projection, curve: &Curve) -> f64 {
+    projection.normal[0] * curve.bend[0] + projection.normal[1] * curve.bend[1]
 }
 
 /// Derivative of the interaction force at degree of freedom i by degree of freedom j, with constant components F_n and F_t
 /// (`force`): F_n Δδg + F_t Δδg_t.
-pub fn turning(
-    footing: &Projection,
+pub fn geometric_tangent(
+    projection: &Projection,
     curve: &Curve,
     force: [f64; 2],
     i: &Variation,
@@ -70,10 +77,11 @@ pub fn turning(
 ) -> f64 {
     let (m, k, a) = (
         squared(curve),
-        bend(footing, curve),
-        stiffness(footing, curve),
+        bend(projection, curve),
+        stiffness(projection, curve),
     );
-    let gap = -a / m * (j.tilt * i.travel + i.tilt * j.travel) + footing.gap / m * i.tilt * j.tilt
+    let gap = -a / m * (j.tilt * i.travel + i.tilt * j.travel)
+        + projection.gap / m * i.tilt * j.tilt
         - k * a / m * i.travel * j.travel;
     let slip = (j.tilt + k * j.travel) * i.normal / m.sqrt() - i.stretch * j.travel;
     force[0] * gap + force[1] * slip
@@ -82,7 +90,7 @@ pub fn turning(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::projection::{footing, project};
+    use crate::contact::projection::{project, projection_at};
     use crate::fem::lagrange::shape;
     use crate::model::Surface;
 
@@ -90,7 +98,7 @@ mod tests {
     fn forces(m: usize, positions: &[[f64; 2]], f: [f64; 2]) -> Vec<f64> {
         let surfaces = surface(m);
         let spot = project(positions[0], &surfaces, &[0], positions, None).unwrap();
-        let at = footing(&surfaces, spot, positions, positions[0]);
+        let at = projection_at(&surfaces, spot, positions, positions[0]);
         let t = tangent(at.normal);
         let force = [0, 1].map(|a| f[0] * at.normal[a] + f[1] * t[a]);
         let mut all = force.to_vec();
@@ -117,7 +125,7 @@ mod tests {
                 let f = [2.0, -0.7];
                 let surfaces = surface(m);
                 let spot = project(x[0], &surfaces, &[0], &x, None).unwrap();
-                let at = footing(&surfaces, spot, &x, x[0]);
+                let at = projection_at(&surfaces, spot, &x, x[0]);
                 let curve = at.curve.unwrap();
                 let d = shape(m, spot.xi).d;
                 let variation = |dof: usize| {
@@ -137,7 +145,7 @@ mod tests {
                     let minus = forces(m, &moved, f);
                     for i in 0..2 * (m + 1) {
                         let difference = (plus[i] - minus[i]) / (2.0 * h);
-                        let exact = turning(&at, &curve, f, &variation(i), &variation(j));
+                        let exact = geometric_tangent(&at, &curve, f, &variation(i), &variation(j));
                         assert!(
                             (difference - exact).abs() < 1e-7,
                             "m {m} gap {gap} ({i}, {j}): {difference} {exact}"

@@ -166,7 +166,7 @@ pub fn concave(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) 
 }
 
 /// Geometry at a spot, for a slave node at `slave`.
-pub fn footing(
+pub fn projection_at(
     surfaces: &[Surface],
     spot: SurfacePoint,
     positions: &[[f64; 2]],
@@ -404,7 +404,7 @@ mod tests {
         let (s, x) = floor();
         for (slave, element) in [([1.3, 0.2], 0), ([-0.7, -0.1], 1)] {
             let spot = project(slave, &s, &[0], &x, None).unwrap();
-            let f = footing(&s, spot, &x, slave);
+            let f = projection_at(&s, spot, &x, slave);
             assert_eq!(spot.element, element);
             assert!((f.gap - slave[1]).abs() < 1e-15 && (f.normal[1] - 1.0).abs() < 1e-15);
             assert!((f.foot[0] - slave[0]).abs() < 1e-14);
@@ -428,7 +428,7 @@ mod tests {
         for along in [-1e3, -1.0, 0.3, 1.0, 40.0] {
             let slave = [2.0 * along + 0.1 * n[0], along + 0.1 * n[1]];
             let spot = project(slave, &s, &[0], &x, None).unwrap();
-            let f = footing(&s, spot, &x, slave);
+            let f = projection_at(&s, spot, &x, slave);
             assert!((f.gap - 0.1).abs() < 1e-12, "{along}: {}", f.gap);
             assert!((f.normal[0] - n[0]).abs() < 1e-15 && f.curve.is_some());
         }
@@ -439,7 +439,7 @@ mod tests {
         let roof = surface(vec![vec![0, 1], vec![1, 2]]);
         let x = [[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0]];
         let spot = project([0.0, 0.5], &roof, &[0], &x, None).unwrap();
-        let f = footing(&roof, spot, &x, [0.0, 0.5]);
+        let f = projection_at(&roof, spot, &x, [0.0, 0.5]);
         assert!(f.normal[0].abs() < 1e-15 && (f.gap - 0.5).abs() < 1e-15);
         let valley = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];
         let spot = project([0.2, 0.5], &roof, &[0], &valley, None).unwrap();
@@ -458,7 +458,7 @@ mod tests {
             for radius in [0.9, 1.0, 1.4] {
                 let slave = [-radius * angle.cos(), radius * angle.sin()];
                 let spot = project(slave, &s, &[0], &positions, None).unwrap();
-                let f = footing(&s, spot, &positions, slave);
+                let f = projection_at(&s, spot, &positions, slave);
                 let d = blend(&s[0].elements[0], &positions, &shape(m, spot.xi).d);
                 let off = (slave[0] - f.foot[0]) * d[0] + (slave[1] - f.foot[1]) * d[1];
                 assert!(off.abs() < 1e-14, "{angle} {radius} {off}");

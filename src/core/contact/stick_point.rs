@@ -31,19 +31,19 @@ const POINTS: [(f64, f64); 5] = [
 /// Where a node that was free at the start of a major iteration touched in it: the point S* − g ρ t (eqn 14) of the surface,
 /// where its straight path pierced it. `None` past the ends of its surface.
 ///
-/// `positions` are the positions at the start of that major iteration, at which `footing` was taken; `ratio` is ρ.
+/// `positions` are the positions at the start of that major iteration, at which `projection` was taken; `ratio` is ρ.
 pub fn pierced(
     surfaces: &[Surface],
     spot: SurfacePoint,
-    footing: &Projection,
+    projection: &Projection,
     ratio: f64,
     positions: &[[f64; 2]],
 ) -> Option<SurfacePoint> {
     if ratio == 0.0 {
         return Some(spot);
     }
-    let t = tangent(footing.normal);
-    let point = [0, 1].map(|k| footing.foot[k] - footing.gap * ratio * t[k]);
+    let t = tangent(projection.normal);
+    let point = [0, 1].map(|k| projection.foot[k] - projection.gap * ratio * t[k]);
     project(point, surfaces, &[spot.surface], positions, Some(spot))
 }
 
@@ -120,7 +120,7 @@ fn length(nodes: &[usize], from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::projection::footing;
+    use crate::contact::projection::projection_at;
 
     fn surface(elements: Vec<Vec<usize>>) -> Surface {
         Surface {
@@ -190,7 +190,7 @@ mod tests {
         // From (0, 0.5), one to the right for every one down: through the floor at (0.5, 0).
         let slave = [0.0, 0.5];
         let start = project(slave, &s, &[0], &x, None).unwrap();
-        let at = footing(&s, start, &x, slave);
+        let at = projection_at(&s, start, &x, slave);
         // Travel of S* relative to S along t (towards −x) and n (up): (−1, −1) · step has both reversed.
         let (normal, tangential) = (1.0, 1.0);
         let touched = pierced(&s, start, &at, tangential / normal, &x).unwrap();

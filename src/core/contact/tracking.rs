@@ -5,7 +5,7 @@
 //! about the mean of the two normals, with the friction that both sides give together ([`crate::contact::corner`]). At the
 //! friction bound it slides out along one side, as out of any fixed mode.
 
-use crate::contact::projection::{SurfacePoint, border, concave, footing, project, tangent};
+use crate::contact::projection::{SurfacePoint, border, concave, project, projection_at, tangent};
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
 use crate::model::Mode;
@@ -36,7 +36,7 @@ impl Ground<'_> {
         }
         match node.spot {
             Some(spot) => {
-                node.normal = footing(self.surfaces, spot, self.positions, at).normal;
+                node.normal = projection_at(self.surfaces, spot, self.positions, at).normal;
                 if was_held != node.corner.is_some() {
                     let ([c, s], [f_x, f_y]) = (node.normal, force);
                     (node.f_n, node.f_t) = (c * f_x + s * f_y, c * f_y - s * f_x);
@@ -107,7 +107,7 @@ impl Ground<'_> {
         }
         node.drift = match (node.corner, anchor) {
             (Some(_), _) => {
-                let here = footing(self.surfaces, spot, self.positions, at);
+                let here = projection_at(self.surfaces, spot, self.positions, at);
                 let t = tangent(here.normal);
                 (here.foot[0] - at[0]) * t[0] + (here.foot[1] - at[1]) * t[1]
             }
@@ -129,9 +129,9 @@ impl Ground<'_> {
         let Some(spot) = node.spot.filter(|_| slipped) else {
             return;
         };
-        let footing = footing(self.surfaces, spot, self.positions, at);
-        let t = tangent(footing.normal);
-        let point = [0, 1].map(|k| footing.foot[k] + node.slip * t[k]);
+        let projection = projection_at(self.surfaces, spot, self.positions, at);
+        let t = tangent(projection.normal);
+        let point = [0, 1].map(|k| projection.foot[k] + node.slip * t[k]);
         node.anchor = project(
             point,
             self.surfaces,

@@ -30,7 +30,7 @@ const SINGULAR: f64 = 1e11;
 
 /// A variable of the tableau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum VariableKind {
     Force,
     Gap,
     /// φ+ and φ−: what friction could still give.
@@ -53,7 +53,7 @@ pub struct Lemke {
     /// of the problem's force and length.
     table: Vec<f64>,
     /// Node and kind of every variable.
-    variables: Vec<(usize, Kind)>,
+    variables: Vec<(usize, VariableKind)>,
     /// The variable of every row.
     basis: Vec<usize>,
     /// The basis of the start, which breaks ties.
@@ -61,8 +61,8 @@ pub struct Lemke {
     /// The variable that enters next. `None` before the first pivot and after the last.
     entering: Option<usize>,
     /// Node and kind of the variable that left last.
-    left: Option<(usize, Kind)>,
-    ended: Option<End>,
+    left: Option<(usize, VariableKind)>,
+    ended: Option<PathEnd>,
     pivots: usize,
     /// Which nodes are rough, with the friction coefficient and the cohesion.
     friction: Vec<Option<(f64, f64)>>,
@@ -72,7 +72,7 @@ pub struct Lemke {
 
 /// How the path ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+pub enum PathEnd {
     /// The basis solves the problem.
     Solved,
     /// Nothing bounds the variable that enters: no state is found from this start.
@@ -149,13 +149,21 @@ impl Lemke {
             of_force(t, node.state.f_t, &mut rhs);
             if let Some(over) = node.kinematics.filter(|k| k.moves[0]) {
                 of_motion(n, -(over.gap - node.prescribed[0]), &mut rhs);
-                lemke.add(place, Kind::Force, |column| of_force(n, force, column));
-                lemke.add(place, Kind::Gap, |column| of_motion(n, -length, column));
+                lemke.add(place, VariableKind::Force, |column| {
+                    of_force(n, force, column)
+                });
+                lemke.add(place, VariableKind::Gap, |column| {
+                    of_motion(n, -length, column)
+                });
             } else {
-                lemke.add(place, Kind::Loose, |column| of_motion(n, length, column));
+                lemke.add(place, VariableKind::Loose, |column| {
+                    of_motion(n, length, column)
+                });
             }
             let Some((coefficient, cohesion)) = lemke.friction[place] else {
-                lemke.add(place, Kind::Loose, |column| of_motion(t, length, column));
+                lemke.add(place, VariableKind::Loose, |column| {
+                    of_motion(t, length, column)
+                });
                 continue;
             };
             of_force(t, -cohesion, &mut rhs);
@@ -169,17 +177,17 @@ impl Lemke {
                 &mut lemke.table[of_normal..of_normal + rows],
             );
             lemke.table[of_normal + extra] = -2.0 * coefficient;
-            lemke.add(place, Kind::Slack { plus: true }, |column| {
+            lemke.add(place, VariableKind::Slack { plus: true }, |column| {
                 of_force(t, -force, column);
                 column[extra] = 1.0;
             });
-            lemke.add(place, Kind::Slip { plus: true }, |column| {
+            lemke.add(place, VariableKind::Slip { plus: true }, |column| {
                 of_motion(t, length, column);
             });
-            lemke.add(place, Kind::Slack { plus: false }, |column| {
+            lemke.add(place, VariableKind::Slack { plus: false }, |column| {
                 column[extra] = 1.0;
             });
-            lemke.add(place, Kind::Slip { plus: false }, |column| {
+            lemke.add(place, VariableKind::Slip { plus: false }, |column| {
                 of_motion(t, -length, column);
             });
             rhs[extra] = 2.0 * cohesion / force;
@@ -194,17 +202,17 @@ impl Lemke {
         lemke.reduce()?;
         let cover = lemke.variables.len() * rows;
         for row in 0..rows {
-            let loose = lemke.variables[lemke.basis[row]].1 == Kind::Loose;
+            let loose = lemke.variables[lemke.basis[row]].1 == VariableKind::Loose;
             lemke.table[cover + row] = if loose { 0.0 } else { -1.0 };
         }
         let all_hold = (0..rows).all(|row| lemke.is_loose(row) || lemke.value(row) >= 0.0);
         if all_hold {
-            lemke.ended = Some(End::Solved);
+            lemke.ended = Some(PathEnd::Solved);
         }
         Some(lemke)
     }
 
-    fn add(&mut self, place: usize, kind: Kind, fill: impl FnOnce(&mut [f64])) {
+    fn add(&mut self, place: usize, kind: VariableKind, fill: impl FnOnce(&mut [f64])) {
         self.variables.push((place, kind));
         let from = self.table.len();
         self.table.resize(from + self.rows, 0.0);
@@ -212,17 +220,17 @@ impl Lemke {
     }
 
     /// Whether a variable is basic where its node does this.
-    fn is_basic(&self, (place, kind): (usize, Kind), start: &[Assumed]) -> bool {
+    fn is_basic(&self, (place, kind): (usize, VariableKind), start: &[Assumed]) -> bool {
         let does = start[place];
         match kind {
-            Kind::Loose => true,
-            Kind::Force => does != Assumed::Free,
-            Kind::Gap => does == Assumed::Free,
+            VariableKind::Loose => true,
+            VariableKind::Force => does != Assumed::Free,
+            VariableKind::Gap => does == Assumed::Free,
             // A free node has no friction, so that one side of it is as good as the other.
-            Kind::Slip { plus: true } => matches!(does, Assumed::Plus | Assumed::Free),
-            Kind::Slack { plus: true } => matches!(does, Assumed::Fixed | Assumed::Minus),
-            Kind::Slip { plus: false } => does == Assumed::Minus,
-            Kind::Slack { plus: false } => does != Assumed::Minus,
+            VariableKind::Slip { plus: true } => matches!(does, Assumed::Plus | Assumed::Free),
+            VariableKind::Slack { plus: true } => matches!(does, Assumed::Fixed | Assumed::Minus),
+            VariableKind::Slip { plus: false } => does == Assumed::Minus,
+            VariableKind::Slack { plus: false } => does != Assumed::Minus,
         }
     }
 
@@ -246,7 +254,7 @@ impl Lemke {
     fn is_loose(&self, row: usize) -> bool {
         self.variables
             .get(self.basis[row])
-            .is_some_and(|v| v.1 == Kind::Loose)
+            .is_some_and(|v| v.1 == VariableKind::Loose)
     }
 
     fn value(&self, row: usize) -> f64 {
@@ -254,7 +262,7 @@ impl Lemke {
     }
 
     /// How the path ended. `None` while it goes on.
-    pub fn ended(&self) -> Option<End> {
+    pub fn ended(&self) -> Option<PathEnd> {
         self.ended
     }
 
@@ -265,7 +273,7 @@ impl Lemke {
         }
         self.pivots += 1;
         if self.pivots > PIVOTS * self.rows {
-            self.ended = Some(End::Astray);
+            self.ended = Some(PathEnd::Astray);
             return Some(());
         }
         let cover = self.variables.len();
@@ -274,7 +282,7 @@ impl Lemke {
             Some(entering) => match self.bounding(entering) {
                 Some(row) => (entering, row),
                 None => {
-                    self.ended = Some(End::Ray);
+                    self.ended = Some(PathEnd::Ray);
                     return Some(());
                 }
             },
@@ -283,7 +291,7 @@ impl Lemke {
         self.left = self.variables.get(leaving).copied();
         self.exchange(entering, row);
         if leaving == cover {
-            (self.ended, self.entering) = (Some(End::Solved), None);
+            (self.ended, self.entering) = (Some(PathEnd::Solved), None);
         } else {
             self.entering = Some(self.complement(leaving));
         }
@@ -367,9 +375,9 @@ impl Lemke {
 
     fn complement(&self, variable: usize) -> usize {
         match self.variables[variable].1 {
-            Kind::Force | Kind::Slack { .. } => variable + 1,
-            Kind::Gap | Kind::Slip { .. } => variable - 1,
-            Kind::Loose => variable,
+            VariableKind::Force | VariableKind::Slack { .. } => variable + 1,
+            VariableKind::Gap | VariableKind::Slip { .. } => variable - 1,
+            VariableKind::Loose => variable,
         }
     }
 
@@ -377,11 +385,11 @@ impl Lemke {
     pub fn bound(&self) -> Option<(usize, Tested)> {
         let (place, kind) = self.left?;
         let tested = match kind {
-            Kind::Force => Tested::NormalForce,
-            Kind::Gap => Tested::Gap,
-            Kind::Slack { .. } => Tested::ShearForce,
-            Kind::Slip { .. } => Tested::Slip,
-            Kind::Loose => return None,
+            VariableKind::Force => Tested::NormalForce,
+            VariableKind::Gap => Tested::Gap,
+            VariableKind::Slack { .. } => Tested::ShearForce,
+            VariableKind::Slip { .. } => Tested::Slip,
+            VariableKind::Loose => return None,
         };
         Some((place, tested))
     }
@@ -391,14 +399,14 @@ impl Lemke {
         let cover = self.variables.len();
         match self.basis.iter().position(|&v| v == cover) {
             Some(row) => self.value(row),
-            None if self.ended == Some(End::Solved) => 0.0,
+            None if self.ended == Some(PathEnd::Solved) => 0.0,
             None => (0..self.rows)
                 .filter(|&row| !self.is_loose(row))
                 .fold(0.0, |most, row| most.max(-self.value(row))),
         }
     }
 
-    fn at(&self, place: usize, kind: Kind) -> Option<f64> {
+    fn at(&self, place: usize, kind: VariableKind) -> Option<f64> {
         let row = self
             .basis
             .iter()
@@ -409,11 +417,11 @@ impl Lemke {
     /// What a node does in the present basis.
     pub fn assumed(&self, place: usize) -> Assumed {
         let basic = |kind| self.at(place, kind).is_some();
-        if !basic(Kind::Force) {
+        if !basic(VariableKind::Force) {
             Assumed::Free
-        } else if self.friction[place].is_none() || basic(Kind::Slip { plus: true }) {
+        } else if self.friction[place].is_none() || basic(VariableKind::Slip { plus: true }) {
             Assumed::Plus
-        } else if basic(Kind::Slip { plus: false }) {
+        } else if basic(VariableKind::Slip { plus: false }) {
             Assumed::Minus
         } else {
             Assumed::Fixed
@@ -423,12 +431,18 @@ impl Lemke {
     /// F_n, F_t, gap and slip of a node in the present, relaxed solution; a gap is 0 where the node touches.
     pub fn numbers(&self, place: usize) -> [f64; 4] {
         let value = |kind| self.at(place, kind).unwrap_or(0.0);
-        let f_n = self.force * value(Kind::Force);
+        let f_n = self.force * value(VariableKind::Force);
         let f_t = self.friction[place].map_or(0.0, |(coefficient, cohesion)| {
-            coefficient * f_n + cohesion - self.force * value(Kind::Slack { plus: true })
+            coefficient * f_n + cohesion - self.force * value(VariableKind::Slack { plus: true })
         });
-        let slip = value(Kind::Slip { plus: true }) - value(Kind::Slip { plus: false });
-        [f_n, f_t, self.length * value(Kind::Gap), self.length * slip]
+        let slip =
+            value(VariableKind::Slip { plus: true }) - value(VariableKind::Slip { plus: false });
+        [
+            f_n,
+            f_t,
+            self.length * value(VariableKind::Gap),
+            self.length * slip,
+        ]
     }
 }
 

@@ -182,7 +182,7 @@ impl Source for Bodies {
     }
 
     fn stick_point(&self, contact: usize, state: &ContactState) -> Option<SurfacePoint> {
-        let (point, over) = state.spot.zip(self.system.footing(contact))?;
+        let (point, over) = state.spot.zip(self.system.projection(contact))?;
         let positions = &self.system.positions;
         pierced(&self.model.surfaces, point, over, state.ratio, positions)
     }
@@ -216,7 +216,7 @@ impl Source for Bodies {
 
     fn explain(&self, contacts: &[ContactState]) -> Singular {
         let positions = &self.system.positions;
-        let projection = |contact: usize| self.system.footing(contact);
+        let projection = |contact: usize| self.system.projection(contact);
         singular::diagnose(&self.model, positions, contacts, projection)
     }
 

@@ -25,7 +25,7 @@ pub struct Link {
 /// A slave node's part of the system.
 #[derive(Debug, Default)]
 pub struct Interface {
-    pub footing: Option<Projection>,
+    pub projection: Option<Projection>,
     pub links: Vec<Link>,
     /// The element that `links` reach into, once they are listed.
     linked: Option<Option<(usize, usize)>>,
@@ -46,13 +46,13 @@ pub struct Interface {
 impl Interface {
     /// n and t, frozen; where there is no surface, those that the node had.
     pub fn frame(&self, node: &ContactState) -> [[f64; 2]; 2] {
-        let normal = self.footing.map_or(node.normal, |f| f.normal);
+        let normal = self.projection.map_or(node.normal, |f| f.normal);
         [normal, tangent(normal)]
     }
 
     /// Lists the displacements of S and S*; on the element of before, only their shares are renewed.
     pub fn link(&mut self, model: &Model, node: &ContactState, slave: usize) {
-        let on = node.spot.zip(self.footing);
+        let on = node.spot.zip(self.projection);
         let element = on.map(|(spot, _)| (spot.surface, spot.element));
         if self.linked != Some(element) {
             (self.linked, self.placed) = (Some(element), false);
@@ -67,8 +67,8 @@ impl Interface {
         self.links[..2]
             .iter_mut()
             .for_each(|link| link.weight = -1.0);
-        if let Some((_, footing)) = on {
-            let shares = footing.shape.iter().zip(&footing.shape_slope);
+        if let Some((_, projection)) = on {
+            let shares = projection.shape.iter().zip(&projection.shape_slope);
             for (pair, (&weight, &slope)) in self.links[2..].chunks_exact_mut(2).zip(shares) {
                 for link in pair {
                     (link.weight, link.slope) = (weight, slope);

@@ -48,18 +48,18 @@ pub fn diagnose<'a>(
     model: &Model,
     positions: &[[f64; 2]],
     nodes: &[ContactState],
-    footing: impl Fn(usize) -> Option<&'a Projection>,
+    projection: impl Fn(usize) -> Option<&'a Projection>,
 ) -> Singular {
     let frame = Frame { model, positions };
     let mut conditions = Vec::new();
     frame.supports(&mut conditions);
     frame.joints(&mut conditions);
     for (s, node) in nodes.iter().enumerate() {
-        let (Some(footing), Some(spot)) = (footing(s), node.spot) else {
+        let (Some(projection), Some(spot)) = (projection(s), node.spot) else {
             continue;
         };
         let master = &model.surfaces[spot.surface].elements[spot.element];
-        let directions = [footing.normal, tangent(footing.normal)];
+        let directions = [projection.normal, tangent(projection.normal)];
         let active = match node.mode {
             Mode::Free => 0,
             Mode::Sliding => 1,
@@ -68,7 +68,7 @@ pub fn diagnose<'a>(
         for direction in &directions[..active] {
             let mut row = frame.row();
             frame.add(&mut row, model.contacts[s].node, *direction, -1.0);
-            for (&n, &weight) in master.iter().zip(&footing.shape) {
+            for (&n, &weight) in master.iter().zip(&projection.shape) {
                 frame.add(&mut row, n, *direction, weight);
             }
             conditions.push(row);

@@ -20,7 +20,7 @@ const STEP: f64 = 32.0;
 
 /// What the equation of a degree of freedom balances.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum Balanced {
     /// Forces.
     Force,
     /// Moments, which count as forces over the scene's length.
@@ -33,7 +33,7 @@ pub enum Kind {
 /// Sizes of a scene.
 pub struct Sizes {
     /// Of each degree of freedom.
-    pub kind: Vec<Kind>,
+    pub kind: Vec<Balanced>,
     /// Largest force that the loads reach over the history.
     pub reference: f64,
     /// Stiffness of the softest body as a whole.
@@ -63,9 +63,9 @@ impl Sizes {
     /// What a force at a degree of freedom is divided by to count as a force; none where lengths are balanced.
     pub fn lever(&self, dof: usize) -> Option<f64> {
         match self.kind[dof] {
-            Kind::Force => Some(1.0),
-            Kind::Moment => Some(self.length),
-            Kind::Length => None,
+            Balanced::Force => Some(1.0),
+            Balanced::Moment => Some(self.length),
+            Balanced::Length => None,
         }
     }
 
@@ -91,7 +91,7 @@ impl Sizes {
         }
         if self.reference == 0.0 {
             let motions = at.u.iter().zip(&self.kind);
-            let motions = motions.filter(|(_, kind)| **kind == Kind::Force);
+            let motions = motions.filter(|(_, kind)| **kind == Balanced::Force);
             let largest = motions.fold(0.0_f64, |most, (u, _)| most.max(u.abs()));
             wanted = wanted.max(self.softest * largest);
         }
@@ -108,19 +108,19 @@ impl Sizes {
         for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
             let Some(e) = *equation else { continue };
             match kind {
-                Kind::Force => units[e] = 1.0 / root,
-                Kind::Moment => units[e] = 1.0 / (root * length),
-                Kind::Length => {}
+                Balanced::Force => units[e] = 1.0 / root,
+                Balanced::Moment => units[e] = 1.0 / (root * length),
+                Balanced::Length => {}
             }
         }
     }
 
     /// Largest displacement; a rotation counts as the displacement that it makes over the scene's length.
     pub fn largest_motion(&self, u: &[f64]) -> f64 {
-        let motion = |(u, kind): (&f64, &Kind)| match kind {
-            Kind::Force => u.abs(),
-            Kind::Moment => u.abs() * self.length,
-            Kind::Length => 0.0,
+        let motion = |(u, kind): (&f64, &Balanced)| match kind {
+            Balanced::Force => u.abs(),
+            Balanced::Moment => u.abs() * self.length,
+            Balanced::Length => 0.0,
         };
         // Not max, which takes no notice of what is no number.
         let motions = u.iter().zip(&self.kind).map(motion);
@@ -149,14 +149,14 @@ fn peak(path: &[f64], load: &Load) -> f64 {
 }
 
 /// What the equation of each degree of freedom balances.
-fn kinds(model: &Model) -> Vec<Kind> {
-    let mut kinds = vec![Kind::Length; model.dofs.len()];
+fn kinds(model: &Model) -> Vec<Balanced> {
+    let mut kinds = vec![Balanced::Length; model.dofs.len()];
     for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
         for k in 0..count as usize {
             kinds[first + k] = if k == Component::Rotation as usize {
-                Kind::Moment
+                Balanced::Moment
             } else {
-                Kind::Force
+                Balanced::Force
             };
         }
     }

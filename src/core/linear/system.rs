@@ -4,8 +4,8 @@
 //! stiffness and residual at the start of a major iteration; [`System::solve`] solves it for the modes of one minor
 //! iteration. After a first pass neither allocates, unless a slave node finds another deformable master element.
 
-use crate::contact::geometric_tangent::{Variation, turning};
-use crate::contact::projection::{Projection, footing, tangent};
+use crate::contact::geometric_tangent::{Variation, geometric_tangent};
+use crate::contact::projection::{Projection, projection_at, tangent};
 use crate::contact::state::ContactState;
 use crate::contact::table1::Equation;
 use crate::fem::assembly::{Assembly, Moved};
@@ -158,8 +158,8 @@ impl System {
             .iter_mut()
             .zip(at.contacts.iter().zip(&model.contacts))
         {
-            interface.footing = node.spot.map(|spot| {
-                footing(
+            interface.projection = node.spot.map(|spot| {
+                projection_at(
                     &model.surfaces,
                     spot,
                     &self.positions,
@@ -304,7 +304,7 @@ impl System {
         for interface in &mut self.interfaces {
             interface.prescribed = [0.0; 2];
             interface.moves = [false; 2];
-            let Some(frame) = interface.footing.map(|f| [f.normal, tangent(f.normal)]) else {
+            let Some(frame) = interface.projection.map(|f| [f.normal, tangent(f.normal)]) else {
                 continue;
             };
             for link in &interface.links {
@@ -330,7 +330,8 @@ impl System {
             _ => &mut self.stiffness,
         };
         for (interface, node) in self.interfaces.iter_mut().zip(at.contacts) {
-            let Some((footing, curve)) = interface.footing.and_then(|f| Some((f, f.curve?))) else {
+            let Some((projection, curve)) = interface.projection.and_then(|f| Some((f, f.curve?)))
+            else {
                 continue;
             };
             if node.f_n == 0.0 && node.f_t == 0.0 {
@@ -338,7 +339,7 @@ impl System {
             }
             for link in &mut interface.links {
                 link.variation =
-                    Variation::new(&footing, &curve, link.axis, link.weight, link.slope);
+                    Variation::new(&projection, &curve, link.axis, link.weight, link.slope);
             }
             let force = [node.f_n, node.f_t];
             let count = interface.links.len();
@@ -347,7 +348,13 @@ impl System {
                     continue;
                 };
                 for (j, col) in interface.links.iter().enumerate() {
-                    let value = turning(&footing, &curve, force, &row.variation, &col.variation);
+                    let value = geometric_tangent(
+                        &projection,
+                        &curve,
+                        force,
+                        &row.variation,
+                        &col.variation,
+                    );
                     match interface.pairs[i * count + j] {
                         Some(slot) => matrix[slot] -= value,
                         None => self.coupling[equation] -= value * self.step[col.dof],
@@ -363,8 +370,8 @@ impl System {
     }
 
     /// Geometry of a slave node in the last linearisation.
-    pub fn footing(&self, slave: usize) -> Option<&Projection> {
-        self.interfaces[slave].footing.as_ref()
+    pub fn projection(&self, slave: usize) -> Option<&Projection> {
+        self.interfaces[slave].projection.as_ref()
     }
 
     /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
@@ -387,7 +394,7 @@ impl System {
     /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.
     pub fn kinematics(&self, contact: usize) -> Option<NodeKinematics> {
         let interface = &self.interfaces[contact];
-        let projection = interface.footing.as_ref()?;
+        let projection = interface.projection.as_ref()?;
         Some(NodeKinematics {
             gap: projection.gap,
             normal: projection.normal,

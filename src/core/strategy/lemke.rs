@@ -2,7 +2,7 @@
 //! iteration. What it finds is checked by Table 2 in the minor iteration after.
 
 use crate::contact::table2::Rule;
-use crate::interface::lemke::{End, Lemke as Tableau, STARTS};
+use crate::interface::lemke::{Lemke as Tableau, PathEnd, STARTS};
 use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
 use crate::model::BoundUpdate;
 
@@ -45,7 +45,7 @@ impl Search for Lemke {
         let proposal = Proposal {
             nodes: nodes.collect(),
             rule: match ended {
-                Some(End::Solved) => Rule::Found,
+                Some(PathEnd::Solved) => Rule::Found,
                 _ => Rule::Pivots,
             },
             cover: tableau.cover(),
@@ -55,8 +55,8 @@ impl Search for Lemke {
                     start,
                     step: path.step,
                 },
-                Some(End::Solved) => Searched::Found { start },
-                Some(End::Ray | End::Astray) => Searched::At {
+                Some(PathEnd::Solved) => Searched::Found { start },
+                Some(PathEnd::Ray | PathEnd::Astray) => Searched::At {
                     start: start + 1,
                     step: 0,
                 },
