@@ -21,30 +21,18 @@
 
 #![forbid(unsafe_code)]
 
-// Not all public items of these have their comments yet; those of the packages below all have.
-#[allow(missing_docs)]
 pub mod action;
-#[allow(missing_docs)]
 pub mod cli;
-#[allow(missing_docs)]
 pub mod explain;
-#[allow(missing_docs)]
 pub mod format;
-#[allow(missing_docs)]
 pub mod history;
 pub mod manual;
 pub mod outside;
-#[allow(missing_docs)]
 pub mod record;
-#[allow(missing_docs)]
 pub mod scene;
-#[allow(missing_docs)]
 pub mod session;
-#[allow(missing_docs)]
 pub mod study;
-#[allow(missing_docs)]
 pub mod teach;
-#[allow(missing_docs)]
 pub mod tui;
 
 pub use stickslip_core::{contact, fem, interface, linalg, linear, model, step, strategy};

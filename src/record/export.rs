@@ -48,10 +48,13 @@ const WIDTH: usize = 110;
 /// Why a problem is not written as a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum NoExport {
+    /// The scene has no slave nodes.
     #[error("no slave node is over a surface, so there is no interface problem")]
     NoInterface,
+    /// The equations of what is left out are singular.
     #[error("the problem of the nodes over a surface is singular")]
     Singular,
+    /// The nodes whose forces a support carries.
     #[error(
         "no unknown moves {0} along the surface or across it: the support carries what acts there, and no matrix says so"
     )]
@@ -67,6 +70,7 @@ pub enum NoExport {
         /// What its matrix would take, in units of 2^20 bytes.
         mebibytes: usize,
     },
+    /// Why no matrix says what the scene says.
     #[error("the problem cannot be written as a matrix: {0}")]
     NoMatrix(String),
     /// The scene cycles, and otherwise than the problem.
@@ -77,6 +81,7 @@ pub enum NoExport {
         /// What the scene does.
         found: String,
     },
+    /// The file does not do what the problem does.
     #[error(transparent)]
     Parted(#[from] Parted),
 }
@@ -84,14 +89,19 @@ pub enum NoExport {
 /// Where a file and the problem that it was made of part.
 #[derive(Debug, thiserror::Error)]
 pub enum Parted {
+    /// The file that would be written is no sound scene.
     #[error(transparent)]
     Unsound(#[from] Box<SceneError>),
+    /// There is no memory to compare.
     #[error("no memory")]
     Memory,
+    /// The file's history ends in this minor iteration.
     #[error("it is done before minor iteration {0}")]
     Done(u32),
+    /// Only the problem is singular in this minor iteration.
     #[error("minor iteration {0} is singular, and there it is not")]
     Singular(u32),
+    /// Only the file is not solved in this minor iteration.
     #[error("minor iteration {0} cannot be solved")]
     Unsolved(u32),
     /// The scene's iteration is not the problem's.
@@ -109,6 +119,7 @@ pub enum Parted {
 pub struct Origin {
     /// Name of the scene, and what was changed in it: `PATH=VALUE`, or an intervention in words.
     pub scene: String,
+    /// What was done before, as one would type it.
     pub changes: Vec<String>,
     /// The minor iteration after which it was, or before the first.
     pub at: Position,

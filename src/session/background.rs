@@ -66,18 +66,25 @@ pub struct Export {
 /// Why no scene was written.
 #[derive(Debug, thiserror::Error)]
 pub enum NotWritten {
+    /// The history is done.
     #[error("the history is done; nothing is solved next from here")]
     Finished,
+    /// The bodies cannot be condensed to the interface here.
     #[error("{NOT_CONDENSED}")]
     NotCondensed,
+    /// The minor iterations do not cycle here.
     #[error("the minor iterations do not cycle from here, so there is no core")]
     NoCycle,
+    /// Too many nodes take part; the words say how many.
     #[error("{0}")]
     TooMany(String),
+    /// What is to be written could not be found out.
     #[error(transparent)]
     Untold(#[from] Untold),
+    /// No file can say what the problem says.
     #[error(transparent)]
     NoExport(#[from] NoExport),
+    /// The file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
 }

@@ -31,7 +31,9 @@ pub struct Chart {
     pub set: Vec<(String, String)>,
     /// Monitors whose error counts; none: all displacements.
     pub monitors: Vec<String>,
+    /// What errors are measured against.
     pub truth: Truth,
+    /// The curves, in the order of the file.
     pub series: Vec<Series>,
 }
 
@@ -40,6 +42,7 @@ pub struct Chart {
 pub enum Truth {
     /// The table that the program carries for the scene.
     Builtin,
+    /// A reference table, by its file.
     Table(PathBuf),
     /// A run with these settings.
     Run(Vec<(String, String)>),

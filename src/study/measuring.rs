@@ -13,10 +13,13 @@ use std::thread;
 /// Why there is no chart.
 #[derive(Debug, thiserror::Error)]
 pub enum NotMeasured {
+    /// A scene of the chart is unsound.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The chart could not be measured.
     #[error(transparent)]
     Failed(#[from] PrecisionError),
+    /// The thread that measured has ended without an answer.
     #[error("measuring broke down")]
     BrokeDown,
 }

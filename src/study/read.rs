@@ -31,6 +31,7 @@ pub struct Study {
     pub name: String,
     /// Empty: the scene's.
     pub title: String,
+    /// What the study shows, for the reader.
     pub about: String,
     /// Scenes as `Scene::open` takes them, one at least.
     pub scenes: Vec<String>,

@@ -16,11 +16,15 @@ use std::sync::Arc;
 pub struct Lesson {
     /// Path of the file, or name of the built-in lesson.
     pub name: String,
+    /// One line that says what the lesson is about.
     pub title: String,
     /// What it teaches, in a line.
     pub about: String,
+    /// The scene that it is played on.
     pub scene: Scene,
+    /// Its model.
     pub model: Arc<Model>,
+    /// What is told, asked and done, one after the other.
     pub steps: Vec<Step>,
     /// Its file, to name lines.
     text: String,
@@ -29,16 +33,24 @@ pub struct Lesson {
 /// A step of a lesson.
 #[derive(Debug, Clone)]
 pub enum Step {
+    /// Something to read.
     Text(Template),
+    /// Something to press.
     Press {
+        /// What is told before.
         text: Template,
+        /// What is to be pressed.
         action: Action,
         /// How to do that, in words.
         how: String,
     },
+    /// A question.
     Ask(Ask),
+    /// Decisions to predict.
     Predict {
+        /// What is told before.
         text: Template,
+        /// How many must be right, one after the other.
         right: u32,
     },
 }
@@ -46,30 +58,43 @@ pub enum Step {
 /// A question.
 #[derive(Debug, Clone)]
 pub struct Ask {
+    /// The question.
     pub text: Template,
+    /// What is right.
     pub answer: Answer,
     /// Minor iterations that it looks ahead.
     pub ahead: u32,
+    /// What is told after a wrong answer.
     pub hint: Template,
+    /// What is told after the right one.
     pub then: Template,
 }
 
 /// What is asked for; nodes by slave number.
 #[derive(Debug, Clone)]
 pub enum Answer {
+    /// The mode that this slave node (by number) takes next.
     Mode(usize),
+    /// The cell of Table 2 that decides at this slave node.
     Rule(usize),
+    /// A number, and how far off an answer may be, relatively.
     Number(LessonQuantity, f64),
+    /// One of several sentences, each with what makes it true.
     Choice(Vec<(Template, Truth)>),
 }
 
 /// What makes a choice right.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Truth {
+    /// The increment ends in a cycle.
     Cycles,
+    /// The increment is accepted.
     Accepted,
+    /// So many states are consistent.
     Answers(usize),
+    /// This slave node (by number) takes this mode next.
     Becomes(usize, Mode),
+    /// True or not, as the author says.
     Known(bool),
 }
 

@@ -19,7 +19,9 @@ const ENDLESS: u32 = 20_000;
 /// A frame of the history, and the scene that it belongs to.
 #[derive(Debug, Clone)]
 pub struct Look {
+    /// The scene's model.
     pub model: Arc<Model>,
+    /// The iteration that is looked at.
     pub frame: Frame,
 }
 

@@ -20,7 +20,9 @@ const MOST_STEPS: u32 = 1000;
 pub struct Answered {
     /// Place of the step, from 0.
     pub step: usize,
+    /// What was asked.
     pub question: String,
+    /// The right answer, as one would type it.
     pub answer: String,
 }
 

@@ -10,22 +10,31 @@ pub enum NotNow {
     /// What is to be done next.
     #[error("the lesson waits: {0}")]
     Waits(String),
+    /// There is nothing more to do.
     #[error("the lesson is over; q leaves, :lesson begins another")]
     Over,
+    /// Decisions are hidden until they are predicted.
     #[error("predict first: a, then f free, s sliding, x fixed (p ends predicting)")]
     PredictFirst,
+    /// No decision is hidden.
     #[error("nothing is hidden here; step on and predict what comes")]
     NothingHidden,
+    /// The node whose decision is predicted already.
     #[error("{0} is predicted already")]
     Predicted(String),
+    /// The question has its answer.
     #[error("that is answered; Space goes on")]
     Answered,
+    /// There is no question.
     #[error("nothing is asked now")]
     NothingAsked,
+    /// What was typed for a mode.
     #[error("'{0}' is no mode; free, sliding or fixed would be")]
     NoMode(String),
+    /// What was typed for a choice, and how many there are.
     #[error("'{0}' is none of 1 to {1}")]
     NoOption(String, usize),
+    /// What was typed for a number.
     #[error("'{0}' is no number; -0.05 or 2e-3 would be")]
     NoNumber(String),
 }
@@ -33,46 +42,66 @@ pub enum NotNow {
 /// What the solver cannot tell, or what an author asks for that there is not.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Unknown {
+    /// No iteration is solved yet.
     #[error("nothing is solved yet")]
     Unsolved,
+    /// The solve failed before.
     #[error("the solve failed before it found this")]
     Failed,
+    /// There is no iteration after this one.
     #[error("the history is done")]
     Done,
+    /// Minor iterations that were tried.
     #[error("the increment has no end within {0} minor iterations")]
     Endless(u32),
+    /// The bodies cannot be condensed to the interface.
     #[error("the bodies of this state cannot be condensed")]
     NotCondensed,
     /// Why there is no census.
     #[error("{0}")]
     NoCensus(crate::interface::census::TooMany),
+    /// No cycle ends the increment.
     #[error("the increment does not end in a cycle")]
     NoCycle,
+    /// There is no slave node to ask about.
     #[error("this scene has no slave nodes")]
     NoSlaves,
+    /// Words where a number belongs.
     #[error("this is no number")]
     NoNumber,
+    /// The number is infinite, or none.
     #[error("what is asked for is not a finite number")]
     NotFinite,
+    /// Another rule than one of Table 2 decided.
     #[error("no cell of Table 2 decided here")]
     NoCell,
+    /// A question without a right choice.
     #[error("none of the choices is true")]
     NoneTrue,
+    /// A question with more than one right choice.
     #[error("more than one of the choices is true")]
     SeveralTrue,
+    /// A brace without its end.
     #[error("a brace {{ is not closed by }}")]
     Brace,
+    /// A quantity of a node, without the node.
     #[error("{0} of which node? {{{0} NODE}} would be right")]
     WhichNode(String),
+    /// An action that no key has.
     #[error("{0:?} is no action that has a key")]
     NoKey(String),
+    /// A quantity of the whole, with a node.
     #[error("{0} is not of a node; {0} alone would be right")]
     NotNodal(String),
+    /// A quantity that there is not.
     #[error("the solver knows no {word:?}{} (it knows {})", did_you_mean(word, known.iter().copied()), known.join(", "))]
     NoQuantity {
+        /// What was written.
         word: String,
+        /// What there is.
         known: Vec<&'static str>,
     },
+    /// An action that there is not.
     #[error(transparent)]
     Misread(#[from] Misread),
 }

@@ -26,14 +26,17 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonSpec {
+    /// One line that says what the lesson is about.
     pub title: String,
     /// What it teaches, in a line.
     #[serde(default)]
     pub about: String,
+    /// The scene that it is played on.
     pub scene: SceneSpec,
     /// What is changed in the scene: path and value.
     #[serde(default)]
     pub set: Vec<(String, String)>,
+    /// What is told, asked and done, one after the other.
     pub steps: Vec<StepSpec>,
 }
 
@@ -54,13 +57,16 @@ pub enum StepSpec {
     Text(String),
     /// Something to do.
     Press {
+        /// What is told before.
         text: String,
         /// A key, with a count before it or not (`s`, `3s`), or a typed line (`force beam.end sliding`).
         press: String,
     },
     /// A question.
     Ask {
+        /// The question.
         text: String,
+        /// What is right.
         answer: AnswerSpec,
         /// Minor iterations that the question looks ahead: 0 asks about the one that is shown.
         #[serde(default)]
@@ -73,7 +79,12 @@ pub enum StepSpec {
         then: String,
     },
     /// Free mode, until so many predictions were right.
-    Predict { text: String, right: u32 },
+    Predict {
+        /// What is told before.
+        text: String,
+        /// How many must be right, one after the other.
+        right: u32,
+    },
 }
 
 /// What is asked for; the right answer is what the solver finds.
@@ -81,11 +92,22 @@ pub enum StepSpec {
 #[serde(deny_unknown_fields)]
 pub enum AnswerSpec {
     /// The mode that a slave node takes next.
-    Mode { node: String },
+    Mode {
+        /// Name of the slave node.
+        node: String,
+    },
     /// The cell of Table 2, in the row of the node's mode, that fires.
-    Rule { node: String },
+    Rule {
+        /// Name of the slave node.
+        node: String,
+    },
     /// A number: one of [`super::quantity`]. The tolerance is relative; 0 wants it exact.
-    Number { of: String, tolerance: f64 },
+    Number {
+        /// The quantity, as in braces.
+        of: String,
+        /// How far off an answer may be, relatively.
+        tolerance: f64,
+    },
     /// One of several sentences, each with what makes it true; one of them must be.
     Choice(Vec<(String, When)>),
 }
@@ -102,10 +124,13 @@ pub enum When {
     Answers(usize),
     /// The node takes this mode next.
     Becomes {
+        /// Name of the slave node.
         node: String,
+        /// The mode that it takes.
         mode: Mode,
     },
     /// What no solver can tell.
     Right,
+    /// Never.
     Wrong,
 }

@@ -47,6 +47,7 @@ pub struct Tutor {
 /// A question that waits, with its answer.
 #[derive(Debug, Clone)]
 pub struct Question {
+    /// What is typed for an answer.
     pub kind: AnswerKind,
     /// What can be chosen, where the answer is a choice.
     pub options: Vec<String>,
@@ -79,17 +80,22 @@ enum Right {
 /// What was said to the last answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remark {
+    /// What is told.
     pub text: String,
+    /// Whether it went well.
     pub good: bool,
 }
 
 /// A part of what the tutor says.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Paragraph {
+    /// Something to read.
     Text(String),
     /// A choice, by its number.
     Option(usize, String),
+    /// What is told after a right answer.
     Right(String),
+    /// What is told after a wrong one.
     Wrong(String),
 }
 

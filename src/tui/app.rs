@@ -32,23 +32,29 @@ pub enum Effect {
     Lesson(String),
     /// Show a work-precision chart.
     Chart(ChartOf),
+    /// Go back to the shell for a while.
     Suspend,
+    /// Draw the whole screen anew.
     Redraw,
+    /// Leave.
     Quit,
 }
 
 /// What lies over the panes or waits for keys before they do.
 #[derive(Debug, Clone)]
 pub enum Overlay {
+    /// Nothing lies over the panes.
     None,
     /// The list of actions, from this line on.
     Help {
+        /// The first line that is shown, from 0.
         top: usize,
     },
     /// A page of the manual.
     Manual(manual::Reader),
     /// The list of scenes, with one of them selected.
     Chooser {
+        /// The scene that is chosen, from 0.
         at: usize,
     },
     /// A work-precision chart.
@@ -64,50 +70,66 @@ pub enum Overlay {
 /// How the message line speaks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tone {
+    /// Said in passing.
     Plain,
+    /// Something was refused.
     Error,
 }
 
 /// The last thing that was said to the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
+    /// What is said.
     pub text: String,
+    /// How.
     pub tone: Tone,
 }
 
 /// A scene that the chooser offers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Offer {
+    /// The name by which it is opened.
     pub name: String,
+    /// Its title.
     pub title: String,
 }
 
 /// Everything on the screen that is not in the session.
 #[derive(Debug, Clone)]
 pub struct App {
+    /// Colours and weights.
     pub theme: Theme,
+    /// What lies over the panes.
     pub overlay: Overlay,
     /// Pane with the focus.
     pub focus: Pane,
     /// Pane under the table where the screen is small.
     pub page: Pane,
+    /// Whether the focused pane has the whole screen.
     pub zoomed: bool,
     /// Selected slave node, by slave number.
     pub selected: usize,
     /// Count typed before a motion.
     pub count: Option<u32>,
+    /// What was said last.
     pub message: Message,
+    /// What the shape shows, and how large.
     pub camera: Camera,
     /// How the table sorts, whether the other way round, and which nodes it shows.
     pub sort: Sort,
+    /// Whether nodes are sorted backward.
     pub backward: bool,
+    /// Which nodes the table shows.
     pub filter: Filter,
     /// Monitor of the load-displacement curve.
     pub monitor: usize,
     /// Selected consistent state, branch (by its row in the tree) and remedy; first line of the diagnosis.
     pub answer: usize,
+    /// The selected branch, from 0.
     pub branch: usize,
+    /// The selected remedy, from 0.
     pub remedy: usize,
+    /// The first line of the diagnosis that is shown, from 0.
     pub scroll: usize,
     /// Which of the panes that take turns is shown where there is room for one.
     pub chart: Pane,

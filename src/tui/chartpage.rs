@@ -9,10 +9,13 @@ use std::path::Path;
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]
 pub enum NoPage {
+    /// The table is unsound.
     #[error(transparent)]
     Table(#[from] TableError),
+    /// The chart could not be measured.
     #[error(transparent)]
     NotMeasured(#[from] Box<NotMeasured>),
+    /// There is nothing to draw.
     #[error("stopped before there was anything to compare")]
     Empty,
 }

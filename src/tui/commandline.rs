@@ -24,6 +24,7 @@ pub enum Purpose {
 /// A line being typed.
 #[derive(Debug, Clone)]
 pub struct CommandLine {
+    /// What the line is for.
     pub purpose: Purpose,
     input: Input,
     /// Completions of what was typed, and which of them is shown.

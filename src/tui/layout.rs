@@ -10,14 +10,23 @@ use ratatui::layout::{Constraint, Layout, Rect};
 /// A part of the screen that can have the focus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pane {
+    /// The table of slave nodes.
     Nodes,
+    /// The decision on the selected node.
     Decision,
+    /// The residual over the major iterations.
     Residual,
+    /// The bodies and surfaces.
     Shape,
+    /// The load factor over a monitor.
     Curve,
+    /// Slave nodes by minor iterations.
     Timeline,
+    /// Why the minor iterations cycle, and what gets out.
     Diagnosis,
+    /// The branches of the history.
     Branches,
+    /// What was tried, and what it costs.
     Remedies,
     /// Never has the focus, and is only there while a lesson is taken.
     Lesson,

@@ -12,16 +12,21 @@ use std::thread;
 /// Why a scene or a lesson cannot be had.
 #[derive(Debug, thiserror::Error)]
 pub enum NotLoaded {
+    /// The scene is unsound.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The thread that read has ended without an answer.
     #[error("reading it broke down")]
     BrokeDown,
 }
 
 /// What was read, or why it cannot be had.
 pub enum Loaded {
+    /// A scene, opened.
     Scene(Result<Box<Session>, NotLoaded>),
+    /// A lesson with its scene, opened.
     Lesson(Result<Box<(Lesson, Session)>, NotLoaded>),
+    /// A chart, read or measured.
     Chart(Result<Box<ChartPage>, NoPage>),
 }
 

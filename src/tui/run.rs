@@ -189,14 +189,19 @@ pub fn offers() -> Vec<Offer> {
 /// What only the event loop can do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outside {
+    /// Leave.
     Quit,
+    /// Go back to the shell for a while.
     Suspend,
+    /// Draw the whole screen anew.
     Redraw,
 }
 
 /// The debugger without its terminal: keys in, screens out.
 pub struct Debugger {
+    /// What the terminal alone knows.
     pub app: App,
+    /// The session; `None` before a scene is chosen.
     pub session: Option<Session>,
     /// Commands given while the solver was at work on an earlier one.
     queue: VecDeque<Command>,

@@ -25,7 +25,9 @@ pub struct Theme {
     pub selected: Style,
     /// Keys in the footer and on the help page.
     pub key: Style,
+    /// What went well.
     pub good: Style,
+    /// What failed.
     pub bad: Style,
     /// Ties, limits, interventions.
     pub warning: Style,

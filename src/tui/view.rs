@@ -23,6 +23,7 @@ pub struct View<'a> {
     pub name: &'a str,
     /// The scene as read, for the names that it gives its nodes; tests by hand have none.
     pub scene: Option<&'a Scene>,
+    /// The scene's model.
     pub model: &'a Model,
     /// The history, oldest first; never empty.
     pub frames: &'a [Frame],
@@ -30,6 +31,7 @@ pub struct View<'a> {
     pub strips: &'a [Strip],
     /// The whole history, and what was found out beside it; tests by hand have neither.
     pub tree: Option<&'a Tree>,
+    /// What is found out beside the session; `None` in drawings of it alone.
     pub background: Option<&'a Background>,
     /// Which of them is shown.
     pub cursor: usize,

@@ -28,6 +28,7 @@ pub struct Reader {
 }
 
 impl Reader {
+    /// A reader at the top of a page.
     pub fn new(page: &'static Page) -> Reader {
         Reader {
             page,
