@@ -107,9 +107,7 @@ impl Assembly {
             let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
             let material = Material::new(elastic);
             let element = continuum::element(solid.kind, &positions, material, elastic.update);
-            if let Some(element) = element {
-                self.place(element, dofs_of(model, nodes, 2));
-            }
+            self.place(element, dofs_of(model, nodes, 2));
         }
     }
 

@@ -1,23 +1,45 @@
 //! The kinds of continuum elements, one file each: a new one is a file, a kind in [`ElementKind`], and a line in each of
 //! the functions here.
 
-use crate::fem::element::Element;
+use crate::fem::element::{Element, Past};
 use crate::fem::material::Material;
 use crate::fem::quad8;
 use crate::model::{ElementKind, Update};
 
-/// An element of a kind on these undeformed positions; `None` where there are not as many as it has nodes.
+/// An element of a kind on these undeformed positions. One that has not as many as its kind has nodes never answers, so that
+/// no state of it can be accepted.
 pub fn element(
     kind: ElementKind,
     at: &[[f64; 2]],
     material: Material,
     update: Update,
-) -> Option<Box<dyn Element>> {
-    match kind {
-        ElementKind::Quad8 => {
-            let at = at.try_into().ok()?;
-            Some(Box::new(quad8::Element::new(at, material, update)))
-        }
+) -> Box<dyn Element> {
+    match (kind, at.try_into()) {
+        (ElementKind::Quad8, Ok(at)) => Box::new(quad8::Element::new(at, material, update)),
+        (kind, Err(_)) => Box::new(Malformed {
+            dofs: 2 * at.len(),
+            history: history_len(kind, update),
+        }),
+    }
+}
+
+/// An element with the wrong number of nodes.
+struct Malformed {
+    dofs: usize,
+    history: usize,
+}
+
+impl Element for Malformed {
+    fn dofs(&self) -> usize {
+        self.dofs
+    }
+
+    fn history_len(&self) -> usize {
+        self.history
+    }
+
+    fn add(&self, _: &Past<'_>, _: &[f64], _: &mut [f64], _: &mut [f64]) -> bool {
+        false
     }
 }
 

@@ -4,7 +4,7 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::contact::table2::{Decision, Rule, Test, Tested};
-use crate::interface::method::{Asked, NoProposal, Proposal, Searched};
+use crate::interface::method::{Asked, NoProposal, Proposal, Search, Searched};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::Assumed;
 use crate::linear::singular::Singular;
@@ -82,17 +82,17 @@ impl Stepper {
         Outcome::Minor
     }
 
-    /// The start and step that a search over all nodes has come to, if this minor iteration is one of it.
-    pub(super) fn searching(&self) -> Option<(usize, usize)> {
-        let method = strategy::method(self.state.settings().strategy);
-        match (method.search(), self.state.search.searched) {
-            (Some(_), Searched::At { start, step }) => Some((start, step)),
-            _ => None,
+    /// The search over all nodes that this minor iteration belongs to, with the start and the step that it has come to.
+    pub(super) fn searching(&self) -> Option<(&'static dyn Search, usize, usize)> {
+        let search = strategy::method(self.state.settings().strategy).search()?;
+        match self.state.search.searched {
+            Searched::At { start, step } => Some((search, start, step)),
+            Searched::Not | Searched::Found { .. } => None,
         }
     }
 
     /// One proposal of a search over all nodes.
-    pub(super) fn propose(&mut self, start: usize, step: usize) -> Outcome {
+    pub(super) fn propose(&mut self, search: &dyn Search, start: usize, step: usize) -> Outcome {
         self.state.minors += 1;
         let brought = self.brought();
         let Stepper {
@@ -101,7 +101,6 @@ impl Stepper {
             kept,
             ..
         } = self;
-        let method = strategy::method(state.settings().strategy);
         let asked = Asked {
             start,
             step,
@@ -110,10 +109,7 @@ impl Stepper {
             problem: &mut || source.problem(&state.at()).ok(),
             kept,
         };
-        let Some(proposed) = method.search().map(|search| search.propose(asked)) else {
-            return Outcome::Minor;
-        };
-        match proposed {
+        match search.propose(asked) {
             Ok(proposal) => self.take(&proposal),
             Err(NoProposal::NotFound(why)) => self.escalate(Failure::NotFound(why)),
             Err(NoProposal::NoAnswer { tried }) => {

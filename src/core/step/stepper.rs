@@ -100,8 +100,8 @@ impl Stepper {
         }
         self.norms = self.source.norms(&self.state.at());
         self.event.before = self.norms;
-        if let Some((start, step)) = self.searching() {
-            return self.propose(start, step);
+        if let Some((search, start, step)) = self.searching() {
+            return self.propose(search, start, step);
         }
         self.remember();
         let solved = self.source.solve(&self.state.at());

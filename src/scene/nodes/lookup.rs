@@ -1,9 +1,7 @@
 //! Nodes, chains and meshes by their names, and what to say where there is none of that name.
 
-use super::super::blocks::EDGES;
 use super::{Entry, EntryKind, Mesh, Names};
 use crate::format::error::{did_you_mean, quoted, some_of};
-use std::collections::HashSet;
 
 impl Names {
     /// The number of a node by any of its names.
@@ -99,7 +97,6 @@ impl Names {
         let mut made = Mesh {
             nodes: entry.nodes.clone(),
             elements: Vec::new(),
-            edges: Vec::new(),
         };
         for block in blocks {
             let EntryKind::Block(grid) = block.kind else {
@@ -108,14 +105,7 @@ impl Names {
             let elements = grid.elements();
             made.elements
                 .extend(elements.map(|element| element.map(|n| block.nodes[n])));
-            let edges = EDGES
-                .iter()
-                .filter_map(|edge| self.chain(&format!("{}.{edge}", block.id)).ok());
-            made.edges.extend(edges.flat_map(Entry::elements));
         }
-        // An edge that two blocks share is inside; each walks it its own way.
-        let walked: HashSet<(usize, usize)> = made.edges.iter().map(|e| (e[0], e[2])).collect();
-        made.edges.retain(|e| !walked.contains(&(e[2], e[0])));
         Ok(made)
     }
 

@@ -42,8 +42,6 @@ pub(crate) struct Mesh {
     /// Distinct nodes.
     pub nodes: Vec<usize>,
     pub elements: Vec<[usize; 8]>,
-    /// The outline: elements of 3 nodes, walked with the body on the left.
-    pub edges: Vec<Vec<usize>>,
 }
 
 /// What an entry's nodes form.
