@@ -4,6 +4,7 @@
 //! - [`names`]: the words for things; [`number`]: numbers for a person; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
 //! - [`influence`]: who pushed whom; [`core`]: the fewest nodes that still cycle; [`diagnosis`]: why a cycle goes round;
 //!   [`smaller`]: whether a smaller increment has a consistent state, where one has none.
+//! - [`proven`]: what a matrix proves: one state at most, and where T_max goes while the modes repeat.
 //! - [`examination`]: all of that at a state; [`remedies`]: every way out, tried.
 //! - [`audit`]: the judge's findings over a history.
 
@@ -15,6 +16,7 @@ pub mod influence;
 pub mod judged;
 pub mod names;
 pub mod number;
+pub mod proven;
 pub mod remedies;
 pub mod report;
 pub mod smaller;
