@@ -10,7 +10,7 @@
 //!   the compliance W is positive semidefinite, E is convex in the motions, and each of its tangents at a point that breaks
 //!   it is a linear condition that cuts this point off. A definite W bounds all forces and motions so.
 //!
-//! A branch whose relaxation cannot hold ([`Forms::can_hold`] proves it, with all bounds relaxed by [`SLACK`]) is pruned.
+//! A branch whose relaxation cannot hold ([`Forms::can_hold`] proves it, with all bounds relaxed by 1e-8) is pruned.
 //! The others are split at the node that breaks its complements most. What is left are assumptions of all nodes, which the
 //! census solves and checks as if it had tried them one by one.
 
