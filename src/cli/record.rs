@@ -180,12 +180,11 @@ fn tell_missed(scene: &Scene, stepper: &Stepper, at: At, missed: Missed) -> Exit
     let (event, name) = (stepper.event(), &scene.name);
     match missed {
         Missed::Failed(failure) => {
-            let accepted = stepper.state().start.load_factor;
             let told = report::failure(
                 &scene.model,
+                stepper.state(),
                 event.position,
                 event.load_factor,
-                accepted,
                 &failure,
             );
             tell(&format!("{name}: {at} is not reached: {told}"));

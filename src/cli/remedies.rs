@@ -2,6 +2,7 @@
 //! costs and leaves.
 
 use super::base::{Error, Exit, SceneArgs, say, tell};
+use crate::explain::page;
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
 use crate::step::drive::{RunEnd, Until};
@@ -20,12 +21,22 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
-    let RunEnd::Failed(_) = end else {
+    let RunEnd::Failed(failure) = end else {
         tell("it converges; there is nothing to remedy");
         return Ok(Exit::Good);
     };
-    tell(&report::outcome(stepper.model(), stepper.event()));
     let state = stepper.state().clone();
+    let (model, event) = (stepper.model().clone(), stepper.event());
+    tell(&report::failure(
+        &model,
+        &state,
+        event.position,
+        event.load_factor,
+        &failure,
+    ));
+    for line in page::facts(&mut stepper, &state, &failure, &|| false) {
+        tell(&format!("  {line}"));
+    }
     let mut trials = Vec::new();
     for remedy in remedies::all(&mut stepper, &state) {
         trials.extend(remedies::attempt(&mut stepper, &state, &remedy, &|| false));
@@ -34,10 +45,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let rows = trials.iter().map(|trial| {
         let mut row = vec![trial.label.clone()];
         row.extend(remedies::row(trial));
+        row.push(trial.how.typed());
         row
     });
     let mut headings = vec!["remedy".to_owned()];
     headings.extend(COLUMNS.map(String::from));
+    headings.push("how".to_owned());
     say(&table(&headings, &rows.collect::<Vec<_>>()))?;
     let any = trials.iter().any(|trial| trial.end == TrialEnd::Converged);
     Ok(if any { Exit::Good } else { Exit::Unconverged })
@@ -55,6 +68,7 @@ fn table(headings: &[String], rows: &[Vec<String>]) -> String {
         let cells: Vec<String> = cells
             .map(|(k, (cell, &width))| match k {
                 0 => format!("{cell:<width$}"),
+                _ if k + 1 == widths.len() => cell.clone(),
                 _ => format!("{cell:>width$}"),
             })
             .collect();

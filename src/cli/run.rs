@@ -4,18 +4,16 @@ use super::base::{Error, Exit, SceneArgs, tell};
 use super::interrupt::Interrupt;
 use super::sink::{Sent, Sink};
 use super::table;
-use crate::explain::diagnosis::{self, Cause, Diagnosis};
 use crate::explain::names;
+use crate::explain::page;
 use crate::explain::report;
-use crate::explain::smaller::smaller;
-use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::model::Model;
 use crate::outside::files::Output;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::step::drive::{RunEnd, Until};
-use crate::step::event::{Event, Failure, Outcome};
+use crate::step::event::{Event, Outcome};
 use crate::step::stepper::Stepper;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -61,7 +59,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(output) = snapshot {
         write_snapshot(output, &run)?;
     }
-    Ok(run.tell(&end, args))
+    Ok(run.tell(&end, args, &interrupt))
 }
 
 /// What a run writes.
@@ -205,7 +203,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells how the run ended.
-    fn tell(&mut self, end: &Ended, args: &Args) -> Exit {
+    fn tell(&mut self, end: &Ended, args: &Args, interrupt: &Interrupt) -> Exit {
         if self.tally.doubtful > MOST_WARNINGS {
             tell(&format!(
                 "warning: {} increments in all were accepted like this",
@@ -237,56 +235,20 @@ impl<'a> Run<'a> {
                 let (event, state) = (self.stepper.event(), self.stepper.state());
                 let told = report::failure(
                     &self.tally.scene.model,
+                    state,
                     event.position,
                     event.load_factor,
-                    state.start.load_factor,
                     failure,
                 );
                 tell(&format!("{name}: {told}"));
-                let cycle = match failure {
-                    Failure::NoAnswer {
-                        first: Some(first), ..
-                    }
-                    | Failure::LadderEnded { first, .. } => first,
-                    failure => failure,
-                };
-                let mut none = matches!(failure, Failure::NoAnswer { .. });
-                if let Failure::Cycle(cycle) = cycle {
-                    none |= self.diagnose(cycle);
-                }
-                if none {
-                    self.look_for_smaller();
+                let (state, model) = (state.clone(), self.stepper.model().clone());
+                let mut scratch = Stepper::new(model);
+                for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
+                    tell(&format!("  {line}"));
                 }
                 Exit::Unconverged
             }
         }
-    }
-
-    /// Tells whether a smaller increment has a consistent state, where this one has none.
-    fn look_for_smaller(&mut self) {
-        let state = self.stepper.state().clone();
-        let mut scratch = Stepper::new(self.stepper.model().clone());
-        if let Some(found) = smaller(&mut scratch, &state) {
-            tell(&format!("  {}", found.words()));
-        }
-    }
-
-    /// Tells why the minor iterations cycle, and what gets out; returns whether nothing can.
-    fn diagnose(&mut self, cycle: &Cycle) -> bool {
-        let Some(problem) = self.stepper.interface_problem() else {
-            return false;
-        };
-        let Some(problem) = diagnosis::cycling(problem, cycle) else {
-            tell(&format!("  not diagnosed: {}", diagnosis::too_many(cycle)));
-            return false;
-        };
-        let Some(diagnosis) = Diagnosis::of(&problem) else {
-            return false;
-        };
-        for line in diagnosis::words(&self.tally.scene.model, &problem, &diagnosis) {
-            tell(&format!("  {line}"));
-        }
-        diagnosis.cause == Cause::NoAnswer
     }
 
     fn tell_summary(&self, monitors: bool) {

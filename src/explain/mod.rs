@@ -4,17 +4,27 @@
 //! - [`names`]: the words for things; [`number`]: numbers for a person; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
 //! - [`influence`]: who pushed whom; [`core`]: the fewest nodes that still cycle; [`diagnosis`]: why a cycle goes round;
 //!   [`smaller`]: whether a smaller increment has a consistent state, where one has none.
-//! - [`examination`]: all of that at a state; [`remedies`]: every way out, tried.
+//! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
+//! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
+//!   where nothing holds it; [`reach`]: up to which load there is an answer.
+//! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
 //! - [`audit`]: the judge's findings over a history.
 
+pub mod advice;
+pub mod attempt;
 pub mod audit;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;
 pub mod influence;
 pub mod judged;
+pub mod loose;
+pub mod majors;
 pub mod names;
 pub mod number;
+pub mod page;
+pub mod reach;
 pub mod remedies;
+pub mod remedy;
 pub mod report;
 pub mod smaller;

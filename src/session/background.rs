@@ -11,10 +11,9 @@
 
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
-use crate::explain::examination::{
-    Examination, NOT_CONDENSED, Untold, examine, examine_nodes, going_round,
-};
+use crate::explain::examination::{Examination, NOT_CONDENSED, Untold, examine_nodes, going_round};
 use crate::explain::influence::{Push, Way, pushes};
+use crate::explain::page::page;
 use crate::explain::remedies::{self, Trial};
 use crate::model::Model;
 use crate::outside::files::{self, FileError};
@@ -31,6 +30,8 @@ use std::thread;
 
 /// Most entries that are kept of pushes, and of examinations.
 const KEPT: usize = 512;
+/// What a page says that was stopped.
+const STOPPED: &str = "stopped; :census goes on from the beginning";
 /// A place: branch, and step on its line.
 pub type LinePlace = (usize, usize);
 
@@ -98,10 +99,21 @@ enum Ask {
 
 enum Told {
     Pushes(LinePlace, usize, Option<Vec<Push>>),
-    Examination(LinePlace, Vec<usize>, Box<Examination>),
-    Trying { all: usize, now: String },
+    /// The page as far as it is made, or (not `going_on`) whole.
+    Examination {
+        place: LinePlace,
+        nodes: Vec<usize>,
+        found: Option<Box<Examination>>,
+        going_on: bool,
+    },
+    Trying {
+        all: usize,
+        now: String,
+    },
     Tried(Box<Trial>),
-    Done { stopped: bool },
+    Done {
+        stopped: bool,
+    },
     Exported(Result<String, NotWritten>),
 }
 
@@ -119,6 +131,8 @@ pub struct Background {
     exported: Option<Result<String, NotWritten>>,
     tried: Option<Tried>,
     trying: bool,
+    /// Whether a page is being made that grows.
+    examining: bool,
 }
 
 impl Background {
@@ -147,6 +161,7 @@ impl Background {
             exported: None,
             tried: None,
             trying: false,
+            examining: false,
         }
     }
 
@@ -176,6 +191,11 @@ impl Background {
         self.trying
     }
 
+    /// Whether a page is being made that grows.
+    pub fn is_examining(&self) -> bool {
+        self.examining
+    }
+
     /// Asks what pushed a node. One question at a time: while another waits, this one may be asked again later.
     pub(super) fn ask_pushes(&mut self, place: LinePlace, slave: usize, way: impl FnOnce() -> Way) {
         if self.waiting == 0 && !self.pushes.contains_key(&(place, slave)) {
@@ -192,6 +212,7 @@ impl Background {
             }
             self.examinations.insert(place, (nodes.to_vec(), None));
             let state = Box::new(state.clone());
+            self.stop.store(false, Ordering::Relaxed);
             self.send(Ask::Examination(place, state, nodes.to_vec()));
         }
     }
@@ -220,7 +241,7 @@ impl Background {
         self.send(Ask::Remedies(Box::new(state.clone())));
     }
 
-    /// Stops trying remedies after the present minor iteration.
+    /// Stops trying remedies, for the list or for a page, after the present minor iteration.
     pub fn interrupt(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -241,7 +262,7 @@ impl Background {
                 Err(TryRecvError::Empty) => return any,
                 Err(TryRecvError::Disconnected) => {
                     any |= self.waiting > 0;
-                    (self.waiting, self.trying) = (0, false);
+                    self.gone();
                     return any;
                 }
             }
@@ -254,9 +275,14 @@ impl Background {
         while self.waiting > 0 {
             match self.told.recv() {
                 Ok(told) => self.take(told),
-                Err(_) => (self.waiting, self.trying) = (0, false),
+                Err(_) => self.gone(),
             }
         }
+    }
+
+    /// The thread is gone: nothing is waited for.
+    fn gone(&mut self) {
+        (self.waiting, self.trying, self.examining) = (0, false, false);
     }
 
     fn take(&mut self, told: Told) {
@@ -268,14 +294,25 @@ impl Background {
                 self.pushes.insert((place, slave), found);
                 self.waiting -= 1;
             }
-            Told::Examination(place, nodes, found) => {
+            Told::Examination {
+                place,
+                nodes,
+                found,
+                going_on,
+            } => {
                 // Something else may have been asked for in the meantime.
-                if let Some(kept) = self.examinations.get_mut(&place)
-                    && kept.0 == nodes
-                {
-                    kept.1 = Some(*found);
+                match (found, self.examinations.get_mut(&place)) {
+                    (Some(found), Some(kept)) if kept.0 == nodes => kept.1 = Some(*found),
+                    (None, Some(kept)) if kept.0 == nodes => match &mut kept.1 {
+                        Some(part) => STOPPED.clone_into(&mut part.going_on),
+                        None => {
+                            self.examinations.remove(&place);
+                        }
+                    },
+                    _ => {}
                 }
-                self.waiting -= 1;
+                self.examining = going_on;
+                self.waiting -= usize::from(!going_on);
             }
             Told::Exported(result) => {
                 self.exported = Some(result);
@@ -317,11 +354,25 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
             news.send(Told::Pushes(place, slave, found)).ok()
         }
         Ask::Examination(place, state, nodes) => {
-            let found = Box::new(match nodes.as_slice() {
-                [] => examine(stepper, &state),
-                some => examine_nodes(stepper, &state, some),
-            });
-            news.send(Told::Examination(place, nodes, found)).ok()
+            let send = |found: Option<Examination>, going_on: bool| {
+                news.send(Told::Examination {
+                    place,
+                    nodes: nodes.clone(),
+                    found: found.map(Box::new),
+                    going_on,
+                })
+            };
+            let found = match nodes.as_slice() {
+                [] => page(
+                    stepper,
+                    &state,
+                    &|| stop.load(Ordering::Relaxed),
+                    // That nobody listens any more shows at the end.
+                    &mut |part| drop(send(Some(part.clone()), true)),
+                ),
+                some => Some(examine_nodes(stepper, &state, some)),
+            };
+            send(found, false).ok()
         }
         Ask::Export(ask) => {
             let done = write(stepper, &ask).map(|()| format!("wrote {}", ask.file.display()));

@@ -14,6 +14,7 @@ use super::background::Background;
 use super::diary::Diary;
 use super::refusal::Refusal;
 use super::worker::{Message, Worker};
+use crate::explain::advice;
 use crate::explain::report;
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoint;
@@ -29,6 +30,7 @@ use crate::record::command::Command;
 use crate::record::journal::{self, Entry, Journal};
 use crate::scene::Scene;
 use crate::step::intervene::Intervention;
+use crate::step::state::Status;
 use crate::step::stepper::Stepper;
 use std::path::Path;
 use std::sync::Arc;
@@ -417,7 +419,14 @@ impl Session {
         let frame = self.frame();
         match &frame.event {
             None => "at the start".into(),
-            Some(event) => report::outcome(self.model(), event),
+            Some(event) => match &frame.state.status {
+                Status::Failed(failure) => format!(
+                    "{}; try {}",
+                    report::outcome(self.model(), event),
+                    advice::in_a_line(self.model(), &frame.state, failure)
+                ),
+                _ => report::outcome(self.model(), event),
+            },
         }
     }
 }

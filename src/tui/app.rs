@@ -279,7 +279,7 @@ impl App {
         self.close(view);
         let trying = |view: &View| {
             view.background
-                .is_some_and(|background| background.is_trying())
+                .is_some_and(|background| background.is_trying() || background.is_examining())
         };
         let works = view.is_some_and(|view| view.running || trying(view));
         if works || self.measuring.is_some() || self.loading {

@@ -150,16 +150,7 @@ impl<'a> View<'a> {
 
     /// Where a node is: its place in the reference shape, displaced.
     pub fn place(&self, node: usize) -> [f64; 2] {
-        let at = self.model.nodes[node].at;
-        let u = &self.frame().state.u;
-        let Some(&first) = self.model.dofs.first.get(node) else {
-            return at;
-        };
-        let moved = |axis: usize| u.get(first + axis).copied().unwrap_or(0.0);
-        match self.model.dofs.count.get(node) {
-            Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
-            _ => at,
-        }
+        self.model.place(&self.frame().state.u, node)
     }
 }
 

@@ -8,6 +8,7 @@ mod terminal;
 
 // Shared: frames made by hand.
 mod by_hand;
+mod failures;
 // Whole screens at every size; what does not fit says so.
 mod screens;
 // The table of slave nodes: marks with and without colour, ties, order, words.

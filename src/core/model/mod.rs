@@ -112,3 +112,25 @@ pub enum Watched {
         slaves: Vec<usize>,
     },
 }
+
+impl Model {
+    /// Where a node is when all degrees of freedom have these values: its place in the reference shape, displaced.
+    pub fn place(&self, u: &[f64], node: usize) -> [f64; 2] {
+        let at = self.nodes[node].at;
+        let Some(&first) = self.dofs.first.get(node) else {
+            return at;
+        };
+        let moved = |axis: usize| u.get(first + axis).copied().unwrap_or(0.0);
+        match self.dofs.count.get(node) {
+            Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
+            _ => at,
+        }
+    }
+
+    /// The places of all nodes ([`Model::place`]).
+    pub fn places(&self, u: &[f64]) -> Vec<[f64; 2]> {
+        (0..self.nodes.len())
+            .map(|node| self.place(u, node))
+            .collect()
+    }
+}

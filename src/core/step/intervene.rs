@@ -209,6 +209,14 @@ impl State {
         Ok(())
     }
 
+    /// The state in which the present attempt of the increment began. What was changed by hand since then is not in it,
+    /// except modes that are held.
+    pub fn attempt_again(&self) -> State {
+        let mut again = self.clone();
+        again.start_again();
+        again
+    }
+
     /// Starts the present increment again, from its start to the end of the present piece.
     pub(super) fn start_again(&mut self) {
         self.u = self.start.u.clone();

@@ -38,6 +38,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .collect(),
         Ok(found) => {
             let answers = answers(found, width, app, view);
+            if !found.going_on.is_empty() {
+                title += &format!(" ({})", found.going_on);
+            }
             let mut lines = words(found, width, app);
             // The list to choose from must be on the screen; what is said before it scrolls.
             let room = height.saturating_sub(answers.len());
@@ -59,7 +62,8 @@ fn words(found: &Examination, width: usize, app: &App) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for (index, text) in found.lines.iter().enumerate() {
         let style = match index {
-            0 if found.cycles => app.theme.strong,
+            0 if found.fails => app.theme.strong,
+            _ if text.starts_with("do:") => app.theme.strong,
             _ => app.theme.text,
         };
         let indent = text.len() - text.trim_start().len() + 1;

@@ -4,6 +4,7 @@
 //! of the shown major iteration.
 
 use crate::contact::projection::tangent;
+use crate::explain::examination::Examination;
 use crate::explain::number;
 use crate::fem::lagrange;
 use crate::model::{BodyKind, Solid};
@@ -20,6 +21,7 @@ use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::collections::HashMap;
+use std::f64::consts::FRAC_PI_4;
 use unicode_width::UnicodeWidthStr;
 
 type Point = [f64; 2];
@@ -31,6 +33,12 @@ const FORCE: f64 = 0.25;
 const NORMAL: f64 = 0.04;
 /// Least diagonal of an element that is drawn, in dots.
 const ELEMENT: f64 = 12.0;
+/// Length of the longest motion that is drawn, as a part of what is seen.
+const MOTION: f64 = 0.15;
+/// Heads of arrows, by eighths of a turn anticlockwise from the right.
+const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+/// Mark of a node that the diagnosis is about, right of its letter.
+const MARK: &str = "!";
 /// Dots between two normals of an element.
 const SPACING: f64 = 16.0;
 
@@ -55,11 +63,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     bodies(&mut canvas, &window, app, view);
     surfaces(&mut canvas, &window, app, view);
     let longest = forces(&mut canvas, &window, app, view);
+    let tips = motions(&mut canvas, &window, app, view);
     canvas.render(buffer);
+    heads(buffer, &canvas, &tips, app);
     names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
     if inner.height > 1 {
-        caption(buffer, inner, longest, app);
+        caption(buffer, inner, longest, !tips.is_empty(), app, view);
     }
 }
 
@@ -407,6 +417,42 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     largest
 }
 
+/// What is known of the shown state, if that is an end.
+fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
+    view.examination().flatten().filter(|found| found.fails)
+}
+
+/// Motions of bodies that nothing holds, as lines; returns their ends, and the directions there.
+fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<[Dot; 2]> {
+    let Some(found) = found(view) else {
+        return Vec::new();
+    };
+    let length = MOTION * window.extent;
+    let line = |&[at, along]: &[Point; 2]| {
+        let tip = [0, 1].map(|axis| at[axis] + length * along[axis]);
+        [window.dot(at), window.dot(tip)]
+    };
+    let lines: Vec<[Dot; 2]> = found.arrows.iter().map(line).collect();
+    for [from, to] in &lines {
+        canvas.line(*from, *to, app.theme.strong);
+    }
+    lines
+}
+
+/// Heads of arrows.
+fn heads(buffer: &mut Buffer, canvas: &Canvas, lines: &[[Dot; 2]], app: &App) {
+    for [from, to] in lines {
+        let (x, y) = (to[0] - from[0], from[1] - to[1]);
+        let eighth = (y.atan2(x) / FRAC_PI_4).round().rem_euclid(8.0) as usize;
+        if let Some((x, y)) = canvas.cell(*to)
+            && let Some(cell) = buffer.cell_mut((x, y))
+        {
+            cell.set_symbol(HEADS[eighth % HEADS.len()])
+                .set_style(app.theme.strong);
+        }
+    }
+}
+
 /// Letters of the modes at the slave nodes; the selected one is reversed and named.
 fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
     let theme = &app.theme;
@@ -433,10 +479,17 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
                 cell.set_style(style.add_modifier(Modifier::REVERSED));
             }
         }
+        let beside = (x + 1, y);
+        if found(view).is_some_and(|found| found.nodes.contains(&slave))
+            && canvas.area().contains(beside.into())
+            && let Some(cell) = buffer.cell_mut(beside)
+        {
+            cell.set_symbol(MARK).set_style(theme.strong);
+        }
     }
 }
 
-fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, app: &App) {
+fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &App, view: &View) {
     let theme = &app.theme;
     let mut spans = vec![Span::styled(" faint: unloaded", theme.faint)];
     if longest > 0.0 {
@@ -444,6 +497,12 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, app: &App) {
             format!("   longest force {}", number::short(longest)),
             theme.faint,
         ));
+    }
+    if moves {
+        spans.push(Span::styled("   → loose", theme.faint));
+    }
+    if found(view).is_some_and(|found| !found.nodes.is_empty()) {
+        spans.push(Span::styled(format!("   {MARK} diagnosed"), theme.faint));
     }
     if app.camera != Camera::ALL {
         spans.push(Span::styled(
