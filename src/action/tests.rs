@@ -25,6 +25,7 @@ fn model() -> Model {
         friction: Friction::default(),
         start: Mode::Free,
         state: Default::default(),
+        overlap: 0.0,
     };
     Model {
         title: String::new(),

@@ -12,6 +12,7 @@ use crate::model::Model;
 use crate::outside::files::Output;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
+use crate::scene::gaps;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Outcome};
 use crate::step::stepper::Stepper;
@@ -52,6 +53,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     // Before the solve, so that nobody waits for a result that then has no place to go.
     let mut outputs = Outputs::open(args)?;
+    if !args.quiet {
+        for warning in gaps::warnings(&scene.model) {
+            tell(&format!("warning: {warning}"));
+        }
+    }
     let mut run = Run::new(&scene, args.quiet);
     let end = run.go(&mut outputs, &interrupt)?;
     run.tally.progress.clear();

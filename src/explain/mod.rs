@@ -1,7 +1,7 @@
 //! Explanations: what happened, why, and what could be done about it, in the words that the command line and the debugger
 //! share.
 //!
-//! - [`names`]: the words for things; [`number`]: numbers for a person; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
+//! - [`names`]: the words for things; [`number`]: numbers for a person; [`round_off`]: which of them are nothing; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
 //! - [`influence`]: who pushed whom; [`core`]: the fewest nodes that still cycle; [`diagnosis`]: why a cycle goes round;
 //!   [`smaller`]: whether a smaller increment has a consistent state, where one has none.
 //! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
@@ -27,4 +27,5 @@ pub mod reach;
 pub mod remedies;
 pub mod remedy;
 pub mod report;
+pub mod round_off;
 pub mod smaller;

@@ -12,9 +12,7 @@ use crate::action::{self, Context};
 use crate::explain::names;
 use crate::explain::number::four;
 use crate::explain::report;
-
-/// Numbers smaller than this, relative to the scene's force or length, are rounding.
-const ROUNDING: f64 = 1e-13;
+use crate::explain::round_off::RoundOff;
 
 /// Something that the solver can tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,12 +128,13 @@ impl LessonQuantity {
         match self {
             LessonQuantity::Of(nodal, slave) => {
                 let record = look.record(*slave)?;
+                let round_off = RoundOff::of(&look.model, &look.event()?.before);
                 match nodal {
-                    Nodal::Gap => Ok(record.gap),
-                    Nodal::Fn => Ok(record.f_n),
-                    Nodal::Ft => Ok(record.f_t),
-                    Nodal::TMax => Ok(record.t_max),
-                    Nodal::Slip => Ok(record.slip),
+                    Nodal::Gap => Ok(round_off.length(record.gap)),
+                    Nodal::Fn => Ok(round_off.force(record.f_n)),
+                    Nodal::Ft => Ok(round_off.force(record.f_t)),
+                    Nodal::TMax => Ok(round_off.force(record.t_max)),
+                    Nodal::Slip => Ok(round_off.length(record.slip)),
                     Nodal::Mode | Nodal::Next | Nodal::Reason => Err(Unknown::NoNumber),
                 }
             }
@@ -166,17 +165,7 @@ impl LessonQuantity {
                 let record = look.record(*slave)?;
                 Ok(report::reason(&record.decision, record.t_max != 0.0))
             }
-            LessonQuantity::Of(nodal, _) => {
-                let size = match nodal {
-                    Nodal::Gap | Nodal::Slip => look.model.length,
-                    _ => look.event()?.before.scale,
-                };
-                let value = self.number(look)?;
-                // What only rounding keeps from zero would puzzle a reader.
-                let zero = value.abs() <= ROUNDING * size;
-                Ok(four(if zero { 0.0 } else { value }))
-            }
-            LessonQuantity::Solve(_) => self.number(look).map(four),
+            LessonQuantity::Of(..) | LessonQuantity::Solve(_) => self.number(look).map(four),
         }
     }
 }

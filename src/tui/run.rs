@@ -226,8 +226,8 @@ impl Debugger {
     /// A debugger on a session, or one that offers scenes.
     pub fn new(theme: Theme, offers: Vec<Offer>, session: Option<Session>) -> Self {
         let mut app = App::new(theme, offers);
-        match session {
-            Some(_) => app.say("s is one minor iteration; ? lists the keys"),
+        match &session {
+            Some(session) => greet(&mut app, session),
             None => app.choose(),
         }
         Debugger {
@@ -511,11 +511,11 @@ impl Debugger {
         if self.keeps {
             session.keep_at_default_place();
         }
-        self.session = Some(session);
         self.queue.clear();
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
-        self.app.say("s is one minor iteration; ? lists the keys");
+        greet(&mut self.app, &session);
+        self.session = Some(session);
     }
 
     /// Begins a lesson at the start of its scene.
@@ -603,5 +603,18 @@ impl Debugger {
             std::thread::sleep(Duration::from_micros(500));
             self.advance();
         }
+    }
+}
+
+/// What is said when a scene opens: what is doubtful about its start, or else which key goes on.
+fn greet(app: &mut App, session: &Session) {
+    match session.doubts() {
+        [] => app.say("s is one minor iteration; ? lists the keys"),
+        [doubt] => app.complain(doubt),
+        [doubt, others @ ..] => app.complain(format!(
+            "{doubt} (and {} more: stickslip check {} tells all)",
+            others.len(),
+            session.scene_name()
+        )),
     }
 }

@@ -4,6 +4,7 @@ use crate::action::Context;
 use crate::contact::record::{ContactRecord, Forced};
 use crate::explain::examination::Examination;
 use crate::explain::influence::Push;
+use crate::explain::round_off::RoundOff;
 use crate::history::frame::Frame;
 use crate::history::strip::Strip;
 use crate::history::tree::Tree;
@@ -33,6 +34,8 @@ pub struct View<'a> {
     pub tree: Option<&'a Tree>,
     /// What is found out beside the session; `None` in drawings of it alone.
     pub background: Option<&'a Background>,
+    /// The start gaps in words; empty where there are none.
+    pub start_gaps: &'a str,
     /// Which of them is shown.
     pub cursor: usize,
     /// Whether the solver is at work.
@@ -52,6 +55,7 @@ impl<'a> View<'a> {
             strips: session.strips(),
             tree: Some(session.tree()),
             background: Some(session.background()),
+            start_gaps: session.start_gaps(),
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.residual_history(),
@@ -102,6 +106,13 @@ impl<'a> View<'a> {
     /// What that minor iteration found at a slave node.
     pub fn record(&self, slave: usize) -> Option<&'a ContactRecord> {
         self.event()?.nodes.get(slave)
+    }
+
+    /// Which of the shown numbers are round-off; none at the start.
+    pub fn round_off(&self) -> RoundOff {
+        self.event().map_or(RoundOff::default(), |event| {
+            RoundOff::of(self.model, &event.before)
+        })
     }
 
     /// Name of a slave node.

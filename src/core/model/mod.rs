@@ -25,8 +25,8 @@ pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, least};
 pub use mesh::ElementKind;
 pub use settings::{
-    AtCycle, AtLimit, BoundUpdate, Geometry, ResidualMethod, Settings, SlipCount, Solver, Sticking,
-    Strategy, Ties, Touch,
+    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, ResidualMethod, Settings, SlipCount,
+    Solver, Sticking, Strategy, Ties, Touch,
 };
 
 /// A checked scene.
@@ -124,6 +124,15 @@ impl Model {
         match self.dofs.count.get(node) {
             Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
             _ => at,
+        }
+    }
+
+    /// What part of the overlaps that are closed over the first leg of the path ([`Contact::overlap`]) is left at a load
+    /// factor on a leg.
+    pub fn unclosed(&self, leg: usize, load_factor: f64) -> f64 {
+        match self.path.as_slice() {
+            [from, to, ..] if leg == 0 => ((to - load_factor) / (to - from)).clamp(0.0, 1.0),
+            _ => 0.0,
         }
     }
 

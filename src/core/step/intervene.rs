@@ -58,6 +58,11 @@ pub enum Refusal {
     /// A friction out of bounds.
     #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
     Friction,
+    /// Gaps of the start are long past.
+    #[error(
+        "initial_gaps and adjust_gap are settled when a scene is opened: set them in its file, or with --set"
+    )]
+    StartGaps,
     /// A limit of no iterations.
     #[error("limits of iterations are at least 1")]
     Limits,
@@ -187,6 +192,10 @@ impl State {
     fn set(&mut self, model: &Model, settings: &Settings) -> Result<(), Refusal> {
         if settings.minors == 0 || settings.majors == 0 {
             return Err(Refusal::Limits);
+        }
+        let gaps = |settings: &Settings| (settings.initial_gaps, settings.adjust_gap);
+        if gaps(settings) != gaps(&self.controls.settings) {
+            return Err(Refusal::StartGaps);
         }
         if settings.solver != self.controls.settings.solver
             && let Some(why) = Estimate::of(model).too_large(settings.solver)

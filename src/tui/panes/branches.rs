@@ -176,6 +176,7 @@ fn comparison(
         theme.faint,
         of(&|side| format!("{:.1e}", side.residual)),
     ));
+    let round_off = view.round_off();
     for slave in 0..view.model.contacts.len() {
         let [a, b] = [&sides[0].nodes[slave], &sides[1].nodes[slave]];
         let style = if a.next == b.next {
@@ -185,7 +186,9 @@ fn comparison(
         };
         let cell = |node: &compare::NodeSide| {
             let numbers = match node.forces {
-                Some([f_n, f_t]) => number::cell(f_n, 12) + &number::cell(f_t, 12),
+                Some(forces) => forces
+                    .map(|force| number::cell(round_off.force(force), 12))
+                    .concat(),
                 None => String::new(),
             };
             format!("{:<8}{numbers}", theme::word(node.next))

@@ -4,6 +4,7 @@ use crate::action::{Filter, Sort};
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::table2::Tested;
 use crate::explain::number;
+use crate::explain::round_off::RoundOff;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
@@ -111,6 +112,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .unwrap_or(0);
     let columns = Columns::fit(inner.width as usize, longest.clamp(4, 20));
     let rows = (inner.height as usize).saturating_sub(1);
+    let round_off = view.round_off();
     let top = first_row(at, rows, order.len());
     let mut lines = vec![headings(&columns, app)];
     lines.extend(
@@ -118,7 +120,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .iter()
             .skip(top)
             .take(rows)
-            .map(|&slave| row(slave, slave == selected, &columns, app, view)),
+            .map(|&slave| row(slave, slave == selected, &columns, &round_off, app, view)),
     );
     paint::lines(buffer, inner, &lines);
 }
@@ -187,6 +189,7 @@ fn row<'a>(
     slave: usize,
     selected: bool,
     columns: &Columns,
+    round_off: &RoundOff,
     app: &App,
     view: &View<'a>,
 ) -> Line<'a> {
@@ -212,7 +215,7 @@ fn row<'a>(
     spans.extend(modes(slave, changed, columns, app, view));
     spans.push(Span::raw(" "));
     if let Some(record) = record {
-        spans.extend(numbers(record, columns, app));
+        spans.extend(numbers(record, round_off, columns, app));
     }
     Line::from(spans)
 }
@@ -275,20 +278,37 @@ fn modes(
     ]
 }
 
-fn numbers(record: &ContactRecord, columns: &Columns, app: &App) -> Vec<Span<'static>> {
+fn numbers(
+    record: &ContactRecord,
+    round_off: &RoundOff,
+    columns: &Columns,
+    app: &App,
+) -> Vec<Span<'static>> {
+    // What changed the mode is shown as it is, however small.
+    let decided = |tested: Tested| {
+        let mut tests = record.decision.tests.iter().flatten();
+        record.decision.changes() && tests.any(|test| test.tested == tested)
+    };
     let cell = |value| number::cell(value, columns.number);
-    let ratio = format!(
-        "{:<width$}",
-        number::ratio(record.f_t, record.t_max),
-        width = columns.ratio
-    );
+    let force = |value: f64, tested: Tested| match decided(tested) {
+        true => cell(value),
+        false => cell(round_off.force(value)),
+    };
+    let length = |value: f64, tested: Tested| match decided(tested) {
+        true => cell(value),
+        false => cell(round_off.length(value)),
+    };
+    let ratio = match decided(Tested::ShearForce) {
+        true => number::ratio(record.f_t, record.t_max),
+        false => round_off.ratio(record.f_t, record.t_max),
+    };
     let texts = [
-        cell(record.gap),
-        cell(record.f_n),
-        cell(record.f_t),
-        cell(record.t_max),
-        ratio,
-        cell(record.slip),
+        length(record.gap, Tested::Gap),
+        force(record.f_n, Tested::NormalForce),
+        force(record.f_t, Tested::ShearForce),
+        force(record.t_max, Tested::ShearForce),
+        format!("{ratio:<width$}", width = columns.ratio),
+        length(record.slip, Tested::Slip),
     ];
     let style = |index: usize| number_style(index, record, app);
     texts

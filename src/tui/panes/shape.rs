@@ -393,7 +393,8 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     let Some(event) = view.event() else {
         return 0.0;
     };
-    let size = |f_n: f64, f_t: f64| f_n.hypot(f_t);
+    let round_off = view.round_off();
+    let size = |f_n: f64, f_t: f64| round_off.force(f_n.hypot(f_t));
     let largest = event
         .nodes
         .iter()
@@ -403,7 +404,8 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     if largest == 0.0 {
         return 0.0;
     }
-    for (slave, node) in view.model.contacts.iter().zip(&event.nodes) {
+    let nodes = view.model.contacts.iter().zip(&event.nodes);
+    for (slave, node) in nodes.filter(|(_, node)| size(node.f_n, node.f_t) > 0.0) {
         let (n, t) = (node.normal, tangent(node.normal));
         let scale = FORCE * window.extent / largest;
         let tip = view.place(slave.node);

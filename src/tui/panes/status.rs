@@ -115,6 +115,15 @@ fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
     Line::from(spans)
 }
 
+/// The start, with the gaps that the scene starts with.
+fn start(view: &View) -> String {
+    let text = "▸ at the start; nothing is solved yet";
+    match view.start_gaps {
+        "" => text.into(),
+        gaps => format!("{text}; start gaps: {gaps}"),
+    }
+}
+
 /// What the shown minor iteration led to, and what the user has done to the solve.
 fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
     let theme = &app.theme;
@@ -140,7 +149,7 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             format!("◇ {}", report::intervention(view.model, intervention)),
             theme.strong,
         ),
-        (None, None) => ("▸ at the start; nothing is solved yet".into(), theme.text),
+        (None, None) => (start(view), theme.text),
         (None, Some(_)) if app.hides_any(view) => {
             ("? solved; what follows is yours to say".into(), theme.text)
         }
