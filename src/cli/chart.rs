@@ -3,8 +3,8 @@
 use super::base::{Error, Exit, NoValue, SetArgs, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
-use super::sink::Sent;
 use crate::explain::number::six;
+use crate::format::kind::{FileKind, mistaken};
 use crate::study::chart_file::{Chart, Truth};
 use crate::study::precision::{self, Cost, Measure, Precision};
 use crate::study::precision_table;
@@ -68,8 +68,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(file) = &args.from {
         let name = file.display().to_string();
         let text = precision_table::open(file).map_err(|e| Error::Usage(e.to_string()))?;
-        let charts = precision_table::read(&name, &text, args.cost, args.target)
-            .map_err(|e| Error::Usage(e.to_string()))?;
+        let charts = precision_table::read(&name, &text, args.cost, args.target);
+        let charts = charts.map_err(|error| {
+            let told = mistaken(&name, &text, FileKind::ChartTable);
+            Error::Usage(told.map_or(error.to_string(), |told| format!("{name}: {told}")))
+        })?;
         let outputs = Outputs::open(&args.out)?;
         return finish(args, outputs, &charts);
     }
@@ -118,7 +121,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 
 /// Writes, draws and tells charts.
 fn finish(args: &Args, outputs: Outputs, charts: &[Precision]) -> Result<Exit, Error> {
-    let sent = outputs.write(
+    outputs.write(
         &precision_table::csv(charts),
         || precision_figure::sheet(charts)?.svg(),
         || precision_figure::sheet(charts)?.png(),
@@ -132,8 +135,8 @@ fn finish(args: &Args, outputs: Outputs, charts: &[Precision]) -> Result<Exit, E
     if left > 0 {
         tell(&format!("interrupted; {left} runs were not done"));
     }
-    Ok(match (sent, left) {
-        (Sent::Well, 0) => Exit::Good,
+    Ok(match left {
+        0 => Exit::Good,
         _ => Exit::Interrupted,
     })
 }

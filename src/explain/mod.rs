@@ -5,7 +5,7 @@
 //! - [`influence`]: who pushed whom; [`core`]: the fewest nodes that still cycle; [`diagnosis`]: why a cycle goes round;
 //!   [`smaller`]: whether a smaller increment has a consistent state, where one has none.
 //! - [`examination`]: all of that at a state; [`remedies`]: every way out, tried.
-//! - [`audit`]: the judge's findings over a history.
+//! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
 pub mod audit;
 pub mod core;
@@ -15,6 +15,7 @@ pub mod influence;
 pub mod judged;
 pub mod names;
 pub mod number;
+pub mod outline;
 pub mod remedies;
 pub mod report;
 pub mod smaller;

@@ -3,7 +3,8 @@
 //! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
 //! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
 //! - [`run`](mod@run): the cases side by side, each on one thread; [`result`]: what one of them came to.
-//! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG.
+//! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG;
+//!   [`bitmap`]: the letters of the latter; [`placing`]: places for labels.
 //!
 //! Stability maps:
 //!
@@ -19,6 +20,7 @@
 //!
 //! Nothing here knows a command line.
 
+pub mod bitmap;
 pub mod builtin;
 pub mod chart_file;
 pub mod csv;
@@ -27,6 +29,7 @@ pub mod log;
 pub mod map;
 pub mod measuring;
 pub mod origin;
+pub mod placing;
 pub mod plan;
 pub mod plot;
 pub mod precision;

@@ -4,6 +4,7 @@ use crate::action::Context;
 use crate::contact::record::{ContactRecord, Forced};
 use crate::explain::examination::Examination;
 use crate::explain::influence::Push;
+use crate::explain::outline;
 use crate::history::frame::Frame;
 use crate::history::strip::Strip;
 use crate::history::tree::Tree;
@@ -150,16 +151,7 @@ impl<'a> View<'a> {
 
     /// Where a node is: its place in the reference shape, displaced.
     pub fn place(&self, node: usize) -> [f64; 2] {
-        let at = self.model.nodes[node].at;
-        let u = &self.frame().state.u;
-        let Some(&first) = self.model.dofs.first.get(node) else {
-            return at;
-        };
-        let moved = |axis: usize| u.get(first + axis).copied().unwrap_or(0.0);
-        match self.model.dofs.count.get(node) {
-            Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
-            _ => at,
-        }
+        outline::place(self.model, &self.frame().state.u, node)
     }
 }
 
