@@ -306,7 +306,10 @@ fn files_to_export_to_must_be_named() {
     );
     assert!(read("export --frozen").is_err());
     assert_eq!(read("core"), Err("usage: core FILE".into()));
-    assert_eq!(read("export!"), Err("usage: export! [--frozen] FILE".into()));
+    assert_eq!(
+        read("export!"),
+        Err("usage: export! [--frozen] FILE".into())
+    );
 }
 
 #[test]

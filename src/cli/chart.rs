@@ -6,7 +6,7 @@ use super::outputs::{OutputArgs, Outputs, aligned};
 use crate::explain::number::six;
 use crate::format::kind::{FileKind, mistaken};
 use crate::study::chart_file::{Chart, Truth};
-use crate::study::precision::{self, Cost, Measure, Precision};
+use crate::study::precision::{self, Cost, Measure, Point, Precision, ROUND_OFF};
 use crate::study::precision_table;
 use crate::study::{Vary, Watch, precision_figure};
 use std::path::{Path, PathBuf};
@@ -34,6 +34,10 @@ pub struct Args {
     over: Vec<Vary>,
     #[command(flatten)]
     set: SetArgs,
+    /// Measures errors by this monitor, whatever it is: a displacement, a contact force; may be repeated
+    /// [default: the chart's own, else all displacements]
+    #[arg(long, value_name = "MONITOR", conflicts_with = "from")]
+    by: Vec<String>,
     /// Names the cheapest run whose error is at most this
     #[arg(long, value_name = "ERROR", value_parser = target)]
     target: Option<f64>,
@@ -81,6 +85,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     for scene in &args.scenes {
         let mut chart = Chart::open(scene, &args.over)?;
         chart.set.extend(args.set.set.iter().cloned());
+        chart.by.clone_from(&args.by);
         match args.reference.as_deref() {
             Some("finest") => chart.truth = Truth::Finest,
             Some(file) => chart.truth = Truth::Table(Path::new(file).to_owned()),
@@ -166,6 +171,7 @@ fn tell_chart(chart: &Precision) {
             .error
             .zip(chart.target)
             .is_some_and(|(error, target)| error <= target);
+        let round_off = if point.is_round_off() { " =" } else { "" };
         table.push(vec![
             format!(
                 "{}{}",
@@ -176,7 +182,7 @@ fn tell_chart(chart: &Precision) {
             point.name.clone(),
             point
                 .error
-                .map_or_else(String::new, |error| format!("{error:.2e}")),
+                .map_or_else(String::new, |error| format!("{error:.2e}{round_off}")),
             six((point.seconds * 1e5).round() / 1e5),
             point.factorizations.to_string(),
             point.majors.to_string(),
@@ -188,6 +194,11 @@ fn tell_chart(chart: &Precision) {
         tell(&line);
     }
     tell("* beaten by no other run in cost and error   + as near as is wanted");
+    if chart.points.iter().any(Point::is_round_off) {
+        tell(&format!(
+            "= round-off: errors below {ROUND_OFF:.1e} are equal"
+        ));
+    }
     for line in chart
         .verdict()
         .into_iter()

@@ -58,7 +58,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let usage = |why: String| Error::Usage(why);
     let kind = export::kind(&args.output).map_err(|e| usage(e.to_string()))?;
     if args.frozen && !kind.may_be_frozen {
-        let told = format!("a .{} file is of no frozen problem; .ron and .dat are", kind.extension);
+        let told = format!(
+            "a .{} file is of no frozen problem; .ron and .dat are",
+            kind.extension
+        );
         return Err(usage(told));
     }
     // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
@@ -110,7 +113,10 @@ fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
         (false, _) => "--set",
         (true, Some(_)) => "--at",
     };
-    Err(Error::Usage(format!("{}: {why}; {given} is for scenes", args.input)))
+    Err(Error::Usage(format!(
+        "{}: {why}; {given} is for scenes",
+        args.input
+    )))
 }
 
 /// A scene, and of a snapshot what was done to it, and how far.
@@ -284,7 +290,9 @@ fn drive(
             Ended::Not(Exit::Interrupted)
         }
         RunEnd::Finished | RunEnd::Spent => match &stepper.state().status {
-            Status::Failed(failure) => Ended::There(failed(scene, stepper, &failure.clone(), false)),
+            Status::Failed(failure) => {
+                Ended::There(failed(scene, stepper, &failure.clone(), false))
+            }
             _ => Ended::There(String::new()),
         },
         RunEnd::Failed(failure) => Ended::There(failed(scene, stepper, &failure, true)),
@@ -297,7 +305,9 @@ fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, told: bool) -> St
     if told {
         let at = names::position(stepper.event().position);
         let name = &scene.name;
-        tell(&format!("{name}: {at}: {words}; this is the state that is exported"));
+        tell(&format!(
+            "{name}: {at}: {words}; this is the state that is exported"
+        ));
     }
     words
 }

@@ -30,7 +30,9 @@ pub fn grouped(command: clap::Command) -> clap::Command {
     for (group, names) in GROUPS {
         text += &format!("{group}:\n");
         for name in names {
-            let about = command.find_subcommand(name).and_then(|own| own.get_about());
+            let about = command
+                .find_subcommand(name)
+                .and_then(|own| own.get_about());
             let about = about.map(ToString::to_string).unwrap_or_default();
             let mut lines = wrapped(&about, WIDTH - width - 4).into_iter();
             let first = lines.next().unwrap_or_default();
@@ -103,7 +105,10 @@ mod tests {
     fn every_subcommand_stands_in_one_group() {
         let command = crate::cli::Cli::command();
         let mut own: Vec<_> = command.get_subcommands().map(|c| c.get_name()).collect();
-        let mut grouped: Vec<_> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
+        let mut grouped: Vec<_> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| names.iter().copied())
+            .collect();
         own.sort_unstable();
         grouped.sort_unstable();
         assert_eq!(own, grouped);
@@ -112,7 +117,11 @@ mod tests {
     #[test]
     fn a_slip_is_told_from_a_scene() {
         assert!(unknown("rnu").unwrap().contains("did you mean \"run\"?"));
-        assert!(unknown("osc-snpa").unwrap().contains("did you mean \"osc-snap\"?"));
+        assert!(
+            unknown("osc-snpa")
+                .unwrap()
+                .contains("did you mean \"osc-snap\"?")
+        );
         assert!(!unknown("zzzzzz").unwrap().contains("did you mean"));
         for known in ["run", "osc-snap", "Cargo.toml", "--set"] {
             assert_eq!(unknown(known), None, "{known}");

@@ -398,7 +398,9 @@ impl Tally<'_> {
         }
         if self.slaves.len() > MOST_SLAVES {
             let more = self.slaves.len() - MOST_SLAVES;
-            tell(&format!("  and {more} slave nodes more; --trace writes all"));
+            tell(&format!(
+                "  and {more} slave nodes more; --trace writes all"
+            ));
         }
     }
 

@@ -59,6 +59,12 @@ impl Bounds {
         high: [f64::NEG_INFINITY; 2],
     };
 
+    /// About the origin, where there is nothing to be seen.
+    pub const UNIT: Bounds = Bounds {
+        low: [-1.0, -1.0],
+        high: [1.0, 1.0],
+    };
+
     /// Grows to hold a point; what is no number is left out.
     pub fn add(&mut self, point: Point) {
         for (axis, x) in point.into_iter().enumerate().filter(|(_, x)| x.is_finite()) {
@@ -80,8 +86,8 @@ impl Bounds {
 }
 
 /// What is to be seen of a scene whose nodes are at `place`: the bodies as they were and as they are, and what of the
-/// surfaces is near. Rounded to coarse steps, so that the picture does not breathe while it is stepped through.
-pub fn bounds(model: &Model, place: &dyn Fn(usize) -> Point) -> Bounds {
+/// surfaces is near. `None` where it has no size.
+pub fn extent(model: &Model, place: &dyn Fn(usize) -> Point) -> Option<Bounds> {
     let mut bodies = Bounds::NOTHING;
     for node in model.bodies.iter().flat_map(|body| &body.nodes) {
         bodies.add(model.nodes[*node].at);
@@ -104,13 +110,16 @@ pub fn bounds(model: &Model, place: &dyn Fn(usize) -> Point) -> Bounds {
             all.add([clamped(0), clamped(1)]);
         }
     }
-    let step = all.diagonal() / 16.0;
-    if !(step > 0.0 && step.is_finite()) {
-        return Bounds {
-            low: [-1.0, -1.0],
-            high: [1.0, 1.0],
-        };
-    }
+    (all.diagonal() > 0.0 && all.diagonal().is_finite()).then_some(all)
+}
+
+/// The same, rounded to coarse steps, so that the picture does not breathe while it is stepped through.
+pub fn bounds(model: &Model, place: &dyn Fn(usize) -> Point) -> Bounds {
+    let all = extent(model, place);
+    let step = all.map_or(0.0, |all| all.diagonal() / 16.0);
+    let Some(all) = all.filter(|_| step > 0.0 && step.is_finite()) else {
+        return Bounds::UNIT;
+    };
     // A power of two is a step that itself seldom changes.
     let step = 2f64.powf(step.log2().ceil());
     let down = |x: f64| (x / step).floor() * step;
@@ -130,7 +139,10 @@ pub fn clip(from: Point, to: Point, low: Point, high: Point) -> Option<(Point, P
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for axis in 0..2 {
         let run = to[axis] - from[axis];
-        for (p, q) in [(-run, from[axis] - low[axis]), (run, high[axis] - from[axis])] {
+        for (p, q) in [
+            (-run, from[axis] - low[axis]),
+            (run, high[axis] - from[axis]),
+        ] {
             match p {
                 0.0 if q < 0.0 => return None,
                 0.0 => {}

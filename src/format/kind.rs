@@ -54,7 +54,11 @@ impl FileKind {
         {
             return Some(FileKind::Table);
         }
-        if first.split_whitespace().next().is_some_and(|word| word.parse::<u32>().is_ok()) {
+        if first
+            .split_whitespace()
+            .next()
+            .is_some_and(|word| word.parse::<u32>().is_ok())
+        {
             return Some(FileKind::Scene);
         }
         FileKind::of_value(text)
@@ -138,16 +142,28 @@ mod tests {
     #[test]
     fn every_kind_is_told_by_its_text() {
         for (text, kind) in [
-            ("(format:1,version:\"0.1.0\",began:1,name:\"a\",scene:(title:\"a\"))\nDone()\n", FileKind::Journal),
-            ("(\n    format: 1,\n    name: \"a\",\n    scene: (title: \"a\"),\n    state: (),\n)", FileKind::Snapshot),
-            ("// Words.\n(title: \"a\", scene: Scene((nodes: [], bodies: [])), steps: [])", FileKind::Lesson),
+            (
+                "(format:1,version:\"0.1.0\",began:1,name:\"a\",scene:(title:\"a\"))\nDone()\n",
+                FileKind::Journal,
+            ),
+            (
+                "(\n    format: 1,\n    name: \"a\",\n    scene: (title: \"a\"),\n    state: (),\n)",
+                FileKind::Snapshot,
+            ),
+            (
+                "// Words.\n(title: \"a\", scene: Scene((nodes: [], bodies: [])), steps: [])",
+                FileKind::Lesson,
+            ),
             ("(title: \"a\", scene: \"b\", vary: [])", FileKind::Study),
             ("(title: \"a\", scenes: [\"b\"])", FileKind::Study),
             ("(scene: \"b\", series: [])", FileKind::Chart),
             ("(title: \"a\", nodes: [], bodies: [])", FileKind::Scene),
             ("Contacts(title: \"a\")", FileKind::Scene),
             ("2\n1\n0\n", FileKind::Scene),
-            ("# words\nscene,series,run,settings,status,error\n", FileKind::ChartTable),
+            (
+                "# words\nscene,series,run,settings,status,error\n",
+                FileKind::ChartTable,
+            ),
             ("increment,load,majors,minors,u_x\n", FileKind::Table),
             ("stickslip 0.1.0 results, abc\n", FileKind::Results),
             ("{\"version\": 2}", FileKind::Cast),

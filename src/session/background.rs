@@ -110,7 +110,9 @@ pub enum NotWritten {
     #[error(transparent)]
     UnknownKind(#[from] UnknownKind),
     /// The kind is made of a journal.
-    #[error("a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is")]
+    #[error(
+        "a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is"
+    )]
     OfJournal,
     /// The file could not be written.
     #[error(transparent)]

@@ -129,7 +129,9 @@ mod tests {
             to: (300.0, 200.0),
         };
         let mut placing = Placing::within(window);
-        let points: Vec<(f64, f64)> = (0..12).map(|k| (20.0 + 3.0 * f64::from(k), 100.0)).collect();
+        let points: Vec<(f64, f64)> = (0..12)
+            .map(|k| (20.0 + 3.0 * f64::from(k), 100.0))
+            .collect();
         for &point in &points {
             placing.take(Patch::about(point, (8.0, 8.0)));
         }
@@ -138,7 +140,11 @@ mod tests {
             let patch = placing.place(point, (40.0, 12.0), 200.0).unwrap();
             assert!(window.holds(&patch));
             assert!(found.iter().all(|other| !other.meets(&patch)), "{patch:?}");
-            assert!(points.iter().all(|p| !Patch::about(*p, (8.0, 8.0)).meets(&patch)));
+            assert!(
+                points
+                    .iter()
+                    .all(|p| !Patch::about(*p, (8.0, 8.0)).meets(&patch))
+            );
             found.push(patch);
         }
         assert_eq!(placing.place((150.0, 100.0), (400.0, 12.0), 1e3), None);

@@ -196,8 +196,8 @@ impl Study {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
-        let mut file: File = parse(name, text)
-            .map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
+        let mut file: File =
+            parse(name, text).map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
         if file.scene.is_some() && !file.scenes.is_empty() {
             let twice = "a study has either scene or scenes";
             return Err(SceneError::whole(name, twice));

@@ -102,7 +102,12 @@ impl Film {
 
     fn line(&mut self, kind: char, text: &str) {
         // Writing to a string does not fail.
-        let _ = writeln!(self.text, "[{:.3}, \"{kind}\", {}]", self.time, quoted(text));
+        let _ = writeln!(
+            self.text,
+            "[{:.3}, \"{kind}\", {}]",
+            self.time,
+            quoted(text)
+        );
     }
 }
 
@@ -112,7 +117,9 @@ fn rows(before: &Buffer, now: &Buffer) -> String {
     let area = now.area;
     for y in area.top()..area.bottom() {
         let cells = |buffer: &Buffer| -> Vec<Cell> {
-            (area.left()..area.right()).map(|x| buffer[(x, y)].clone()).collect()
+            (area.left()..area.right())
+                .map(|x| buffer[(x, y)].clone())
+                .collect()
         };
         let row = cells(now);
         if row == cells(before) {
@@ -150,7 +157,9 @@ fn sgr(cell: &Cell) -> String {
         (Modifier::UNDERLINED, "4"),
         (Modifier::REVERSED, "7"),
     ];
-    let set = weights.iter().filter(|(weight, _)| cell.modifier.contains(*weight));
+    let set = weights
+        .iter()
+        .filter(|(weight, _)| cell.modifier.contains(*weight));
     codes.extend(set.map(|(_, code)| (*code).to_owned()));
     codes.extend(colour(cell.fg, 30));
     codes.extend(colour(cell.bg, 40));

@@ -84,7 +84,9 @@ pub struct UnknownKind {
 }
 
 fn known() -> String {
-    let told = KINDS.iter().map(|k| format!(".{} ({})", k.extension, k.what));
+    let told = KINDS
+        .iter()
+        .map(|k| format!(".{} ({})", k.extension, k.what));
     told.collect::<Vec<_>>().join(", ")
 }
 
@@ -94,7 +96,9 @@ fn known() -> String {
 /// If it ends as none of them does; the message lists them all.
 pub fn kind(file: &Path) -> Result<&'static Kind, UnknownKind> {
     let own = file.extension().unwrap_or_default();
-    let found = KINDS.iter().find(|kind| own.eq_ignore_ascii_case(kind.extension));
+    let found = KINDS
+        .iter()
+        .find(|kind| own.eq_ignore_ascii_case(kind.extension));
     found.ok_or_else(|| UnknownKind {
         file: file.display().to_string(),
     })

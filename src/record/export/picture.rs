@@ -10,7 +10,7 @@ use crate::contact::projection::tangent;
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
 use crate::explain::number::{plain, short};
-use crate::explain::outline::{Bounds, Point, bounds, clip, curve, place};
+use crate::explain::outline::{Bounds, Point, clip, curve, extent, place};
 use crate::model::{BodyKind, Mode, Model};
 use crate::step::event::Outcome;
 use crate::step::state::Status;
@@ -18,15 +18,13 @@ use crate::step::stepper::Stepper;
 use crate::study::origin;
 use crate::study::placing::{Patch, Placing};
 use crate::study::plot::PlotError;
-use crate::study::sheet::{
-    Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
-};
+use crate::study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest};
 
 /// The whole picture's width, and the height of the shape.
 const WIDTH: f64 = 980.0;
 const HIGH: f64 = 400.0;
 /// Part of the window that the shape fills: forces and names need the rest.
-const FILLED: f64 = 0.8;
+const FILLED: f64 = 0.78;
 /// Length of the longest force, and of a normal, in pixels.
 const FORCE: f64 = 86.0;
 const NORMAL: f64 = 13.0;
@@ -95,9 +93,14 @@ fn caption(shown: &Shown) -> String {
     let load = plain(event.load_factor);
     let what = match (&event.outcome, &shown.state.status) {
         (_, Status::Failed(_)) | (Outcome::Failed(_), _) => {
-            format!("the last state reached, the increment failed: {}", shown.ended)
+            format!(
+                "the last state reached, the increment failed: {}",
+                shown.ended
+            )
         }
-        (Outcome::Increment { .. }, Status::Finished) => "accepted, the end of the history".to_owned(),
+        (Outcome::Increment { .. }, Status::Finished) => {
+            "accepted, the end of the history".to_owned()
+        }
         (Outcome::Increment { .. }, _) => "accepted".to_owned(),
         (Outcome::Major { .. } | Outcome::Refused { .. }, _) => "not in equilibrium yet".to_owned(),
         (Outcome::Cut { .. } | Outcome::Leaps { .. }, _) => "the increment begins again".to_owned(),
@@ -108,7 +111,11 @@ fn caption(shown: &Shown) -> String {
         _ if matches!(shown.state.status, Status::Failed(_)) => String::new(),
         ended => format!("; {ended}"),
     };
-    format!("{at}, load {load}: {what}{more}.")
+    let text = format!("{at}, load {load}: {what}{more}");
+    match text.ends_with('…') {
+        true => text,
+        false => text + ".",
+    }
 }
 
 /// What it was made from, and by what.
@@ -119,7 +126,10 @@ fn footer(shown: &Shown) -> Vec<String> {
     }
     let settings = &shown.state.controls.settings;
     let strategy = settings.strategy.name();
-    vec![format!("{from}; strategy {strategy}. {}.", origin::program())]
+    vec![format!(
+        "{from}; strategy {strategy}. {}.",
+        origin::program()
+    )]
 }
 
 /// The map from the scene to the sheet: equal in both directions, y upwards.
@@ -156,7 +166,12 @@ impl Window {
         let mut chains: Vec<Vec<(f64, f64)>> = Vec::new();
         for pair in points.windows(2) {
             let (from, to) = (self.at(pair[0]), self.at(pair[1]));
-            let cut = clip([from.0, from.1], [to.0, to.1], [low.0, low.1], [high.0, high.1]);
+            let cut = clip(
+                [from.0, from.1],
+                [to.0, to.1],
+                [low.0, low.1],
+                [high.0, high.1],
+            );
             let Some((from, to)) = cut else { continue };
             let (from, to) = ((from[0], from[1]), (to[0], to[1]));
             match chains.last_mut() {
@@ -205,19 +220,27 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
         from: (MARGIN, top),
         to: (WIDTH - MARGIN, top + HIGH),
     };
-    let window = Window::new(&bounds(model, &now), patch);
+    let seen = extent(model, &now).unwrap_or(Bounds::UNIT);
+    let window = Window::new(&seen, patch);
     let mut taken = Placing::within(patch);
-    bodies(sheet, &window, model, &now);
+    bodies(sheet, &window, model, &now, &mut taken);
     surfaces(sheet, &window, model, &now, &mut taken);
     gaps(sheet, &window, shown, &now);
-    let largest = forces(sheet, &window, shown, &now, &mut taken);
-    slaves(sheet, &window, shown, &now, rows, &mut taken)?;
+    let marked = radius(&window, model, &now);
+    let largest = forces(sheet, &window, shown, &now, marked, &mut taken);
+    slaves(sheet, &window, shown, &now, rows, marked, &mut taken)?;
     sheet.height = top + HIGH + 0.5 * MARGIN;
     legend(sheet, &window, shown, largest)
 }
 
 /// Elements as they were (dashed) and as they are.
-fn bodies(sheet: &mut Sheet, window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) {
+fn bodies(
+    sheet: &mut Sheet,
+    window: &Window,
+    model: &Model,
+    now: &dyn Fn(usize) -> Point,
+    taken: &mut Placing,
+) {
     let lines = || model.bodies.iter().flat_map(|body| body.kind.lines());
     let before = Pen {
         dashed: true,
@@ -247,6 +270,11 @@ fn bodies(sheet: &mut Sheet, window: &Window, model: &Model, now: &dyn Fn(usize)
     for element in lines() {
         let points: Vec<Point> = element.iter().map(|&node| now(node)).collect();
         stroke(sheet, window, &points, &pen(2.0, DARK));
+        for chain in window.inside(&curve(&points)) {
+            for pair in chain.windows(2) {
+                taken.take_line(pair[0], pair[1]);
+            }
+        }
     }
 }
 
@@ -328,6 +356,7 @@ fn forces(
     window: &Window,
     shown: &Shown,
     now: &dyn Fn(usize) -> Point,
+    marked: f64,
     taken: &mut Placing,
 ) -> f64 {
     let largest = largest(shown);
@@ -342,6 +371,14 @@ fn forces(
         let tail = (tip.0 - along(0), tip.1 + along(1));
         let long = scale * size(found) >= 1.0;
         if long && window.holds(tip) {
+            // The head ends beside the node's marker, which lies above it.
+            let back = (marked + 1.5) / (scale * size(found));
+            let beside = |from: f64, to: f64| to + back * (from - to);
+            let shift = (beside(tail.0, tip.0) - tip.0, beside(tail.1, tip.1) - tip.1);
+            let (tail, tip) = (
+                (tail.0 + shift.0, tail.1 + shift.1),
+                (tip.0 + shift.0, tip.1 + shift.1),
+            );
             sheet.arrow(tail, tip, 2.0, VERMILION);
             taken.take_line(tail, tip);
         }
@@ -356,27 +393,60 @@ fn slaves(
     shown: &Shown,
     now: &dyn Fn(usize) -> Point,
     rows: &[usize],
+    r: f64,
     taken: &mut Placing,
 ) -> Result<(), PlotError> {
     let model = &shown.scene.model;
     let at = |slave: usize| window.at(now(model.contacts[slave].node));
     let slaves = || (0..model.contacts.len()).filter(|s| window.holds(at(*s)));
-    let crowded = model.contacts.len() > 40;
     for slave in slaves() {
-        let r = if crowded { 3.2 } else { 5.0 };
         marker(sheet, at(slave), mode(shown, slave), r);
         taken.take(Patch::about(at(slave), (2.0 * r + 4.0, 2.0 * r + 4.0)));
     }
-    for (row, &slave) in rows.iter().enumerate().filter(|(_, s)| window.holds(at(**s))) {
-        for text in [names::slave(model, slave).to_owned(), format!("({})", row + 1)] {
+    for (row, &slave) in rows
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| window.holds(at(**s)))
+    {
+        for text in [
+            names::slave(model, slave).to_owned(),
+            format!("({})", row + 1),
+        ] {
             let size = (widest([text.as_str()], SMALL)? + 4.0, 1.1 * SMALL);
-            if let Some(patch) = taken.place(at(slave), size, 40.0) {
+            if let Some(patch) = taken.place(at(slave), size, 60.0) {
+                leader(sheet, at(slave), &patch, r);
                 sheet.text(patch.middle(), &text, SMALL, BLACK, Anchor::Middle);
                 break;
             }
         }
     }
     Ok(())
+}
+
+/// How large markers can be without covering each other.
+fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
+    let at: Vec<(f64, f64)> = model
+        .contacts
+        .iter()
+        .map(|c| window.at(now(c.node)))
+        .collect();
+    let apart = at.windows(2).map(|pair| {
+        let (a, b) = (pair[0], pair[1]);
+        (a.0 - b.0).hypot(a.1 - b.1)
+    });
+    let apart = apart.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
+    (0.34 * apart).clamp(2.0, 5.0)
+}
+
+/// A line from a node to a label that does not stand beside it.
+fn leader(sheet: &mut Sheet, at: (f64, f64), patch: &Patch, r: f64) {
+    let near = (
+        at.0.clamp(patch.from.0, patch.to.0),
+        at.1.clamp(patch.from.1, patch.to.1),
+    );
+    if (near.0 - at.0).hypot(near.1 - at.1) > r + 12.0 {
+        sheet.line(&[at, near], 0.6, GREY);
+    }
 }
 
 /// The mode of the shown minor iteration; before the first one that with which the node starts.
@@ -457,9 +527,13 @@ fn round(value: f64) -> f64 {
         return 0.0;
     }
     let power = 10f64.powf(value.log10().floor());
-    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= value);
+    let step = [5.0, 2.0, 1.0]
+        .into_iter()
+        .find(|step| step * power <= value);
     // Written and read, so that it is the number that it says.
-    format!("{:.0e}", step.unwrap_or(1.0) * power).parse().unwrap_or(value)
+    format!("{:.0e}", step.unwrap_or(1.0) * power)
+        .parse()
+        .unwrap_or(value)
 }
 
 /// The numbers of some slave nodes.
@@ -469,7 +543,12 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     };
     let model = &shown.scene.model;
     /// Right ends of the columns of numbers.
-    const COLUMNS: [(&str, f64); 4] = [("gap", 430.0), ("F_n", 560.0), ("F_t", 690.0), ("T_max", 820.0)];
+    const COLUMNS: [(&str, f64); 4] = [
+        ("gap", 430.0),
+        ("F_n", 560.0),
+        ("F_t", 690.0),
+        ("T_max", 820.0),
+    ];
     let mut y = sheet.height + 0.6 * SMALL;
     sheet.text((MARGIN + 40.0, y), "slave node", SMALL, GREY, Anchor::Left);
     sheet.text((MARGIN + 214.0, y), "mode", SMALL, GREY, Anchor::Left);
@@ -482,10 +561,28 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
         };
         y += 1.45 * SMALL;
         let mode = mode(shown, slave);
-        sheet.text((MARGIN + 32.0, y), &format!("({})", row + 1), SMALL, GREY, Anchor::Right);
-        sheet.text((MARGIN + 40.0, y), names::slave(model, slave), SMALL, BLACK, Anchor::Left);
+        sheet.text(
+            (MARGIN + 32.0, y),
+            &format!("({})", row + 1),
+            SMALL,
+            GREY,
+            Anchor::Right,
+        );
+        sheet.text(
+            (MARGIN + 40.0, y),
+            names::slave(model, slave),
+            SMALL,
+            BLACK,
+            Anchor::Left,
+        );
         marker(sheet, (MARGIN + 202.0, y), mode, 4.0);
-        sheet.text((MARGIN + 214.0, y), names::mode(mode), SMALL, BLACK, Anchor::Left);
+        sheet.text(
+            (MARGIN + 214.0, y),
+            names::mode(mode),
+            SMALL,
+            BLACK,
+            Anchor::Left,
+        );
         let forces = [found.f_n, found.f_t, found.t_max];
         let mut values = vec![round_off(found.gap, ROUND_OFF * model.length)];
         values.extend(forces.map(|f| round_off(f, ROUND_OFF * event.before.scale)));

@@ -23,18 +23,27 @@ pub(super) fn colour(mode: Mode) -> Colour {
 }
 
 /// The slave nodes that tell the most, in the order of the scene: those that change in the last minor iterations, then
-/// those that touch, then the others.
+/// those that touch; the others only where there is room for all.
 pub(super) fn chosen(model: &Model, strips: &[Strip], most: usize) -> Vec<usize> {
     let last = last(strips);
     let count = model.contacts.len();
     let rank = |slave: usize| {
         let changes = last.iter().any(|strip| strip.changes(slave));
-        let touches = last.last().is_some_and(|strip| strip.before(slave) != Mode::Free);
+        let touches = last
+            .last()
+            .is_some_and(|strip| strip.before(slave) != Mode::Free);
         (!changes, !touches, slave)
     };
     let mut all: Vec<usize> = (0..count).collect();
+    if count <= most {
+        return all;
+    }
     all.sort_by_key(|slave| rank(*slave));
-    all.truncate(most);
+    let telling = all
+        .iter()
+        .filter(|slave| !(rank(**slave).0 && rank(**slave).1))
+        .count();
+    all.truncate(telling.clamp(1, most));
     all.sort_unstable();
     all
 }
@@ -95,7 +104,13 @@ pub(super) fn draw(sheet: &mut Sheet, model: &Model, strips: &[Strip]) -> Result
     let mut free = f64::NEG_INFINITY;
     for (column, strip) in columns.iter().enumerate() {
         let x = left + wide * (column as f64 + 0.5);
-        sheet.text((x, below + 9.0), sign(strip.kind), SMALL, BLACK, Anchor::Middle);
+        sheet.text(
+            (x, below + 9.0),
+            sign(strip.kind),
+            SMALL,
+            BLACK,
+            Anchor::Middle,
+        );
         let begins = column == 0 || columns[column - 1].kind.ends_major();
         let text = format!("{}.{}", strip.position.increment, strip.position.major);
         if begins && x > free {
