@@ -96,10 +96,11 @@ struct Lines<'a> {
 impl Lines<'_> {
     /// Reads the first line; false where there is none yet, or only a part of ours.
     fn head(&mut self) -> Result<bool, LogError> {
+        let path = self.path;
         let foreign = || LogError::Foreign {
-            path: self.path.to_owned(),
+            path: path.to_owned(),
             ours: head(),
-            told: self.mistaken(),
+            told: told(path),
         };
         // Were it longer, it would not be ours.
         let bytes = self.bytes(head().len() + 8)?;
@@ -113,15 +114,6 @@ impl Lines<'_> {
             None if head().as_bytes().starts_with(text) => Ok(false),
             _ => Err(foreign()),
         }
-    }
-
-    /// What the file is, where it is another one of the program.
-    fn mistaken(&self) -> Option<String> {
-        /// Bytes that tell one from another.
-        const READ_TO_TELL: u64 = 1 << 16;
-        let start = input::start(self.path, READ_TO_TELL).ok()?;
-        let name = self.path.display().to_string();
-        mistaken(&name, &String::from_utf8_lossy(&start), FileKind::Results)
     }
 
     /// The next whole line, without its end.
@@ -160,6 +152,15 @@ impl Lines<'_> {
             source,
         })
     }
+}
+
+/// What a file is, where it is another one of the program.
+fn told(path: &Path) -> Option<String> {
+    /// Bytes that tell one from another.
+    const READ_TO_TELL: u64 = 1 << 16;
+    let start = input::start(path, READ_TO_TELL).ok()?;
+    let name = path.display().to_string();
+    mistaken(&name, &String::from_utf8_lossy(&start), FileKind::Results)
 }
 
 /// A line's key and its result; the column where that is no such line, and why.

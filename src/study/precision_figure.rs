@@ -245,8 +245,7 @@ fn labels(
     const REACH: (f64, f64) = (30.0, 160.0);
     const SIZE: f64 = 11.5;
     let mut key: Vec<String> = Vec::new();
-    let drawn = chart.points.iter().filter(|p| p.failed.is_none());
-    for point in drawn {
+    for point in &chart.points {
         let at = frame.place(chart, point);
         let mut words = values(&point.name);
         if point.reference {

@@ -24,7 +24,7 @@ use crate::study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMAL
 const WIDTH: f64 = 980.0;
 const HIGH: f64 = 400.0;
 /// Part of the window that the shape fills: forces and names need the rest.
-const FILLED: f64 = 0.78;
+const FILLED: f64 = 0.86;
 /// Length of the longest force, and of a normal, in pixels.
 const FORCE: f64 = 86.0;
 const NORMAL: f64 = 13.0;
@@ -135,25 +135,32 @@ fn footer(shown: &Shown) -> Vec<String> {
 /// The map from the scene to the sheet: equal in both directions, y upwards.
 struct Window {
     patch: Patch,
+    /// The point of the scene that lies in the middle of the part without room for forces, and that middle.
     middle: Point,
+    centre: (f64, f64),
     /// Pixels per unit of length.
     scale: f64,
 }
 
 impl Window {
-    fn new(bounds: &Bounds, patch: Patch) -> Window {
+    fn new(bounds: &Bounds, patch: Patch, [left, up, right, down]: [f64; 4]) -> Window {
         let [width, height] = bounds.size().map(|side| side.max(1e-300));
-        let wide = (patch.to.0 - patch.from.0) / width;
-        let high = (patch.to.1 - patch.from.1) / height;
+        let inner = Patch {
+            from: (patch.from.0 + left, patch.from.1 + up),
+            to: (patch.to.0 - right, patch.to.1 - down),
+        };
+        let wide = (inner.to.0 - inner.from.0) / width;
+        let high = (inner.to.1 - inner.from.1) / height;
         Window {
             patch,
+            centre: inner.middle(),
             middle: [0, 1].map(|axis| 0.5 * (bounds.low[axis] + bounds.high[axis])),
             scale: FILLED * wide.min(high),
         }
     }
 
     fn at(&self, point: Point) -> (f64, f64) {
-        let (x, y) = self.patch.middle();
+        let (x, y) = self.centre;
         (
             x + (point[0] - self.middle[0]) * self.scale,
             y - (point[1] - self.middle[1]) * self.scale,
@@ -221,7 +228,7 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
         to: (WIDTH - MARGIN, top + HIGH),
     };
     let seen = extent(model, &now).unwrap_or(Bounds::UNIT);
-    let window = Window::new(&seen, patch);
+    let window = Window::new(&seen, patch, room(shown));
     let mut taken = Placing::within(patch);
     bodies(sheet, &window, model, &now, &mut taken);
     surfaces(sheet, &window, model, &now, &mut taken);
@@ -333,6 +340,23 @@ fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -
             sheet.dashed(&[from, to], 1.0, (0, 114, 178));
         }
     }
+}
+
+/// Room that the arrows of forces need beyond the shape: at the left, above, at the right, and below.
+fn room(shown: &Shown) -> [f64; 4] {
+    let (largest, mut room) = (largest(shown), [0.0_f64; 4]);
+    let Some(event) = shown.event.filter(|_| largest > 0.0) else {
+        return room;
+    };
+    for found in event.nodes.iter().filter(|found| size(found).is_finite()) {
+        let (n, t) = (found.normal, tangent(found.normal));
+        let along = |axis: usize| FORCE / largest * (found.f_n * n[axis] + found.f_t * t[axis]);
+        let (x, y) = (along(0), along(1));
+        for (room, reach) in room.iter_mut().zip([x, -y, -x, y]) {
+            *room = room.max(reach);
+        }
+    }
+    room
 }
 
 fn size(found: &ContactRecord) -> f64 {
