@@ -9,7 +9,7 @@ use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::manual;
 use crate::model::Mode;
-use crate::record::command::{Command, To};
+use crate::record::command::{Command, Exported, To};
 use crate::study::Vary;
 use std::path::PathBuf;
 
@@ -90,12 +90,22 @@ impl Entry {
             Verb::Watch => Command::Watch(self.watch(&words, context)?),
             Verb::Plain(command) => command.clone(),
             Verb::Census => Command::Census(several(&words, context)?),
-            Verb::Export { .. } if rest.is_empty() => return Err(self.misused()),
-            Verb::Export { what, overwrite } => Command::Export {
-                what: *what,
-                file: PathBuf::from(rest),
-                overwrite: *overwrite,
-            },
+            Verb::Export { what, overwrite } => {
+                let frozen = match what {
+                    Exported::Shown => rest.strip_prefix("--frozen"),
+                    _ => None,
+                };
+                let frozen = frozen.filter(|file| file.is_empty() || file.starts_with(' '));
+                let file = frozen.map_or(rest, str::trim_start);
+                if file.is_empty() {
+                    return Err(self.misused());
+                }
+                Command::Export {
+                    what: frozen.map_or(*what, |_| Exported::Whole),
+                    file: PathBuf::from(file),
+                    overwrite: *overwrite,
+                }
+            }
             Verb::Snapshot { overwrite: true } if rest.is_empty() => return Err(self.misused()),
             Verb::Snapshot { overwrite } => {
                 let file = (!rest.is_empty()).then(|| PathBuf::from(rest));

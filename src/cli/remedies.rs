@@ -12,6 +12,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Exit codes: 0 some remedy gets the scene past the failure, or nothing fails; 3 none does.")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,

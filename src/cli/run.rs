@@ -2,9 +2,12 @@
 
 use super::base::{Error, Exit, SceneArgs, tell};
 use super::interrupt::Interrupt;
+use super::outputs::aligned;
 use super::sink::{Sent, Sink};
 use super::table;
+use crate::contact::record::ContactRecord;
 use crate::explain::names;
+use crate::explain::number::six;
 use crate::explain::page;
 use crate::explain::report;
 use crate::linear::norms::Norms;
@@ -24,6 +27,8 @@ use std::time::{Duration, Instant};
 
 /// Warnings that are printed one by one; the rest is counted.
 const MOST_WARNINGS: u32 = 10;
+/// Slave nodes whose modes and forces are told at the end.
+const MOST_SLAVES: usize = 40;
 /// Time between two lines of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
 
@@ -106,7 +111,13 @@ impl Outputs {
     fn headers(&mut self, model: &Model) -> Result<Sent, Error> {
         let csv = send(&mut self.csv, || table::csv_header(model))?;
         let trace = send(&mut self.trace, || table::TRACE_HEADER.to_owned())?;
-        Ok(first_closed(csv, trace))
+        Ok(self.after(first_closed(csv, trace)))
+    }
+
+    /// What to do after lines were sent: where nobody reads on and nothing else is written there is nothing to solve for.
+    fn after(&self, sent: Sent) -> Sent {
+        let wanted = self.csv.is_some() || self.trace.is_some() || self.snapshot.is_some();
+        if wanted { Sent::Well } else { sent }
     }
 
     /// Ends the tables; what is left is the snapshot to be written.
@@ -117,8 +128,13 @@ impl Outputs {
     }
 }
 
+/// Sends lines to a table that is wanted. Whose reader has closed the pipe is wanted no more.
 fn send(sink: &mut Option<Sink>, lines: impl FnOnce() -> String) -> Result<Sent, Error> {
-    sink.as_mut().map_or(Ok(Sent::Well), |s| s.send(&lines()))
+    let sent = sink.as_mut().map_or(Ok(Sent::Well), |s| s.send(&lines()))?;
+    if sent == Sent::Closed {
+        *sink = None;
+    }
+    Ok(sent)
 }
 
 fn first_closed(a: Sent, b: Sent) -> Sent {
@@ -158,8 +174,9 @@ struct Tally<'a> {
     /// Norms of the accepted increment whose forces are known the least.
     noisiest: Norms,
     quiet: bool,
-    /// Monitors after the last accepted increment.
+    /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
+    slaves: Vec<ContactRecord>,
 }
 
 /// How a run ended; it is stopped where nobody reads on.
@@ -184,6 +201,7 @@ impl<'a> Run<'a> {
                 noisiest: Norms::default(),
                 quiet,
                 monitors: Vec::new(),
+                slaves: Vec::new(),
             },
         }
     }
@@ -227,11 +245,15 @@ impl<'a> Run<'a> {
         }
         if !args.quiet {
             self.tell_summary(args.csv.is_none());
+            if self.tally.scene.model.monitors.is_empty() {
+                self.tally.tell_slaves();
+            }
         }
         let name = &self.tally.scene.name;
         match end {
             RunEnd::Finished | RunEnd::Spent => Exit::Good,
-            RunEnd::Stopped(Closed) => Exit::Interrupted,
+            // Who closes the pipe has what he wanted.
+            RunEnd::Stopped(Closed) => Exit::Good,
             RunEnd::Interrupted => {
                 let at = names::position(self.stepper.state().next);
                 tell(&format!("{name}: interrupted before {at}"));
@@ -300,17 +322,19 @@ impl Tally<'_> {
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {
-                return Ok(first_closed(sent, self.accept(stepper, outputs)?));
+                let sent = first_closed(sent, self.accept(stepper, outputs)?);
+                return Ok(outputs.after(sent));
             }
             Outcome::Minor | Outcome::Major { .. } => {}
         }
-        Ok(sent)
+        Ok(outputs.after(sent))
     }
 
     fn accept(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
         self.monitors.clear();
         stepper.monitors(&mut self.monitors);
         let event = stepper.event();
+        self.slaves.clone_from(&event.nodes);
         self.warn(event);
         let (minors, monitors) = (self.minors, &self.monitors);
         let sent = send(&mut outputs.csv, || table::csv_row(event, minors, monitors));
@@ -318,6 +342,34 @@ impl Tally<'_> {
         self.majors += u64::from(event.position.major);
         self.minors = 0;
         sent
+    }
+
+    /// Tells modes and forces of the last accepted increment, for a scene that asks for no numbers itself.
+    fn tell_slaves(&self) {
+        if self.slaves.is_empty() {
+            return;
+        }
+        let heads = ["", "node", "mode", "gap", "F_n", "F_t"];
+        let mut table = vec![heads.map(str::to_owned).to_vec()];
+        for (slave, found) in self.slaves.iter().enumerate().take(MOST_SLAVES) {
+            table.push(vec![
+                String::new(),
+                names::slave(&self.scene.model, slave).to_owned(),
+                names::mode(found.decision.before).to_owned(),
+                six(found.gap),
+                six(found.f_n),
+                six(found.f_t),
+            ]);
+        }
+        for line in aligned(&table, 3) {
+            tell(&line);
+        }
+        if self.slaves.len() > MOST_SLAVES {
+            let more = self.slaves.len() - MOST_SLAVES;
+            tell(&format!(
+                "  and {more} slave nodes more; --trace writes all"
+            ));
+        }
     }
 
     /// Tells how the strategy went on where it could not go on as it was.

@@ -8,7 +8,7 @@
 //! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
 //!   where nothing holds it; [`reach`]: up to which load there is an answer.
 //! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
-//! - [`audit`]: the judge's findings over a history.
+//! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
 pub mod advice;
 pub mod attempt;
@@ -22,6 +22,7 @@ pub mod loose;
 pub mod majors;
 pub mod names;
 pub mod number;
+pub mod outline;
 pub mod page;
 pub mod reach;
 pub mod remedies;

@@ -4,7 +4,7 @@
 //!   thread goes over both iterations again and takes the frozen interface problem between them.
 //! - **Findings**: the diagnosis of the cycle that the shown state runs into, or else the census of the frozen problem
 //!   that is solved next from it.
-//! - **Exports**: the frozen problem, or the core of its cycle, written as a scene of its own ([`export`]).
+//! - **Exports**: files of a state: pictures, the frozen problem, the core of its cycle ([`export`]).
 //! - **Remedies**: trials of every way out ([`remedies`]).
 //!
 //! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
@@ -15,14 +15,19 @@ use crate::explain::examination::{Examination, NOT_CONDENSED, Untold, examine_no
 use crate::explain::influence::{Push, Way, pushes};
 use crate::explain::page::page;
 use crate::explain::remedies::{self, Trial};
+use crate::explain::report;
+use crate::history::strip::Strip;
 use crate::model::Model;
 use crate::outside::files::{self, FileError};
 use crate::record::command::Exported;
-use crate::record::export::{self, NoExport, Origin};
+use crate::record::export::shown::{NotMade, Shown};
+use crate::record::export::{self, Kind, MadeOf, NoExport, Origin, UnknownKind};
+use crate::scene::Scene;
+use crate::step::event::Event;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -50,7 +55,7 @@ pub struct Tried {
     pub stopped: bool,
 }
 
-/// A scene to be written of the problem that is frozen at a state.
+/// A file to be made of a state.
 pub struct Export {
     /// What is written.
     pub what: Exported,
@@ -62,6 +67,20 @@ pub struct Export {
     pub origin: Origin,
     /// The shown state.
     pub state: Box<State>,
+    /// What a picture shows of it besides.
+    pub shown: Option<Box<Seen>>,
+}
+
+/// What there is to be seen of a state.
+pub struct Seen {
+    /// The scene that led there.
+    pub scene: Scene,
+    /// The last minor iteration.
+    pub event: Option<Arc<Event>>,
+    /// The last ones.
+    pub strips: Vec<Strip>,
+    /// The state in which the last major iteration began, if it is known.
+    pub last_major: Option<State>,
 }
 
 /// Why no scene was written.
@@ -85,6 +104,17 @@ pub enum NotWritten {
     /// No file can say what the problem says.
     #[error(transparent)]
     NoExport(#[from] NoExport),
+    /// No file of that kind can be made of the state.
+    #[error(transparent)]
+    NotMade(#[from] NotMade),
+    /// The extension is none that is known.
+    #[error(transparent)]
+    UnknownKind(#[from] UnknownKind),
+    /// The kind is made of a journal.
+    #[error(
+        "a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is"
+    )]
+    OfJournal,
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -401,8 +431,22 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
     }
 }
 
-/// Writes a core, or a whole problem, as a scene.
+/// Makes a file of a state.
 fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
+    let bytes = match ask.what {
+        Exported::Core => core_of(stepper, ask)?.into_bytes(),
+        // Any name will do for it, as it always did.
+        Exported::Whole => match export::kind(&ask.file) {
+            Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
+            _ => shown(stepper, ask, export::kind(Path::new("a.ron"))?)?,
+        },
+        Exported::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
+    };
+    Ok(files::write(&ask.file, &bytes, ask.overwrite)?)
+}
+
+/// The scene of the core of the cycle that a state runs into.
+fn core_of(stepper: &mut Stepper, ask: &Export) -> Result<String, NotWritten> {
     if ask.state.status == Status::Finished {
         return Err(NotWritten::Finished);
     }
@@ -410,14 +454,33 @@ fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
     let problem = stepper
         .interface_problem()
         .ok_or(NotWritten::NotCondensed)?;
-    let text = match ask.what {
-        Exported::Whole => export::whole(stepper.model(), &ask.origin, &problem)?,
-        Exported::Core => {
-            let (problem, cycle) =
-                going_round(stepper, &ask.state, &problem)?.ok_or(NotWritten::NoCycle)?;
-            let core = core(&problem).ok_or_else(|| NotWritten::TooMany(too_many(&cycle)))?;
-            export::core(stepper.model(), &ask.origin, &cycle, &core)?
-        }
+    let (problem, cycle) =
+        going_round(stepper, &ask.state, &problem)?.ok_or(NotWritten::NoCycle)?;
+    let core = core(&problem).ok_or_else(|| NotWritten::TooMany(too_many(&cycle)))?;
+    Ok(export::core(stepper.model(), &ask.origin, &cycle, &core)?)
+}
+
+/// A file of a kind.
+fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<u8>, NotWritten> {
+    let MadeOf::State(make) = kind.made_of else {
+        return Err(NotWritten::OfJournal);
     };
-    Ok(files::write(&ask.file, &text, ask.overwrite)?)
+    let Some(seen) = &ask.shown else {
+        return Err(NotWritten::Finished);
+    };
+    let ended = match &ask.state.status {
+        Status::Failed(failure) => report::describe_failure(stepper.model(), failure),
+        _ => String::new(),
+    };
+    let shown = Shown {
+        scene: &seen.scene,
+        origin: &ask.origin,
+        state: &ask.state,
+        event: seen.event.as_deref(),
+        strips: &seen.strips,
+        last_major: seen.last_major.as_ref(),
+        ended,
+        frozen: ask.what == Exported::Whole,
+    };
+    Ok(make(&shown, stepper)?)
 }

@@ -5,6 +5,7 @@ use super::refusal::NoPress;
 use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use crate::action::{self, Action, Context};
 use crate::format::error::{Path, SceneError, at, did_you_mean};
+use crate::format::kind::FileKind;
 use crate::format::{Fault, read};
 use crate::model::{Mode, Model};
 use crate::record::command::Command;
@@ -171,7 +172,8 @@ impl Lesson {
     /// # Errors
     /// As [`Lesson::open`].
     pub fn from_text(name: &str, text: &str) -> Result<Lesson, SceneError> {
-        let spec: LessonSpec = read::value(name, text, "lesson")?;
+        let spec: LessonSpec = read::value(name, text, "lesson")
+            .map_err(|error| read::or_mistaken(error, name, text, FileKind::Lesson))?;
         let scene = scene(name, text, &spec)?;
         let reader = Reader { scene: &scene };
         let steps = reader

@@ -9,6 +9,7 @@
 pub mod app;
 pub mod camera;
 pub mod canvas;
+pub mod cast;
 pub mod chartframe;
 pub mod chartpage;
 pub mod commandline;

@@ -23,3 +23,5 @@ mod panes;
 mod sessions;
 // Journals that cannot be written, what is no file, what would harm the terminal.
 mod session_files;
+// A journal as a film shows the session's screens.
+mod film;

@@ -6,6 +6,7 @@
 use crate::contact::projection::tangent;
 use crate::explain::examination::Examination;
 use crate::explain::number;
+use crate::explain::outline::{Bounds, Point, bounds, curve};
 use crate::fem::lagrange;
 use crate::model::{BodyKind, Solid};
 use crate::tui::app::App;
@@ -24,10 +25,6 @@ use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use unicode_width::UnicodeWidthStr;
 
-type Point = [f64; 2];
-
-/// Straight pieces that an element's curve is drawn with.
-const PIECES: usize = 12;
 /// Length of the longest force, and of a normal, as parts of what is seen.
 const FORCE: f64 = 0.25;
 const NORMAL: f64 = 0.04;
@@ -56,7 +53,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let mut canvas = Canvas::new(field);
     let window = Window::new(
         &canvas,
-        &bounds(view),
+        &bounds(view.model, &|node| view.place(node)),
         &app.camera,
         selected_place(app, view),
     );
@@ -70,79 +67,6 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     slaves(buffer, &canvas, &window, app, view);
     if inner.height > 1 {
         caption(buffer, inner, longest, !tips.is_empty(), app, view);
-    }
-}
-
-/// A rectangle in the scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Bounds {
-    low: Point,
-    high: Point,
-}
-
-impl Bounds {
-    const NOTHING: Bounds = Bounds {
-        low: [f64::INFINITY; 2],
-        high: [f64::NEG_INFINITY; 2],
-    };
-
-    fn add(&mut self, point: Point) {
-        for (axis, x) in point.into_iter().enumerate().filter(|(_, x)| x.is_finite()) {
-            self.low[axis] = self.low[axis].min(x);
-            self.high[axis] = self.high[axis].max(x);
-        }
-    }
-
-    fn size(&self) -> Point {
-        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
-    }
-
-    fn diagonal(&self) -> f64 {
-        let [x, y] = self.size();
-        x.hypot(y)
-    }
-}
-
-/// What is to be seen at zoom 1: the bodies as they were and as they are, and what of the surfaces is near. Rounded
-/// to coarse steps, so that the picture does not breathe while it is stepped through.
-fn bounds(view: &View) -> Bounds {
-    let mut bodies = Bounds::NOTHING;
-    for node in view.model.bodies.iter().flat_map(|body| &body.nodes) {
-        bodies.add(view.model.nodes[*node].at);
-        bodies.add(view.place(*node));
-    }
-    if bodies.diagonal() <= 0.0 || !bodies.diagonal().is_finite() {
-        view.model.nodes.iter().for_each(|node| bodies.add(node.at));
-    }
-    let reach = 0.2 * bodies.diagonal();
-    let mut all = bodies;
-    for node in view
-        .model
-        .surfaces
-        .iter()
-        .flat_map(|surface| surface.elements.iter().flatten())
-    {
-        let at = view.place(*node);
-        let clamped =
-            |axis: usize| at[axis].clamp(bodies.low[axis] - reach, bodies.high[axis] + reach);
-        if bodies.diagonal().is_finite() {
-            all.add([clamped(0), clamped(1)]);
-        }
-    }
-    let step = all.diagonal() / 16.0;
-    if !(step > 0.0 && step.is_finite()) {
-        return Bounds {
-            low: [-1.0, -1.0],
-            high: [1.0, 1.0],
-        };
-    }
-    // A power of two is a step that itself seldom changes.
-    let step = 2f64.powf(step.log2().ceil());
-    let down = |x: f64| (x / step).floor() * step;
-    let up = |x: f64| (x / step).ceil() * step;
-    Bounds {
-        low: all.low.map(down),
-        high: all.high.map(up),
     }
 }
 
@@ -195,26 +119,6 @@ fn selected_place(app: &App, view: &View) -> Option<Point> {
     let slaves = &view.model.contacts;
     let slave = slaves.get(app.selected.min(slaves.len().saturating_sub(1)))?;
     Some(view.place(slave.node)).filter(|place| place.iter().all(|x| x.is_finite()))
-}
-
-/// The Lagrange curve through the nodes of an element.
-fn curve(nodes: &[Point]) -> Vec<Point> {
-    if nodes.len() < 2 || nodes.len() > lagrange::MAX_NODES {
-        return nodes.to_vec();
-    }
-    let pieces = if nodes.len() == 2 { 1 } else { PIECES };
-    (0..=pieces)
-        .map(|piece| {
-            let shape = lagrange::shape(nodes.len(), -1.0 + 2.0 * piece as f64 / pieces as f64);
-            [0, 1].map(|axis| {
-                nodes
-                    .iter()
-                    .zip(shape.n)
-                    .map(|(node, n)| n * node[axis])
-                    .sum()
-            })
-        })
-        .collect()
 }
 
 fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: ratatui::style::Style) {
