@@ -5,6 +5,7 @@ use crate::action::{self, Action, ChartOf, Filter, Misread, Sort, Ui};
 use crate::outside::shown;
 use crate::record::command::Command;
 use crate::teach::{Guess, Tutor};
+use crate::tui::ahead::{Ahead, Typed};
 use crate::tui::camera::Camera;
 use crate::tui::chartpage::ChartPage;
 use crate::tui::commandline::{CommandLine, Purpose};
@@ -85,6 +86,15 @@ pub struct Message {
     pub tone: Tone,
 }
 
+/// What comes on the screen once a file is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Opens {
+    /// Another scene, with a lesson or without.
+    Scene,
+    /// A page over the panes.
+    Page,
+}
+
 /// A scene that the chooser offers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Offer {
@@ -141,8 +151,10 @@ pub struct App {
     pub guess: Option<Guess>,
     /// Increments done of a chart that is being measured, and all of them.
     pub measuring: Option<(u64, u64)>,
-    /// Whether a file is being read.
-    pub loading: bool,
+    /// What a file that is being read is shown as.
+    pub loading: Option<Opens>,
+    /// What is typed and not done yet.
+    pub ahead: Ahead,
     /// Whether the journal was lost.
     pub unkept: bool,
     /// Turns of the spinner.
@@ -185,7 +197,8 @@ impl App {
             lesson: None,
             guess: None,
             measuring: None,
-            loading: false,
+            loading: None,
+            ahead: Ahead::default(),
             unkept: false,
             tick: 0,
             last: None,
@@ -221,6 +234,11 @@ impl App {
         self.guess = None;
     }
 
+    /// Whether nothing lies over the panes but the list of scenes, so that what is read or measured can be shown.
+    pub fn is_open_to_pages(&self) -> bool {
+        matches!(self.overlay, Overlay::None | Overlay::Chooser { .. })
+    }
+
     /// Offers the scenes.
     pub fn choose(&mut self) {
         self.overlay = Overlay::Chooser { at: 0 };
@@ -240,31 +258,51 @@ impl App {
         }
     }
 
-    /// What a key does.
+    /// What a key does; one that must wait does it later ([`App::resume`]).
     pub fn key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
+        let awaited = self.awaits_all();
+        match keys::name(key)?.as_str() {
+            "Ctrl-z" => Some(Effect::Suspend),
+            "Ctrl-l" => Some(Effect::Redraw),
+            "Ctrl-c" => self.interrupt(view),
+            _ if awaited.is_some() || self.ahead.is_any() => {
+                self.ahead.push(Typed::Key(*key), awaited);
+                None
+            }
+            _ => self.take_key(key, view),
+        }
+    }
+
+    /// Does what a key means now. What was said before is over then.
+    pub(super) fn take_key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
         let name = keys::name(key)?;
-        match (&mut self.overlay, name.as_str()) {
-            (_, "Ctrl-z") => Some(Effect::Suspend),
-            (_, "Ctrl-l") => Some(Effect::Redraw),
-            (_, "Ctrl-c") => self.interrupt(view),
-            (Overlay::None, _) => self.pane_key(&name, view),
-            (Overlay::Help { .. }, _) => self.help_key(&name),
-            (Overlay::Manual(reader), _) => {
+        self.say("");
+        match &mut self.overlay {
+            Overlay::None => self.pane_key(&name, view),
+            Overlay::Help { .. } => self.help_key(&name),
+            Overlay::Manual(reader) => {
                 if !reader.key(&name) {
                     self.close(view);
                 }
                 None
             }
-            (Overlay::Chooser { .. }, _) => self.chooser_key(&name, view),
-            (Overlay::Chart(_), _) => self.chart_key(&name, view),
-            (Overlay::Line(_), _) => self.line_key(key, &name, view),
-            (Overlay::Mode, _) => self.mode_key(&name, view),
-            (Overlay::Answer, _) => self.answer_key(&name, view),
+            Overlay::Chooser { .. } => self.chooser_key(&name, view),
+            Overlay::Chart(_) => self.chart_key(&name, view),
+            Overlay::Line(_) => self.line_key(key, &name, view),
+            Overlay::Mode => self.mode_key(&name, view),
+            Overlay::Answer => self.answer_key(&name, view),
         }
     }
 
     /// Text pasted from the terminal goes into a line that is being typed, and nowhere else: keys do things.
     pub fn paste(&mut self, text: &str) {
+        match self.ahead.is_any() {
+            true => self.ahead.push(Typed::Paste(text.into()), None),
+            false => self.take_paste(text),
+        }
+    }
+
+    pub(super) fn take_paste(&mut self, text: &str) {
         if let Overlay::Line(line) = &mut self.overlay {
             line.insert(text);
         }
@@ -277,15 +315,20 @@ impl App {
     /// Ctrl-C: closes what is open and stops a run; never the program.
     fn interrupt(&mut self, view: Option<&View>) -> Option<Effect> {
         self.close(view);
+        let waited = self.ahead.is_any();
+        self.ahead.forget();
         let trying = |view: &View| {
             view.background
                 .is_some_and(|background| background.is_trying())
         };
         let works = view.is_some_and(|view| view.running || trying(view));
-        if works || self.measuring.is_some() || self.loading {
+        if works || self.measuring.is_some() || self.loading.is_some() {
             return Some(Effect::Interrupt);
         }
-        self.say("nothing is running; q quits");
+        self.say(match waited {
+            true => "what was typed ahead is forgotten",
+            false => "nothing is running; q quits",
+        });
         None
     }
 
@@ -324,6 +367,10 @@ impl App {
             &rest.unwrap_or_default(),
             &context(view, self.selected, &[]),
         );
+        if let Some(awaited) = action.as_ref().ok().and_then(|a| self.awaits(a, view)) {
+            self.put_off_key(name, count, awaited);
+            return None;
+        }
         self.attempt(action, count, view)
     }
 
@@ -380,10 +427,8 @@ impl App {
             Ui::Open(scene) => return Some(Effect::Open(scene)),
             Ui::Repeat if self.lesson.as_ref().is_some_and(Tutor::is_read) => self.go_on(view),
             Ui::Repeat if self.focus == Pane::Branches => return self.go_to_branch(view),
-            Ui::Repeat if self.focus == Pane::Remedies => return self.apply(self.remedy, view),
-            Ui::Repeat if self.focus == Pane::Diagnosis => {
-                return self.start_from(self.answer, view);
-            }
+            Ui::Repeat if self.focus == Pane::Remedies => return self.take_remedy(view),
+            Ui::Repeat if self.focus == Pane::Diagnosis => return self.take_answer(view),
             Ui::Repeat => match self.last.clone() {
                 Some(command) => return self.attempt(Ok(Action::Session(command)), None, view),
                 None => self.complain("there is no motion to repeat yet; s is one minor iteration"),

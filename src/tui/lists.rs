@@ -40,38 +40,67 @@ impl App {
         self.look_at(pane);
     }
 
-    /// Shows a page of its own key; one that has nothing to show yet asks for it.
+    /// Shows a page of its own key; one that has nothing to show yet asks for it. A page that is asked for stays open when it
+    /// is asked for again.
     pub(super) fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
-        self.show(match page {
-            Page::Timeline => Pane::Timeline,
-            Page::Diagnosis => Pane::Diagnosis,
-            Page::Branches => Pane::Branches,
-            Page::Remedies => Pane::Remedies,
-        });
-        let view = view?;
         match page {
-            Page::Diagnosis if view.examination().is_none() => {
+            Page::Timeline => self.show(Pane::Timeline),
+            Page::Branches => self.show(Pane::Branches),
+            Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
+            Page::Remedies => return self.ask_page(Pane::Remedies, view),
+        }
+        if page == Page::Branches {
+            let all = summaries(view?.tree?);
+            let order = verdicts::order(&all);
+            let current = order.iter().position(|&(branch, _)| all[branch].is_current);
+            self.branch = current.unwrap_or(0);
+        }
+        None
+    }
+
+    fn ask_page(&mut self, pane: Pane, view: Option<&View>) -> Option<Effect> {
+        let again = self.zoomed && self.focus == pane;
+        self.zoomed = true;
+        self.look_at(pane);
+        let view = view?;
+        let found = match pane {
+            Pane::Diagnosis => view.examination().map(|found| found.is_some()),
+            _ => view.tries_here().then(|| !view.is_trying()),
+        };
+        match (found, pane) {
+            (None, Pane::Diagnosis) => {
                 (self.answer, self.scroll) = (0, 0);
-                self.submit(Command::Census(Vec::new()), Some(view))
+                return self.submit(Command::Census(Vec::new()), Some(view));
             }
-            Page::Branches => {
-                let all = summaries(view.tree?);
-                let order = verdicts::order(&all);
-                let current = order.iter().position(|&(branch, _)| all[branch].is_current);
-                self.branch = current.unwrap_or(0);
-                None
-            }
-            Page::Remedies => {
-                let background = view.background?;
-                let here = (view.tree?.current(), view.cursor);
-                let known = background.tried().is_some_and(|tried| tried.place == here);
-                if known || background.is_trying() || !self.zoomed {
-                    return None;
-                }
+            (None, _) => {
                 self.remedy = 0;
-                self.submit(Command::Remedies, Some(view))
+                return self.submit(Command::Remedies, Some(view));
             }
-            _ => None,
+            (Some(false), Pane::Diagnosis) if again => {
+                self.say("it is being found out; Esc closes this page");
+            }
+            (Some(false), _) if again => {
+                self.say("they are being tried; Ctrl-C stops that, Esc closes this page");
+            }
+            (Some(true), _) if again => self.say("this is all of it; Esc closes this page"),
+            _ => {}
+        }
+        None
+    }
+
+    /// Enter in the diagnosis: starts from the selected state, or looks for it where nobody has.
+    pub(super) fn take_answer(&mut self, view: Option<&View>) -> Option<Effect> {
+        match view.and_then(View::examination) {
+            None => self.ask_page(Pane::Diagnosis, view),
+            Some(_) => self.start_from(self.answer, view),
+        }
+    }
+
+    /// Enter in the remedies: takes the selected one, or tries them where nobody has.
+    pub(super) fn take_remedy(&mut self, view: Option<&View>) -> Option<Effect> {
+        match view.is_some_and(View::has_tried) {
+            false => self.ask_page(Pane::Remedies, view),
+            true => self.apply(self.remedy, view),
         }
     }
 
@@ -114,7 +143,7 @@ impl App {
             self.complain(match background.is_trying() {
                 true => "remedies are still being tried; Ctrl-C stops that".into(),
                 false => format!(
-                    "these were tried from step {step} of b{}; go there, or r twice tries them from here",
+                    "these were tried from step {step} of b{}; go there, or r tries them from here",
                     branch + 1
                 ),
             });

@@ -6,6 +6,7 @@
 //! [`crate::action`], into a changed app and at most one [`Effect`] on the world. Only [`run`](mod@run)
 //! and [`terminal`] touch the world: the real terminal, signals, and the session.
 
+pub mod ahead;
 pub mod app;
 pub mod camera;
 pub mod canvas;

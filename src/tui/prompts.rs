@@ -6,6 +6,7 @@ use crate::model::Mode;
 use crate::record::command::Command;
 use crate::teach::Tutor;
 use crate::teach::tutor::AnswerKind;
+use crate::tui::ahead::Typed;
 use crate::tui::app::{App, Effect, Overlay, PAGE};
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::theme;
@@ -162,8 +163,18 @@ impl App {
         };
         self.history.retain(|old| *old != line);
         self.history.push(line.clone());
+        self.take_line(&line, view)
+    }
+
+    /// Does what a line means now, or lets it wait.
+    pub(super) fn take_line(&mut self, line: &str, view: Option<&View>) -> Option<Effect> {
+        self.say("");
         let scenes = self.scenes();
-        let action = action::parse(&line, &context(view, self.selected, &scenes));
+        let action = action::parse(line, &context(view, self.selected, &scenes));
+        if let Some(awaited) = action.as_ref().ok().and_then(|a| self.awaits(a, view)) {
+            self.ahead.push(Typed::Line(line.into()), Some(awaited));
+            return None;
+        }
         self.attempt(action, None, view)
     }
 

@@ -6,6 +6,7 @@ use crate::tui::layout::{Pane, Places};
 use crate::tui::paint;
 use crate::tui::view::{View, context};
 use ratatui::buffer::Buffer;
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
@@ -42,17 +43,33 @@ fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     if let Some(question) = app.question(view) {
         return vec![Line::styled(format!(" {question}"), theme.key)];
     }
+    if let Some(note) = app.ahead.note() {
+        return wrapped(&note, width, theme.warning);
+    }
     if let Some(count) = app.count {
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
     if let (true, "", Some(tutor)) = (app.zoomed, app.message.text.as_str(), &app.lesson) {
         return vec![Line::styled(format!(" ▶ {}", tutor.todo()), theme.key)];
     }
-    let style = match app.message.tone {
-        Tone::Plain => theme.text,
-        Tone::Error => theme.bad,
-    };
-    paint::wrap(&app.message.text, width.saturating_sub(2))
+    let aside = view.map_or("", |view| view.aside.as_str());
+    let text = app.message.text.as_str();
+    match app.message.tone {
+        Tone::Plain if text.is_empty() => wrapped(aside, width, theme.text),
+        Tone::Plain if aside.is_empty() => wrapped(text, width, theme.text),
+        Tone::Plain => wrapped(&format!("{text}   {aside}"), width, theme.text),
+        Tone::Error => {
+            let mut lines = wrapped(text, width, theme.bad);
+            if !aside.is_empty() {
+                lines.extend(wrapped(aside, width, theme.text));
+            }
+            lines
+        }
+    }
+}
+
+fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+    paint::wrap(text, width.saturating_sub(2))
         .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect()

@@ -37,8 +37,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .is_some_and(|background| background.is_trying());
     let count = tried.trials.len();
     let state = match (trying, tried.all) {
-        (true, Some(all)) => format!("{count} of {all} tried; now: {}", tried.now),
-        (true, None) => "holding a census …".into(),
+        (true, Some(all)) => format!("{count} of {all} tried; Ctrl-C stops; now: {}", tried.now),
+        (true, None) => "holding a census; Ctrl-C stops after it …".into(),
         (false, _) if tried.stopped => format!("stopped after {count}"),
         (false, _) if count == 0 => "the history is done: there is nothing to remedy".into(),
         (false, _) => {
