@@ -222,6 +222,9 @@ fn outlives_the_scene(action: &Action) -> bool {
                 | Ui::Ask(Question::Node | Question::Break | Question::Lesson)
                 | Ui::CommandLine
                 | Ui::Help
+                | Ui::Keys
+                | Ui::Colours(_)
+                | Ui::Mouse(_)
                 | Ui::Manual(_)
                 | Ui::Cancel
                 | Ui::Interrupt

@@ -1,7 +1,7 @@
 //! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
 //! app and yields at most one [`Effect`], which the event loop carries out.
 
-use crate::action::{self, Action, ChartOf, Filter, Misread, Sort, Ui};
+use crate::action::{Action, ChartOf, Colours, Context, Filter, Keymap, Misread, Sort, Ui};
 use crate::outside::shown;
 use crate::record::command::Command;
 use crate::teach::{Guess, Tutor};
@@ -11,10 +11,12 @@ use crate::tui::chartpage::ChartPage;
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
+use crate::tui::panes::help::{Help, Listing};
 use crate::tui::panes::manual;
-use crate::tui::theme::Theme;
+use crate::tui::theme::{self, Theme};
 use crate::tui::view::{View, context};
 use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
 use std::fmt;
 
 /// Nodes that a page key goes past.
@@ -33,6 +35,10 @@ pub enum Effect {
     Lesson(String),
     /// Show a work-precision chart.
     Chart(ChartOf),
+    /// Copy a text to the terminal's clipboard.
+    Copy(String),
+    /// Heed the mouse from now on, or leave it to the terminal.
+    Mouse(bool),
     /// Go back to the shell for a while.
     Suspend,
     /// Draw the whole screen anew.
@@ -46,11 +52,8 @@ pub enum Effect {
 pub enum Overlay {
     /// Nothing lies over the panes.
     None,
-    /// The list of actions, from this line on.
-    Help {
-        /// The first line that is shown, from 0.
-        top: usize,
-    },
+    /// The list of actions, or of keys.
+    Help(Help),
     /// A page of the manual.
     Manual(manual::Reader),
     /// The list of scenes, with one of them selected.
@@ -109,6 +112,14 @@ pub struct Offer {
 pub struct App {
     /// Colours and weights.
     pub theme: Theme,
+    /// Which key does what.
+    pub keymap: Keymap,
+    /// The colours that were chosen, which the environment may overrule.
+    pub colours: Colours,
+    /// Whether the mouse is heeded.
+    pub mouse: bool,
+    /// The screen as it was drawn last.
+    pub area: Rect,
     /// What lies over the panes.
     pub overlay: Overlay,
     /// Pane with the focus.
@@ -163,6 +174,8 @@ pub struct App {
     pub(super) last: Option<Command>,
     /// Lines typed at `:`, oldest first.
     pub(super) history: Vec<String>,
+    /// What `/` looked for last.
+    pub(super) sought: String,
 }
 
 /// Largest count that digits can make.
@@ -173,6 +186,10 @@ impl App {
     pub fn new(theme: Theme, offers: Vec<Offer>) -> Self {
         App {
             theme,
+            keymap: Keymap::default(),
+            colours: Colours::default(),
+            mouse: true,
+            area: Rect::new(0, 0, 80, 24),
             overlay: Overlay::None,
             focus: Pane::Nodes,
             page: Pane::Decision,
@@ -203,6 +220,7 @@ impl App {
             tick: 0,
             last: None,
             history: Vec::new(),
+            sought: String::new(),
         }
     }
 
@@ -279,7 +297,7 @@ impl App {
         self.say("");
         match &mut self.overlay {
             Overlay::None => self.pane_key(&name, view),
-            Overlay::Help { .. } => self.help_key(&name),
+            Overlay::Help(_) => self.help_key(&name, view),
             Overlay::Manual(reader) => {
                 if !reader.key(&name) {
                     self.close(view);
@@ -305,6 +323,31 @@ impl App {
     pub(super) fn take_paste(&mut self, text: &str) {
         if let Overlay::Line(line) = &mut self.overlay {
             line.insert(text);
+        }
+    }
+
+    /// What actions need to know to read their arguments.
+    pub(super) fn context<'a>(
+        &'a self,
+        view: Option<&View<'a>>,
+        scenes: &'a [String],
+    ) -> Context<'a> {
+        Context {
+            keymap: Some(&self.keymap),
+            ..context(view, self.selected, scenes)
+        }
+    }
+
+    /// Other colours, unless the environment wants none.
+    fn colour(&mut self, colours: Option<Colours>) {
+        let overruled = theme::wants_no_colour();
+        if let Some(colours) = colours {
+            self.colours = colours;
+            self.theme = Theme::chosen(colours);
+        }
+        match overruled && self.colours != Colours::None {
+            true => self.complain("NO_COLOR is set in the environment, and wins: no colours"),
+            false => self.say(format!("colours: {}", self.colours.word())),
         }
     }
 
@@ -356,17 +399,14 @@ impl App {
             return None;
         }
         let count = self.count.take();
-        let Some(entry) = action::by_key(name) else {
+        let Some(entry) = self.keymap.by_key(name) else {
             self.complain(format!("{name} does nothing here; ? lists the keys"));
             return None;
         };
         let rest = count
             .filter(|_| entry.takes_count())
             .map(|count| count.to_string());
-        let action = entry.act(
-            &rest.unwrap_or_default(),
-            &context(view, self.selected, &[]),
-        );
+        let action = entry.act(&rest.unwrap_or_default(), &self.context(view, &[]));
         if let Some(awaited) = action.as_ref().ok().and_then(|a| self.awaits(a, view)) {
             self.put_off_key(name, count, awaited);
             return None;
@@ -456,7 +496,18 @@ impl App {
             Ui::Predict(whose) => self.predict(whose, view),
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
-            Ui::Help => self.overlay = Overlay::Help { top: 0 },
+            Ui::Help => self.overlay = Overlay::Help(Help::new(Listing::Actions)),
+            Ui::Keys => self.overlay = Overlay::Help(Help::new(Listing::Keys)),
+            Ui::Copy(what) => return self.copy(what, view),
+            Ui::Colours(colours) => self.colour(colours),
+            Ui::Mouse(on) => {
+                self.mouse = on.unwrap_or(!self.mouse);
+                self.say(match self.mouse {
+                    true => "the mouse selects and scrolls; :mouse off leaves it to the terminal",
+                    false => "the mouse is the terminal's; :mouse on takes it back",
+                });
+                return Some(Effect::Mouse(self.mouse));
+            }
             Ui::Manual(page) => self.overlay = Overlay::Manual(manual::Reader::new(page)),
             Ui::Cancel => {
                 self.zoomed = false;

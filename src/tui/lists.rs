@@ -5,6 +5,7 @@ use crate::history::verdicts::{self, summaries};
 use crate::record::command::{Command, To};
 use crate::tui::app::{App, Effect, PAGE};
 use crate::tui::layout::Pane;
+use crate::tui::screen;
 use crate::tui::view::View;
 
 impl App {
@@ -152,6 +153,43 @@ impl App {
         self.zoomed = false;
         let (label, steps) = (trial.label.clone(), trial.steps.clone());
         self.submit(Command::Follow { label, steps }, view)
+    }
+
+    /// Finds a text in the list with the focus: a branch, a remedy, or else a slave node. No text is the one of before.
+    pub(super) fn seek(&mut self, text: String, view: Option<&View>) -> Option<Effect> {
+        if !text.is_empty() {
+            self.sought = text;
+        }
+        let text = self.sought.to_lowercase();
+        let view = view.filter(|_| !text.is_empty())?;
+        let (names, at): (Vec<String>, _) = match self.focus {
+            Pane::Branches if !screen::is_hidden(Pane::Branches, self, view) => {
+                let all = summaries(view.tree?);
+                let order = verdicts::order(&all);
+                let names = order.iter().map(|&(branch, _)| all[branch].name.clone());
+                (names.collect(), &mut self.branch)
+            }
+            Pane::Remedies if !screen::is_hidden(Pane::Remedies, self, view) => {
+                let tried = view.background.and_then(|background| background.tried());
+                let trials = tried.map_or(&[][..], |tried| &tried.trials);
+                let names = trials.iter().map(|trial| trial.label.clone());
+                (names.collect(), &mut self.remedy)
+            }
+            _ => {
+                let line = format!("node {}", self.sought);
+                self.remember(&line);
+                return self.take_line(&line, Some(view));
+            }
+        };
+        let count = names.len();
+        let found = (1..=count)
+            .map(|k| (*at + k) % count)
+            .find(|&row| names[row].to_lowercase().contains(&text));
+        match found {
+            Some(row) => *at = row,
+            None => self.complain(format!("nothing in this list holds '{}'", self.sought)),
+        }
+        None
     }
 
     pub(super) fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {

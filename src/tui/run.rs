@@ -12,6 +12,7 @@ use crate::study::measuring::Measuring;
 use crate::teach::{Lesson, Tutor};
 use crate::tui::app::{App, Effect, Offer, Opens, Overlay};
 use crate::tui::chartpage::{ChartPage, NoPage};
+use crate::tui::config::Config;
 use crate::tui::keys;
 use crate::tui::layout::Pane;
 use crate::tui::loading::{Loaded, Loading};
@@ -76,7 +77,7 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let mut debugger = Debugger::new(Theme::from_environment(), offers(), session);
+    let mut debugger = configured(Config::open()?, session);
     debugger.keeps = keeps;
     if let Some(told) = told {
         debugger.app.say(told);
@@ -92,14 +93,23 @@ pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let mut debugger = Debugger::new(Theme::from_environment(), offers(), None);
+    let mut debugger = configured(Config::open()?, None);
     debugger.teach(lesson);
     run_on(debugger)
+}
+
+/// A debugger as the user has set it.
+fn configured(config: Config, session: Option<Session>) -> Debugger {
+    let mut debugger = Debugger::new(Theme::chosen(config.colours), offers(), session);
+    let app = &mut debugger.app;
+    (app.keymap, app.colours, app.mouse) = (config.keymap, config.colours, config.mouse);
+    debugger
 }
 
 fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
+        terminal.heed_mouse(debugger.app.mouse)?;
         // The terminal is given back before anything else is said.
         events(&mut debugger, &mut terminal, &signals)
     });
@@ -142,7 +152,8 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             }
         }
         if std::mem::take(&mut changed) {
-            terminal.draw(&debugger.app, debugger.view().as_ref())?;
+            let app = &debugger.app;
+            debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
         }
         let works = debugger.is_busy() || debugger.loading.is_some();
         let wait = if works { BUSY } else { IDLE };
@@ -175,6 +186,8 @@ fn obey(outside: Outside, terminal: &mut Terminal, signals: &Signals) -> io::Res
         Outside::Quit => return Ok(true),
         Outside::Suspend => suspend(terminal, signals)?,
         Outside::Redraw => terminal.forget()?,
+        Outside::Copy(text) => terminal.copy(&text)?,
+        Outside::Mouse(on) => terminal.heed_mouse(on)?,
     }
     Ok(false)
 }
@@ -203,7 +216,7 @@ pub fn offers() -> Vec<Offer> {
 }
 
 /// What only the event loop can do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outside {
     /// Leave.
     Quit,
@@ -211,6 +224,10 @@ pub enum Outside {
     Suspend,
     /// Draw the whole screen anew.
     Redraw,
+    /// Copy a text to the terminal's clipboard.
+    Copy(String),
+    /// Heed the mouse, or leave it to the terminal.
+    Mouse(bool),
 }
 
 /// The debugger without its terminal: keys in, screens out.
@@ -286,6 +303,11 @@ impl Debugger {
                 self.app.paste(text);
                 None
             }
+            Event::Mouse(mouse) if self.app.mouse => {
+                let view = self.session.as_ref().map(View::of);
+                let effect = self.app.mouse(mouse, view.as_ref())?;
+                self.carry_out(effect)
+            }
             _ => None,
         }
     }
@@ -303,6 +325,8 @@ impl Debugger {
             Effect::Quit => return Some(Outside::Quit),
             Effect::Suspend => return Some(Outside::Suspend),
             Effect::Redraw => return Some(Outside::Redraw),
+            Effect::Copy(text) => return Some(Outside::Copy(text)),
+            Effect::Mouse(on) => return Some(Outside::Mouse(on)),
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
             Effect::Open(scene) => self.load(Loading::scene(&scene), Opens::Scene, &scene),

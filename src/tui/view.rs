@@ -199,5 +199,6 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         selected,
         scenes,
         lessons: teach::list(),
+        keymap: None,
     }
 }
