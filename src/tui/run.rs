@@ -298,7 +298,13 @@ impl Debugger {
     /// Takes in what came from the terminal.
     pub fn event(&mut self, event: &Event) -> Option<Outside> {
         match event {
-            Event::Key(key) => self.key(key),
+            Event::Key(key) => {
+                let mut last = None;
+                for key in keys::apart(key) {
+                    last = self.key(&key).or(last);
+                }
+                last
+            }
             Event::Paste(text) => {
                 self.app.paste(text);
                 None

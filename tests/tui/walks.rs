@@ -347,7 +347,7 @@ fn in_a_real_terminal_nothing_of_a_walk_typed_at_once_is_lost() {
             .split_whitespace()
             .map(|name| match name {
                 "Enter" => "\r",
-                "Esc" => "\x1b\x1b",
+                "Esc" => "\x1b",
                 "Up" => "\x1b[A",
                 "Down" => "\x1b[B",
                 "Left" => "\x1b[D",
