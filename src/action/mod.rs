@@ -5,11 +5,13 @@
 //! round. An action that lacks an argument it needs asks for it ([`Ui::Ask`]).
 //!
 //! - [`meaning`]: what an action can be; [`table`]: all of them by name; [`context`]: what their arguments are read against.
+//! - [`keymap`]: which key does which.
 //! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as; [`misread`]: why it means nothing.
 
 pub mod arguments;
 pub mod complete;
 pub mod context;
+pub mod keymap;
 pub mod meaning;
 pub mod misread;
 pub mod table;
@@ -19,6 +21,9 @@ mod tests;
 pub use arguments::{increment, mode, parse};
 pub use complete::complete;
 pub use context::{Context, exact};
-pub use meaning::{Action, ChartOf, Filter, Page, Question, Sort, Step, Ui, Whose};
+pub use keymap::Keymap;
+pub use meaning::{
+    Action, ChartOf, Colours, Copied, Filter, Page, Question, Sort, Step, Ui, Whose,
+};
 pub use misread::Misread;
 pub use table::{ACTIONS, Entry, Group, by_key, by_name, markdown};

@@ -1,6 +1,6 @@
 //! A line being typed at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
 
-use crate::action::{self, Context};
+use crate::action::{self, Context, Entry};
 use crate::outside::shown;
 use crate::tui::theme::Theme;
 use crossterm::event::{Event, KeyEvent};
@@ -154,14 +154,18 @@ impl CommandLine {
             return Line::from(spans.collect::<Vec<_>>());
         }
         let name = self.text().split_whitespace().next();
-        let hint = match (self.purpose, name.map(action::by_name)) {
+        let hint = match (self.purpose, name.map(|name| context.entry(name))) {
             (Purpose::Increment, _) => {
                 "Enter: this increment starts again with it   Esc: leave it".into()
             }
             (Purpose::Answer, _) => "a number; Enter answers   Esc: look again first".into(),
-            (Purpose::Node, _) => "a name or a part of it; Enter goes to the next such node".into(),
+            (Purpose::Node, _) => {
+                "a name or a part of it; Enter goes to the next, Enter alone to the next of before"
+                    .into()
+            }
             (Purpose::Command, Some(Ok(entry))) => {
-                format!("{} {}   {}", entry.name, entry.arguments, entry.help)
+                let keys = keys(entry, context);
+                format!("{} {}   {keys}{}", entry.name, entry.arguments, entry.help)
             }
             (Purpose::Command, Some(Err(_))) => choices(self.text(), context),
             (Purpose::Command, None) => {
@@ -169,6 +173,18 @@ impl CommandLine {
             }
         };
         Line::styled(format!(" {hint}"), theme.faint)
+    }
+}
+
+/// The present keys of an action, where it has any.
+fn keys(entry: &'static Entry, context: &Context) -> String {
+    let keys = match context.keymap {
+        Some(keymap) => keymap.keys(entry).collect::<Vec<_>>().join(" "),
+        None => entry.keys.join(" "),
+    };
+    match keys.is_empty() {
+        true => keys,
+        false => format!("[{keys}]   "),
     }
 }
 

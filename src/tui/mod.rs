@@ -6,6 +6,7 @@
 //! [`crate::action`], into a changed app and at most one [`Effect`] on the world. Only [`run`](mod@run)
 //! and [`terminal`] touch the world: the real terminal, signals, and the session.
 
+pub mod ahead;
 pub mod app;
 pub mod camera;
 pub mod canvas;
@@ -13,17 +14,21 @@ pub mod cast;
 pub mod chartframe;
 pub mod chartpage;
 pub mod commandline;
+pub mod config;
+mod copying;
 pub mod keys;
 pub mod layout;
 mod learning;
 mod lists;
 pub mod loading;
+mod mouse;
 mod order;
 pub mod paint;
 pub mod panes;
 mod prompts;
 pub mod run;
 pub mod screen;
+pub mod search;
 pub mod terminal;
 pub mod theme;
 pub mod view;

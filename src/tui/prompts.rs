@@ -1,16 +1,19 @@
 //! What waits for keys before the panes do: questions, lists, and a line that is typed.
 
-use crate::action::{self, Action, Question};
+use crate::action::{self, Action, Context, Question};
 use crate::explain::number;
 use crate::model::Mode;
 use crate::record::command::Command;
 use crate::teach::Tutor;
 use crate::teach::tutor::AnswerKind;
+use crate::tui::ahead::Typed;
 use crate::tui::app::{App, Effect, Overlay, PAGE};
 use crate::tui::commandline::{CommandLine, Purpose};
+use crate::tui::screen;
 use crate::tui::theme;
 use crate::tui::view::{View, context};
 use crossterm::event::KeyEvent;
+use ratatui::layout::Margin;
 
 impl App {
     pub(super) fn ask(&mut self, question: Question, view: Option<&View>) {
@@ -81,13 +84,15 @@ impl App {
         }
     }
 
-    pub(super) fn help_key(&mut self, name: &str) -> Option<Effect> {
-        let Overlay::Help { top } = &mut self.overlay else {
+    pub(super) fn help_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        let body = screen::body(&screen::arranged(self.area, self, view));
+        // Without the frame.
+        let size = body.inner(Margin::new(1, 1));
+        let Overlay::Help(help) = &mut self.overlay else {
             return None;
         };
-        match name {
-            "Esc" | "q" | "?" | "F1" | "Enter" => self.overlay = Overlay::None,
-            _ => *top = scrolled(*top, name, usize::MAX),
+        if !help.key(name, size, &self.keymap) {
+            self.close(view);
         }
         None
     }
@@ -129,7 +134,10 @@ impl App {
         view: Option<&View>,
     ) -> Option<Effect> {
         let scenes = self.scenes();
-        let context = context(view, self.selected, &scenes);
+        let context = Context {
+            keymap: Some(&self.keymap),
+            ..context(view, self.selected, &scenes)
+        };
         let Overlay::Line(line) = &mut self.overlay else {
             return None;
         };
@@ -153,17 +161,34 @@ impl App {
         };
         let (purpose, text) = (line.purpose, line.text().trim().to_string());
         self.close(view);
+        if purpose == Purpose::Node {
+            return self.seek(text, view);
+        }
         let line = match purpose {
             _ if text.is_empty() => return None,
-            Purpose::Command => text,
+            Purpose::Command | Purpose::Node => text,
             Purpose::Increment => format!("increment {text}"),
-            Purpose::Node => format!("node {text}"),
             Purpose::Answer => format!("answer {text}"),
         };
-        self.history.retain(|old| *old != line);
-        self.history.push(line.clone());
+        self.remember(&line);
+        self.take_line(&line, view)
+    }
+
+    /// Keeps a line, to be recalled.
+    pub(super) fn remember(&mut self, line: &str) {
+        self.history.retain(|old| old != line);
+        self.history.push(line.into());
+    }
+
+    /// Does what a line means now, or lets it wait.
+    pub(super) fn take_line(&mut self, line: &str, view: Option<&View>) -> Option<Effect> {
+        self.say("");
         let scenes = self.scenes();
-        let action = action::parse(&line, &context(view, self.selected, &scenes));
+        let action = action::parse(line, &self.context(view, &scenes));
+        if let Some(awaited) = action.as_ref().ok().and_then(|a| self.awaits(a, view)) {
+            self.ahead.push(Typed::Line(line.into()), Some(awaited));
+            return None;
+        }
         self.attempt(action, None, view)
     }
 

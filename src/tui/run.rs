@@ -4,15 +4,17 @@ use crate::action::ChartOf;
 use crate::explain::report;
 use crate::format::SceneError;
 use crate::outside::shown;
-use crate::record::command::{Command, Unit};
+use crate::record::command::Command;
 use crate::record::journal::{JournalError, Keep};
 use crate::scene::{Scene, builtin};
 use crate::session::{Reply, Session};
 use crate::study::measuring::Measuring;
 use crate::teach::{Lesson, Tutor};
-use crate::tui::app::{App, Effect, Offer, Overlay};
+use crate::tui::app::{App, Effect, Offer, Opens, Overlay};
 use crate::tui::chartpage::{ChartPage, NoPage};
+use crate::tui::config::Config;
 use crate::tui::keys;
+use crate::tui::layout::Pane;
 use crate::tui::loading::{Loaded, Loading};
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
@@ -22,7 +24,7 @@ use signal_hook::consts::SIGHUP;
 use std::collections::VecDeque;
 use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Why the debugger could not start, or had to end.
 #[derive(Debug, thiserror::Error)]
@@ -75,7 +77,7 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let mut debugger = Debugger::new(Theme::from_environment(), offers(), session);
+    let mut debugger = configured(Config::open()?, session);
     debugger.keeps = keeps;
     if let Some(told) = told {
         debugger.app.say(told);
@@ -91,14 +93,23 @@ pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let mut debugger = Debugger::new(Theme::from_environment(), offers(), None);
+    let mut debugger = configured(Config::open()?, None);
     debugger.teach(lesson);
     run_on(debugger)
+}
+
+/// A debugger as the user has set it.
+fn configured(config: Config, session: Option<Session>) -> Debugger {
+    let mut debugger = Debugger::new(Theme::chosen(config.colours), offers(), session);
+    let app = &mut debugger.app;
+    (app.keymap, app.colours, app.mouse) = (config.keymap, config.colours, config.mouse);
+    debugger
 }
 
 fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
+        terminal.heed_mouse(debugger.app.mouse)?;
         // The terminal is given back before anything else is said.
         events(&mut debugger, &mut terminal, &signals)
     });
@@ -134,19 +145,25 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     let mut changed = true;
     while signals.end().is_none() {
         changed |= debugger.advance();
+        while let Some(outside) = debugger.outside.pop_front() {
+            changed = true;
+            if obey(outside, terminal, signals)? {
+                return Ok(());
+            }
+        }
         if std::mem::take(&mut changed) {
-            terminal.draw(&debugger.app, debugger.view().as_ref())?;
+            let app = &debugger.app;
+            debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
         }
         let works = debugger.is_busy() || debugger.loading.is_some();
         let wait = if works { BUSY } else { IDLE };
         let mut ready = event::poll(wait)?;
         while ready {
             changed = true;
-            match debugger.event(&event::read()?) {
-                None => {}
-                Some(Outside::Quit) => return Ok(()),
-                Some(Outside::Suspend) => suspend(terminal, signals)?,
-                Some(Outside::Redraw) => terminal.forget()?,
+            if let Some(outside) = debugger.event(&event::read()?)
+                && obey(outside, terminal, signals)?
+            {
+                return Ok(());
             }
             debugger.breathe();
             ready = event::poll(Duration::ZERO)?;
@@ -161,6 +178,18 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         }
     }
     Ok(())
+}
+
+/// Does what only the event loop can; true for the end.
+fn obey(outside: Outside, terminal: &mut Terminal, signals: &Signals) -> io::Result<bool> {
+    match outside {
+        Outside::Quit => return Ok(true),
+        Outside::Suspend => suspend(terminal, signals)?,
+        Outside::Redraw => terminal.forget()?,
+        Outside::Copy(text) => terminal.copy(&text)?,
+        Outside::Mouse(on) => terminal.heed_mouse(on)?,
+    }
+    Ok(false)
 }
 
 fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
@@ -187,7 +216,7 @@ pub fn offers() -> Vec<Offer> {
 }
 
 /// What only the event loop can do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outside {
     /// Leave.
     Quit,
@@ -195,6 +224,10 @@ pub enum Outside {
     Suspend,
     /// Draw the whole screen anew.
     Redraw,
+    /// Copy a text to the terminal's clipboard.
+    Copy(String),
+    /// Heed the mouse, or leave it to the terminal.
+    Mouse(bool),
 }
 
 /// The debugger without its terminal: keys in, screens out.
@@ -203,14 +236,12 @@ pub struct Debugger {
     pub app: App,
     /// The session; `None` before a scene is chosen.
     pub session: Option<Session>,
-    /// Commands given while the solver was at work on an earlier one.
-    queue: VecDeque<Command>,
-    /// Whether the solver is at work on a run that may never end: nothing queues behind such a run.
-    endless: bool,
+    /// What keys that had to wait ask of the event loop.
+    outside: VecDeque<Outside>,
+    /// When the solver began with what it is at.
+    begun: Instant,
     /// Frames of the session when the screen was last drawn.
     frames: usize,
-    /// Whether remedies were being tried then.
-    trying: bool,
     /// Whether scenes that are opened here get a journal.
     keeps: bool,
     /// A chart that is being measured.
@@ -218,9 +249,6 @@ pub struct Debugger {
     /// A file that is being read.
     loading: Option<Loading>,
 }
-
-/// Most commands that wait; more come only from a key that is held down.
-const WAITING: usize = 16;
 
 impl Debugger {
     /// A debugger on a session, or one that offers scenes.
@@ -233,10 +261,9 @@ impl Debugger {
         Debugger {
             app,
             session,
-            queue: VecDeque::new(),
-            endless: false,
+            outside: VecDeque::new(),
+            begun: Instant::now(),
             frames: 0,
-            trying: false,
             keeps: false,
             measuring: None,
             loading: None,
@@ -271,10 +298,21 @@ impl Debugger {
     /// Takes in what came from the terminal.
     pub fn event(&mut self, event: &Event) -> Option<Outside> {
         match event {
-            Event::Key(key) => self.key(key),
+            Event::Key(key) => {
+                let mut last = None;
+                for key in keys::apart(key) {
+                    last = self.key(&key).or(last);
+                }
+                last
+            }
             Event::Paste(text) => {
                 self.app.paste(text);
                 None
+            }
+            Event::Mouse(mouse) if self.app.mouse => {
+                let view = self.session.as_ref().map(View::of);
+                let effect = self.app.mouse(mouse, view.as_ref())?;
+                self.carry_out(effect)
             }
             _ => None,
         }
@@ -283,34 +321,60 @@ impl Debugger {
     /// Takes in a key.
     pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
         let view = self.session.as_ref().map(View::of);
-        match self.app.key(key, view.as_ref())? {
+        let effect = self.app.key(key, view.as_ref())?;
+        self.carry_out(effect)
+    }
+
+    /// Does what a key asks of the world outside the app, as far as that is not the event loop's.
+    fn carry_out(&mut self, effect: Effect) -> Option<Outside> {
+        match effect {
             Effect::Quit => return Some(Outside::Quit),
             Effect::Suspend => return Some(Outside::Suspend),
             Effect::Redraw => return Some(Outside::Redraw),
+            Effect::Copy(text) => return Some(Outside::Copy(text)),
+            Effect::Mouse(on) => return Some(Outside::Mouse(on)),
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
-            Effect::Open(scene) => self.load(Loading::scene(&scene), &scene),
+            Effect::Open(scene) => self.load(Loading::scene(&scene), Opens::Scene, &scene),
             Effect::Chart(of) => self.chart(of),
-            Effect::Lesson(name) => self.load(Loading::lesson(&name), &name),
+            Effect::Lesson(name) => self.load(Loading::lesson(&name), Opens::Scene, &name),
         }
         None
     }
 
-    fn load(&mut self, loading: Loading, name: &str) {
+    /// Does what waited, as far as it need not wait any longer. Returns whether there was anything.
+    fn resume(&mut self) -> bool {
+        let mut any = false;
+        while !self.is_busy() {
+            let view = self.session.as_ref().map(View::of);
+            let Some(effect) = self.app.resume(view.as_ref()) else {
+                break;
+            };
+            any = true;
+            let outside = effect.and_then(|effect| self.carry_out(effect));
+            if let Some(outside) = outside {
+                self.outside.push_back(outside);
+                break;
+            }
+        }
+        any
+    }
+
+    fn load(&mut self, loading: Loading, opens: Opens, name: &str) {
         self.loading = Some(loading);
-        self.app.loading = true;
+        self.app.loading = Some(opens);
         self.app.say(format!("reading {name}; Ctrl-C gives it up"));
     }
 
-    /// Shows what was read, unless a line is being typed. Returns whether there was anything.
+    /// Shows what was read, once nothing lies over the panes but the list of scenes. Returns whether there was anything.
     fn follow_loading(&mut self) -> bool {
-        if matches!(self.app.overlay, Overlay::Line(_)) {
+        if !self.app.is_open_to_pages() {
             return false;
         }
         let Some(loaded) = self.loading.as_ref().and_then(Loading::result) else {
             return false;
         };
-        (self.loading, self.app.loading) = (None, false);
+        (self.loading, self.app.loading) = (None, None);
         match loaded {
             Loaded::Scene(Ok(session)) => self.open(*session),
             Loaded::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
@@ -341,29 +405,25 @@ impl Debugger {
         }
     }
 
-    /// Waits until the solver has nothing left to do.
+    /// Waits until the solver has nothing left to do, and nothing waits for it.
     pub fn settle(&mut self) {
         loop {
-            while self.loading.is_some() && !matches!(self.app.overlay, Overlay::Line(_)) {
-                std::thread::sleep(Duration::from_millis(1));
-                self.advance();
-            }
-            while self.is_busy() || !self.queue.is_empty() {
+            let moved = self.advance();
+            if self.is_busy() {
                 if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
                     self.tell(reply);
                 }
-                self.advance();
+                continue;
             }
-            self.advance();
-            if self.is_busy() || !self.queue.is_empty() {
+            let open = self.app.is_open_to_pages();
+            // Under another page these would wait for ever.
+            if open && (self.loading.is_some() || self.measuring.is_some()) {
+                std::thread::sleep(Duration::from_millis(1));
                 continue;
             }
             match &mut self.session {
                 Some(session) if session.background().is_busy() => session.wait_for_background(),
-                // Under another page it would wait for ever.
-                _ if self.measuring.is_some() && matches!(self.app.overlay, Overlay::None) => {
-                    std::thread::sleep(QUICK);
-                }
+                _ if moved && self.app.ahead.is_any() => {}
                 _ => return,
             }
         }
@@ -375,30 +435,20 @@ impl Debugger {
     }
 
     fn submit(&mut self, command: Command) {
-        if !self.is_busy() {
-            self.start(command);
-        } else if self.endless || self.queue.len() >= WAITING {
-            self.app.complain("the solver is at work; Ctrl-C stops it");
-        } else {
-            self.queue.push_back(command);
-        }
-    }
-
-    fn start(&mut self, command: Command) {
         let Some(session) = &mut self.session else {
             return;
         };
-        self.endless = matches!(
-            command,
-            Command::Forward {
-                unit: Unit::Run,
-                ..
-            }
-        );
+        self.begun = Instant::now();
+        // The page itself says that it is being looked for.
+        let shown = match command {
+            Command::Census(_) => self.app.focus == Pane::Diagnosis,
+            Command::Remedies => self.app.focus == Pane::Remedies,
+            _ => false,
+        };
         match session.submit(command) {
+            Ok(_) if shown => {}
             Ok(reply) => self.tell(reply),
             Err(message) => {
-                self.queue.clear();
                 if let Some(tutor) = &mut self.app.lesson {
                     tutor.failed();
                 }
@@ -409,9 +459,6 @@ impl Debugger {
 
     /// Says what a command led to, unless the status at the top says the same.
     fn tell(&mut self, Reply(text): Reply) {
-        // However soon the remedies are all tried, that they are being tried is not said any longer then.
-        let background = self.session.as_ref().map(|session| session.background());
-        self.trying |= background.is_some_and(|background| background.is_trying());
         let known = self.session.as_ref().and_then(|session| {
             match (session.is_running(), &session.frame().event) {
                 (true, _) => Some(text.clone()),
@@ -423,26 +470,19 @@ impl Debugger {
         let view = self.session.as_ref().map(View::of);
         let hidden = view.is_some_and(|view| !view.running && self.app.hides_any(&view));
         let known = hidden || known.is_some_and(|known| known == text);
-        let said = if known { String::new() } else { text };
         let idle = self
             .session
             .as_ref()
             .filter(|session| !session.is_running());
-        let aside = idle.map_or(String::new(), Session::aside);
-        let between = if said.is_empty() || aside.is_empty() {
-            ""
-        } else {
-            "   "
-        };
         if let (Some(tutor), Some(session)) = (&mut self.app.lesson, idle) {
             tutor.settled(session.cursor(), session.frame());
         }
-        self.app.say(format!("{said}{between}{aside}"));
+        self.app.say(if known { String::new() } else { text });
     }
 
     fn chart(&mut self, of: ChartOf) {
         let over = match of {
-            ChartOf::File(file) => return self.load(Loading::chart(&file), &file),
+            ChartOf::File(file) => return self.load(Loading::chart(&file), Opens::Page, &file),
             ChartOf::Scene => Vec::new(),
             ChartOf::Settings(over) => over,
         };
@@ -485,14 +525,13 @@ impl Debugger {
     }
 
     fn interrupt(&mut self) {
-        self.app.loading = false;
+        self.app.loading = None;
         if self.loading.take().is_some() {
             return self.app.say("not read");
         }
         if let Some(measuring) = &self.measuring {
             measuring.interrupt();
         }
-        self.queue.clear();
         if let Some(tutor) = &mut self.app.lesson {
             // What the lesson wanted is not done.
             tutor.failed();
@@ -511,7 +550,6 @@ impl Debugger {
         if self.keeps {
             session.keep_at_default_place();
         }
-        self.queue.clear();
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         greet(&mut self.app, &session);
@@ -527,26 +565,29 @@ impl Debugger {
     fn take_lesson(&mut self, lesson: Lesson, session: Session) {
         let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
         self.session = Some(session);
-        self.queue.clear();
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         self.app.lesson = Some(tutor);
         self.app.say("");
     }
 
-    /// Gathers what the solver did and gives it the next command. Returns whether there is something new to draw.
+    /// Gathers what the solver did and does what waited for that. Returns whether there is something new to draw.
     pub fn advance(&mut self) -> bool {
+        let gathered = self.gather();
+        let resumed = self.resume();
+        let idle = !self.is_busy() && !self.app.ahead.is_any();
+        let looked = idle && self.look();
+        gathered | resumed | looked
+    }
+
+    fn gather(&mut self) -> bool {
         let measured = self.follow_loading() | self.follow_chart();
         let Some(session) = &mut self.session else {
             return measured;
         };
         let was_busy = session.is_running();
         self.app.unkept = session.lost_journal().is_some();
-        let mut seen = session.gather_background();
-        let trying = session.background().is_trying();
-        if std::mem::replace(&mut self.trying, trying) && !trying {
-            self.app.say("");
-        }
+        let seen = session.gather_background();
         match session.exported() {
             Some(Ok(Reply(told))) => self.app.say(told),
             Some(Err(why)) => self.app.complain(why),
@@ -572,13 +613,6 @@ impl Debugger {
                 "the solver broke down, please report this: {message}"
             ));
         }
-        if !busy && self.queue.is_empty() {
-            seen |= self.look();
-        }
-        if !busy && let Some(command) = self.queue.pop_front() {
-            self.start(command);
-            return true;
-        }
         measured || seen || said || grown || failed || was_busy != busy
     }
 
@@ -593,13 +627,14 @@ impl Debugger {
         session.background().is_busy() != before
     }
 
-    /// Waits a moment for a quick step, so that keys typed fast are not told to wait. A run to the end is none.
+    /// Waits a moment for what just began, so that keys typed fast are not told to wait.
     fn breathe(&mut self) {
-        let begin = std::time::Instant::now();
+        let entered = Instant::now();
         let quick = |debugger: &Debugger| {
-            debugger.loading.is_some() || debugger.is_busy() && !debugger.endless
+            let solves = debugger.is_busy() && debugger.begun.elapsed() < QUICK;
+            solves || debugger.loading.is_some() && entered.elapsed() < QUICK
         };
-        while quick(self) && begin.elapsed() < QUICK {
+        while quick(self) {
             std::thread::sleep(Duration::from_micros(500));
             self.advance();
         }

@@ -42,6 +42,8 @@ pub struct View<'a> {
     pub running: bool,
     /// Norms by major iteration of the shown increment attempt.
     pub residuals: Vec<(u32, Norms)>,
+    /// The branch, if there are several, and the watches with their values, in a line; empty where there is neither.
+    pub aside: String,
 }
 
 impl<'a> View<'a> {
@@ -59,6 +61,10 @@ impl<'a> View<'a> {
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.residual_history(),
+            aside: match session.is_running() {
+                true => String::new(),
+                false => session.aside(),
+            },
         };
         if view.event().is_none() {
             view.residuals.clear();
@@ -70,6 +76,23 @@ impl<'a> View<'a> {
     pub fn examination(&self) -> Option<Option<&'a Examination>> {
         self.background?
             .examination((self.tree?.current(), self.cursor))
+    }
+
+    /// Whether any remedies were tried, or are being tried.
+    pub fn has_tried(&self) -> bool {
+        self.background.is_some_and(|b| b.tried().is_some())
+    }
+
+    /// Whether remedies are being tried.
+    pub fn is_trying(&self) -> bool {
+        self.background.is_some_and(Background::is_trying)
+    }
+
+    /// Whether the remedies that were tried last, or are being tried, start from here; not those that were stopped.
+    pub fn tries_here(&self) -> bool {
+        let here = self.tree.map(|tree| (tree.current(), self.cursor));
+        let tried = self.background.and_then(Background::tried);
+        tried.is_some_and(|tried| Some(tried.place) == here && !tried.stopped)
     }
 
     /// What pushed a slave node in the shown minor iteration; an inner `None` if that cannot be told.
@@ -178,5 +201,6 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         selected,
         scenes,
         lessons: teach::list(),
+        keymap: None,
     }
 }

@@ -228,6 +228,7 @@ pub fn view<'a>(model: &'a Model, frames: &'a [Frame]) -> View<'a> {
         cursor: frames.len() - 1,
         running: false,
         residuals: residuals(),
+        aside: String::new(),
     }
 }
 

@@ -19,6 +19,10 @@ mod keyboard;
 mod real_scenes;
 // Diagnosis, timeline, branches, remedies and charts, on scenes that do not converge.
 mod panes;
+// Keys, colours and the mouse as the user wants them; what is copied and looked for.
+mod custom;
+// Keys typed ahead of the solver.
+mod walks;
 // The real program: keys in, screens out, the terminal as it was after whatever ends it.
 mod sessions;
 // Journals that cannot be written, what is no file, what would harm the terminal.

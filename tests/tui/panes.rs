@@ -399,8 +399,8 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
 fn screens_at_three_sizes() {
     for (name, keys) in [
         ("timeline", "c Left t"),
-        ("diagnosis", "c d d"),
-        ("remedies", "c r r"),
+        ("diagnosis", "c d z"),
+        ("remedies", "c r z"),
         ("branches", "c r Enter v v Up"),
         ("card", "c e"),
     ] {

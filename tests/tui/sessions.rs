@@ -119,10 +119,10 @@ fn help_opens_scrolls_and_closes() {
     session.type_and_see("?", "Go through the iterations");
     session.type_and_see("G", "closer to switching than the tolerance");
     session.keys(ESC);
-    session.see_picture(FLOOR, "", 120, 40);
+    session.see_picture(FLOOR, "? Esc", 120, 40);
     session.type_and_see("?", "Go through the iterations");
     session.keys("?");
-    session.see_picture(FLOOR, "", 120, 40);
+    session.see_picture(FLOOR, "? ?", 120, 40);
     session.quit();
 }
 
@@ -193,7 +193,7 @@ fn keys_are_answered_while_the_solver_runs_and_ctrl_c_stops_it_alone() {
     session.type_and_see("?", "Go through the iterations");
     session.keys("?");
     session.see_no_more("Go through the iterations");
-    session.type_and_see("s", "the solver is at work; Ctrl-C stops it");
+    session.type_and_see("s", "s waits until the run stops; Ctrl-C interrupts it");
     let now = patiently(|| steps(&session)).unwrap();
     let further = patiently(|| steps(&session).filter(|later| *later > now));
     assert!(further.is_some(), "it stands still\n{}", session.text());

@@ -11,7 +11,7 @@ use crate::tui::paint;
 use crate::tui::theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
@@ -35,10 +35,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let width = usize::from(inner.width);
     let compared = comparison(tree, &all, order.get(at).map_or(0, |o| o.0), app, view);
     let room = usize::from(inner.height);
-    let rows = order.len().min(room.saturating_sub(compared.len()).max(3));
-    let top = at
-        .saturating_sub(rows / 2)
-        .min(order.len().saturating_sub(rows));
+    let (top, rows) = shown(at, order.len(), room.saturating_sub(compared.len()));
     let mut lines: Vec<Line> = order
         .iter()
         .enumerate()
@@ -52,6 +49,26 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
     lines.extend(compared);
     paint::lines(buffer, inner, &lines);
+}
+
+/// The first branch that is shown, and how many are, where there is room for so many.
+fn shown(at: usize, count: usize, room: usize) -> (usize, usize) {
+    let rows = count.min(room.max(3));
+    let top = at.saturating_sub(rows / 2).min(count.saturating_sub(rows));
+    (top, rows)
+}
+
+/// The row of the tree in which a place of the screen is.
+pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    let tree = view.tree?;
+    let all = verdicts::summaries(tree);
+    let selected = app.branch.min(all.len().saturating_sub(1));
+    let order = verdicts::order(&all);
+    let compared = comparison(tree, &all, order.get(selected)?.0, app, view);
+    let room = usize::from(area.height).saturating_sub(2);
+    let (top, rows) = shown(selected, order.len(), room.saturating_sub(compared.len()));
+    let row = usize::from(at.y).checked_sub(usize::from(area.y) + 1)?;
+    (row < rows.min(room)).then_some(top + row)
 }
 
 fn line<'a>(

@@ -4,8 +4,9 @@ use crate::action::{ACTIONS, Entry, Group};
 use crate::tui::app::{App, Overlay, Tone};
 use crate::tui::layout::{Pane, Places};
 use crate::tui::paint;
-use crate::tui::view::{View, context};
+use crate::tui::view::View;
 use ratatui::buffer::Buffer;
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
@@ -42,17 +43,33 @@ fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     if let Some(question) = app.question(view) {
         return vec![Line::styled(format!(" {question}"), theme.key)];
     }
+    if let Some(note) = app.ahead.note() {
+        return wrapped(&note, width, theme.warning);
+    }
     if let Some(count) = app.count {
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
     if let (true, "", Some(tutor)) = (app.zoomed, app.message.text.as_str(), &app.lesson) {
         return vec![Line::styled(format!(" ▶ {}", tutor.todo()), theme.key)];
     }
-    let style = match app.message.tone {
-        Tone::Plain => theme.text,
-        Tone::Error => theme.bad,
-    };
-    paint::wrap(&app.message.text, width.saturating_sub(2))
+    let aside = view.map_or("", |view| view.aside.as_str());
+    let text = app.message.text.as_str();
+    match app.message.tone {
+        Tone::Plain if text.is_empty() => wrapped(aside, width, theme.text),
+        Tone::Plain if aside.is_empty() => wrapped(text, width, theme.text),
+        Tone::Plain => wrapped(&format!("{text}   {aside}"), width, theme.text),
+        Tone::Error => {
+            let mut lines = wrapped(text, width, theme.bad);
+            if !aside.is_empty() {
+                lines.extend(wrapped(aside, width, theme.text));
+            }
+            lines
+        }
+    }
+}
+
+fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+    paint::wrap(text, width.saturating_sub(2))
         .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect()
@@ -69,13 +86,24 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
                     ("↑↓", "scroll"),
                     ("←→", "page"),
                     ("/", "search"),
-                    ("n", "again"),
+                    ("n N", "again"),
                     ("Esc", "back"),
                 ],
                 app,
             ),
         },
-        Overlay::Help { .. } => listed(&[("↑↓", "scroll"), ("Esc", "back")], app),
+        Overlay::Help(help) => match help.search.typed() {
+            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
+            None => listed(
+                &[
+                    ("↑↓", "scroll"),
+                    ("/", "search"),
+                    ("n N", "again"),
+                    ("Esc", "back"),
+                ],
+                app,
+            ),
+        },
         Overlay::Chart(_) => listed(
             &[
                 ("←→", "run"),
@@ -105,7 +133,7 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
         Overlay::Answer => listed(&[("Esc", "look again first")], app),
         Overlay::Line(line) => {
             let scenes: Vec<String> = app.offers.iter().map(|offer| offer.name.clone()).collect();
-            line.hint(&context(view, app.selected, &scenes), &app.theme)
+            line.hint(&app.context(view, &scenes), &app.theme)
         }
     }
 }
@@ -125,29 +153,31 @@ fn hint(key: &str, label: &str, app: &App) -> [Span<'static>; 2] {
 /// As many of the table's labelled actions as fit, in its order; those that must be there are counted first.
 fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
     let teaches = app.lesson.is_some() || app.guess.is_some();
-    let labelled: Vec<(&Entry, String)> = ACTIONS
+    // What has no key any more is left to its name.
+    let key = |entry: &'static Entry| app.keymap.keys(entry).next().map(str::to_owned);
+    let labelled: Vec<(&Entry, String, String)> = ACTIONS
         .iter()
         .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
-        .map(|entry| (entry, label(entry, app, places)))
+        .filter_map(|entry| Some((entry, key(entry)?, label(entry, app, places))))
         .collect();
-    let width = |entry: &Entry, label: &str| entry.keys[0].width() + label.width() + 3;
+    let width = |key: &str, label: &str| key.width() + label.width() + 3;
     let needed = |entry: &Entry| ALWAYS.contains(&entry.name) || entry.group == Group::Learn;
     let mut left = labelled
         .iter()
-        .filter(|(entry, _)| needed(entry))
-        .fold(room, |left, (entry, label)| {
-            left.saturating_sub(width(entry, label))
+        .filter(|(entry, ..)| needed(entry))
+        .fold(room, |left, (_, key, label)| {
+            left.saturating_sub(width(key, label))
         });
     let mut spans = Vec::new();
-    for (entry, label) in &labelled {
-        let width = width(entry, label);
+    for (entry, key, label) in &labelled {
+        let width = width(key, label);
         if !needed(entry) {
             if width > left {
                 continue;
             }
             left -= width;
         }
-        spans.extend(hint(entry.keys[0], label, app));
+        spans.extend(hint(key, label, app));
     }
     Line::from(spans)
 }

@@ -11,7 +11,7 @@ use crate::tui::paint;
 use crate::tui::theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
@@ -123,6 +123,20 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .map(|&slave| row(slave, slave == selected, &columns, &round_off, app, view)),
     );
     paint::lines(buffer, inner, &lines);
+}
+
+/// The slave node in whose row a place of the screen is.
+pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    let order = app.order(view);
+    let count = view.model.contacts.len();
+    let selected = app.selected.min(count.saturating_sub(1));
+    let here = order.iter().position(|slave| *slave == selected);
+    // Border and headings.
+    let rows = usize::from(area.height).saturating_sub(3);
+    let row = usize::from(at.y).checked_sub(usize::from(area.y) + 2)?;
+    let top = first_row(here.unwrap_or(0), rows, order.len());
+    let inside = row < rows && at.x > area.x && at.x + 1 < area.right();
+    order.get(top + row).copied().filter(|_| inside)
 }
 
 /// Heading: which node of how many shown, which those are, and how they are sorted.

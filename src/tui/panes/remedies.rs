@@ -6,12 +6,14 @@ use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
 /// Columns by [`COLUMNS`], the most telling first: a narrow screen shows as many as fit.
 const ORDER: [usize; 10] = [0, 1, 3, 5, 6, 7, 9, 8, 4, 2];
+/// Lines before the first remedy.
+const HEAD: usize = 2;
 /// Least width of the remedies' names.
 const NAME: usize = 26;
 
@@ -37,8 +39,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .is_some_and(|background| background.is_trying());
     let count = tried.trials.len();
     let state = match (trying, tried.all) {
-        (true, Some(all)) => format!("{count} of {all} tried; now: {}", tried.now),
-        (true, None) => "holding a census …".into(),
+        (true, Some(all)) => format!("{count} of {all} tried; Ctrl-C stops; now: {}", tried.now),
+        (true, None) => "holding a census; Ctrl-C stops after it …".into(),
         (false, _) if tried.stopped => format!("stopped after {count}"),
         (false, _) if count == 0 => "the history is done: there is nothing to remedy".into(),
         (false, _) => {
@@ -68,7 +70,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Line::from(head).style(theme.heading),
     ];
     let at = app.remedy.min(count.saturating_sub(1));
-    let room = usize::from(inner.height).saturating_sub(lines.len());
+    let room = usize::from(inner.height).saturating_sub(HEAD);
     let top = (at + 1).saturating_sub(room);
     for (number, (trial, row)) in tried
         .trials
@@ -98,6 +100,16 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         lines.push(Line::from(spans));
     }
     paint::lines(buffer, inner, &lines);
+}
+
+/// The remedy in whose row a place of the screen is.
+pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    let tried = view.background?.tried()?;
+    let selected = app.remedy.min(tried.trials.len().saturating_sub(1));
+    let room = usize::from(area.height).saturating_sub(2 + HEAD);
+    let top = (selected + 1).saturating_sub(room);
+    let row = usize::from(at.y).checked_sub(usize::from(area.y) + 1 + HEAD)?;
+    (row < room && top + row < tried.trials.len()).then_some(top + row)
 }
 
 /// Which columns fit, in the order of [`COLUMNS`], and how wide they are.

@@ -8,7 +8,7 @@ use crate::explain::examination::Examination;
 use crate::explain::number;
 use crate::explain::outline::{Bounds, Point, bounds, curve};
 use crate::fem::lagrange;
-use crate::model::{BodyKind, Solid};
+use crate::model::{BodyKind, Contact, Solid};
 use crate::tui::app::App;
 use crate::tui::camera::Camera;
 use crate::tui::canvas::{Canvas, Dot};
@@ -17,7 +17,7 @@ use crate::tui::paint;
 use crate::tui::theme;
 use crate::tui::view::View;
 use ratatui::buffer::{Buffer, Cell};
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
@@ -46,17 +46,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if inner.is_empty() {
         return;
     }
-    let field = Rect {
-        height: inner.height.saturating_sub(1).max(1),
-        ..inner
-    };
-    let mut canvas = Canvas::new(field);
-    let window = Window::new(
-        &canvas,
-        &bounds(view.model, &|node| view.place(node)),
-        &app.camera,
-        selected_place(app, view),
-    );
+    let (mut canvas, window) = field(inner, app, view);
     bodies(&mut canvas, &window, app, view);
     surfaces(&mut canvas, &window, app, view);
     let longest = forces(&mut canvas, &window, app, view);
@@ -68,6 +58,41 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if inner.height > 1 {
         caption(buffer, inner, longest, !tips.is_empty(), app, view);
     }
+}
+
+/// The canvas inside the frame, and what of the scene is seen on it.
+fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
+    let field = Rect {
+        height: inner.height.saturating_sub(1).max(1),
+        ..inner
+    };
+    let canvas = Canvas::new(field);
+    let towards = selected_place(app, view);
+    let window = Window::new(
+        &canvas,
+        &bounds(view.model, &|node| view.place(node)),
+        &app.camera,
+        towards,
+    );
+    (canvas, window)
+}
+
+/// The slave node nearest to a place of the screen, if one is near.
+pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    // A cell is about twice as high as wide.
+    const NEAR: u32 = 3;
+    let inner = area.inner(Margin::new(1, 1));
+    if inner.is_empty() {
+        return None;
+    }
+    let (canvas, window) = field(inner, app, view);
+    let far = |(slave, contact): (usize, &Contact)| {
+        let (x, y) = canvas.cell(window.dot(view.place(contact.node)))?;
+        let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
+        (far <= NEAR).then_some((far, slave))
+    };
+    let near = view.model.contacts.iter().enumerate().filter_map(far);
+    near.min().map(|(_, slave)| slave)
 }
 
 /// The map from the scene to the dots: equal in both directions, y upwards.
