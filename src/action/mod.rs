@@ -5,11 +5,12 @@
 //! round. An action that lacks an argument it needs asks for it ([`Ui::Ask`]).
 //!
 //! - [`meaning`]: what an action can be; [`table`]: all of them by name; [`context`]: what their arguments are read against.
-//! - [`keymap`]: which key does which.
+//! - [`keymap`]: which key does which; [`config`]: what the user has set; `turns`: what must wait for the solver.
 //! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as; [`misread`]: why it means nothing.
 
 pub mod arguments;
 pub mod complete;
+pub mod config;
 pub mod context;
 pub mod keymap;
 pub mod meaning;
@@ -17,6 +18,7 @@ pub mod misread;
 pub mod table;
 #[cfg(test)]
 mod tests;
+mod turns;
 
 pub use arguments::{increment, mode, parse};
 pub use complete::complete;

@@ -4,6 +4,7 @@
 //! names the command or the test that it comes from.
 
 pub mod render;
+pub mod search;
 
 use crate::format::error::did_you_mean;
 

@@ -39,7 +39,8 @@ impl App {
                 None
             }
             Ok((name, text)) => {
-                self.say(format!("copied {name}: {}", shown::cut(&text, SHOWN)));
+                let shown = shown::cut(&text.replace(['\t', '\n'], " "), SHOWN);
+                self.say(format!("copied {name}: {shown}"));
                 Some(Effect::Copy(text))
             }
             Err(why) => {

@@ -1,6 +1,7 @@
 //! The event loop, and what it loops over: an app, a session, and commands that wait for the solver.
 
 use crate::action::ChartOf;
+use crate::action::config::Config;
 use crate::explain::report;
 use crate::format::SceneError;
 use crate::outside::shown;
@@ -12,7 +13,6 @@ use crate::study::measuring::Measuring;
 use crate::teach::{Lesson, Tutor};
 use crate::tui::app::{App, Effect, Offer, Opens, Overlay};
 use crate::tui::chartpage::{ChartPage, NoPage};
-use crate::tui::config::Config;
 use crate::tui::keys;
 use crate::tui::layout::Pane;
 use crate::tui::loading::{Loaded, Loading};

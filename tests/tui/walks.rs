@@ -21,7 +21,7 @@ const WALKS: [(&str, &str, &str); 4] = [
         FLOOR,
         "s f 2 4 f s s 1 7 f f S N F F i 0 . 0 0 1 Enter f c",
     ),
-    ("README.md", OSCILLATES, "c m s c d r v t"),
+    ("README.md", OSCILLATES, "c m s c d Esc r v t"),
     (
         "src/manual/pages/tour.md",
         OSCILLATES,

@@ -1,10 +1,10 @@
 //! The `?` page: every action with its keys, and what the marks on the screen mean; and the page of the present keys, as the
 //! file has them that changes them.
 
+use crate::action::config;
 use crate::action::{ACTIONS, Group, Keymap};
-use crate::tui::config;
+use crate::manual::search::Search;
 use crate::tui::paint;
-use crate::tui::search::Search;
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -167,11 +167,12 @@ fn keys(theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
     let file = config::folder().map(|folder| folder.join(config::KEYS));
     let file = file.map_or(config::KEYS.into(), |file| file.display().to_string());
     let state = match keymap.is_changed() {
-        true => "changes them",
-        false => "would change them; `:copy keys` copies all of this",
+        true => "as this file changes them; :copy keys copies all of it",
+        false => "in the form of the file that changes them; :copy keys copies all of it",
     };
     let mut lines = vec![
-        Line::styled(format!(" {file} {state}"), theme.faint),
+        Line::styled(format!(" {state}"), theme.faint),
+        Line::styled(format!(" {file}"), theme.faint),
         Line::raw(" {"),
     ];
     for (group, entries) in keymap.listed() {

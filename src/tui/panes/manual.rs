@@ -1,9 +1,9 @@
 //! A page of the manual over the whole screen: scrolled, searched, and turned to the next page.
 
 use crate::manual::render::{self, Line as Shown, Style};
+use crate::manual::search::Search;
 use crate::manual::{PAGES, Page};
 use crate::tui::paint;
-use crate::tui::search::Search;
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -9,7 +9,8 @@
 //! )
 //! ```
 
-use crate::action::{Colours, Keymap};
+use super::keymap::Keymap;
+use super::meaning::Colours;
 use crate::format::SceneError;
 use crate::format::read;
 use crate::outside::input;
