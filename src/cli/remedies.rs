@@ -4,11 +4,13 @@
 use super::base::{Error, Exit, SceneArgs, say, tell};
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
+use crate::outside::shown;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::stepper::Stepper;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use unicode_width::UnicodeWidthStr;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -46,7 +48,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 /// Columns, the first to the left, all others to the right.
 fn table(headings: &[String], rows: &[Vec<String>]) -> String {
     let width = |k: usize| {
-        let cells = rows.iter().map(|row| row[k].chars().count());
+        let cells = rows.iter().map(|row| row[k].width());
         cells.chain([headings[k].len()]).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..headings.len()).map(width).collect();
@@ -54,8 +56,8 @@ fn table(headings: &[String], rows: &[Vec<String>]) -> String {
         let cells = row.iter().zip(&widths).enumerate();
         let cells: Vec<String> = cells
             .map(|(k, (cell, &width))| match k {
-                0 => format!("{cell:<width$}"),
-                _ => format!("{cell:>width$}"),
+                0 => shown::padded(cell, width),
+                _ => shown::padded_before(cell, width),
             })
             .collect();
         cells.join("  ").trim_end().to_owned() + "\n"

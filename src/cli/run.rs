@@ -12,6 +12,7 @@ use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::model::Model;
 use crate::outside::files::Output;
+use crate::outside::shown;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::step::drive::{RunEnd, Until};
@@ -309,7 +310,7 @@ impl<'a> Run<'a> {
             .iter()
             .zip(&self.tally.monitors)
         {
-            tell(&format!("  {:<12} {value:?}", monitor.name));
+            tell(&format!("  {} {value:?}", shown::padded(&monitor.name, 12)));
         }
     }
 }

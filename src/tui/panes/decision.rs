@@ -17,6 +17,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Width of the rows' headings.
 const LABEL: usize = 9;
@@ -404,7 +405,7 @@ fn tests(decision: &Decision, width: usize, theme: &Theme) -> Vec<Line<'static>>
         } else {
             theme.text
         };
-        let used = inequality.chars().count() + margin.chars().count();
+        let used = inequality.width() + margin.width();
         if used < width {
             lines.push(Line::from(vec![
                 Span::styled(inequality, style_left),
