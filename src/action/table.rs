@@ -212,7 +212,8 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "fit", "", &["0"], "", "The whole shape", Verb::Do(Ui::Fit)),
 
     entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "A guided lesson: a file, or a built-in one", Verb::Lesson),
-    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson", Verb::Do(Ui::On)),
+    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson: more of its words, then the next step", Verb::Do(Ui::On)),
+    entry(Group::Learn, "reread", "", &["Backspace"], "", "The lesson's words once more from their beginning, where the screen has no room for all", Verb::Do(Ui::Reread)),
     entry(Group::Learn, "answer", "[WORD]", &["a"], "answer", "Answer the lesson's question, or predict the selected node's next mode", Verb::Answer),
     entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Decisions hide until predicted: any one (selected), every changed one, or off", Verb::Predict),
 
@@ -224,7 +225,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "export", "FILE", &[], "", "Write the frozen interface problem of all nodes as a scene of its own", Verb::Export { what: Exported::Whole, overwrite: false }),
     entry(Group::Program, "export!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Whole, overwrite: true }),
     entry(Group::Program, "journal", "[FILE]", &[], "", "Keep the journal in this new file, with all that was done; or tell where it is", Verb::Journal),
-    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one", Verb::Open),
+    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one; a journal goes on where it was", Verb::Open),
     entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
     entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
     entry(Group::Program, "cancel", "", &["Esc"], "", "Drop a count, close a prompt, unzoom", Verb::Do(Ui::Cancel)),

@@ -15,6 +15,7 @@ use crossterm::terminal::{
 };
 use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
+use ratatui::layout::Rect;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
 use signal_hook::iterator::Handle;
 use signal_hook::{SigId, flag, low_level};
@@ -63,6 +64,15 @@ impl Terminal {
         let drawn = drawn.map(drop);
         execute!(stdout(), EndSynchronizedUpdate)?;
         drawn
+    }
+
+    /// The whole screen.
+    ///
+    /// # Errors
+    /// If the terminal does not tell its size.
+    pub fn area(&self) -> io::Result<Rect> {
+        let size = self.screen.size()?;
+        Ok(Rect::new(0, 0, size.width, size.height))
     }
 
     /// Forgets what is on the screen, so that the next draw is a full one.

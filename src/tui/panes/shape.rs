@@ -38,8 +38,15 @@ const SPACING: f64 = 16.0;
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let inner = paint::frame(buffer, area, "Shape", app.focus == Pane::Shape, theme);
+    if let (Some(longest), 2..) = (picture(buffer, inner, app, view), inner.height) {
+        caption(buffer, inner, longest, app);
+    }
+}
+
+/// Draws the shape alone, but in the last row; returns the longest force, `None` where there is no room.
+pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Option<f64> {
     if inner.is_empty() {
-        return;
+        return None;
     }
     let field = Rect {
         height: inner.height.saturating_sub(1).max(1),
@@ -58,9 +65,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     canvas.render(buffer);
     names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
-    if inner.height > 1 {
-        caption(buffer, inner, longest, app);
-    }
+    Some(longest)
 }
 
 /// A rectangle in the scene.
