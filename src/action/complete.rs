@@ -3,7 +3,8 @@
 use super::arguments::{CONDITIONS, set_paths};
 use super::context::{Context, names};
 use super::meaning::{Colours, Copied, Filter, Sort, Whose};
-use super::table::{ACTIONS, Entry, Verb};
+use super::paths::beginning_with;
+use super::table::{ACTIONS, Entry, Verb, by_name};
 use crate::format::paths;
 use crate::history::tree::Tree;
 use crate::history::watches::WatchQuantity;
@@ -21,15 +22,22 @@ pub fn complete(line: &str, context: &Context) -> Vec<String> {
     let (before, word) = line.split_at(start.map_or(0, |at| at + 1));
     let candidates: Vec<String> = match before.split_whitespace().next() {
         None => ACTIONS.iter().map(|entry| entry.name.to_string()).collect(),
-        Some(name) => context
-            .entry(name)
-            .map_or(Vec::new(), |entry| entry.candidates(before, context)),
+        Some(name) => context.entry(name).map_or(Vec::new(), |entry| {
+            let mut all = entry.candidates(before, context);
+            all.extend(entry.paths(word));
+            all
+        }),
     };
     candidates
         .iter()
         .filter(|c| c.starts_with(word))
         .map(|c| format!("{before}{c}"))
         .collect()
+}
+
+/// Whether what follows an action's name is a path, blanks and all.
+pub fn takes_path(name: &str) -> bool {
+    by_name(name).is_ok_and(|entry| entry.endings().is_some())
 }
 
 /// Whether an action takes nodes apart by commas.
@@ -43,7 +51,24 @@ impl Entry {
         matches!(
             self.verb,
             Verb::Branch(None) | Verb::Compare | Verb::Colours
-        )
+        ) || self.endings().is_some()
+    }
+
+    /// Endings of the files that it takes, any where there are none; `None` if it takes no path.
+    fn endings(&self) -> Option<&'static [&'static str]> {
+        match self.verb {
+            Verb::Open => Some(&["ron", "dat", "journal"]),
+            Verb::Lesson => Some(&["ron"]),
+            Verb::Chart => Some(&["csv"]),
+            Verb::Journal | Verb::Export { .. } | Verb::Snapshot { .. } => Some(&[]),
+            _ => None,
+        }
+    }
+
+    /// Files and folders that its path could go on as.
+    fn paths(&self, word: &str) -> Vec<String> {
+        self.endings()
+            .map_or(Vec::new(), |endings| beginning_with(word, endings))
     }
 
     /// What can stand as the next argument after the text before it.

@@ -70,6 +70,8 @@ pub enum Ui {
     Lesson(String),
     /// On with the lesson.
     On,
+    /// The lesson's words once more from their beginning.
+    Reread,
     /// An answer to the lesson's question, or a prediction.
     Answer(String),
     /// Free mode: whose decisions hide until predicted; none switches it on or off.

@@ -6,7 +6,8 @@
 //!
 //! - [`meaning`]: what an action can be; [`table`]: all of them by name; [`context`]: what their arguments are read against.
 //! - [`keymap`]: which key does which; [`config`]: what the user has set; `turns`: what must wait for the solver.
-//! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as; [`misread`]: why it means nothing.
+//! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as, `paths` for files;
+//!   [`misread`]: why it means nothing.
 
 pub mod arguments;
 pub mod complete;
@@ -15,13 +16,14 @@ pub mod context;
 pub mod keymap;
 pub mod meaning;
 pub mod misread;
+mod paths;
 pub mod table;
 #[cfg(test)]
 mod tests;
 mod turns;
 
 pub use arguments::{increment, mode, parse};
-pub use complete::complete;
+pub use complete::{complete, takes_path};
 pub use context::{Context, exact};
 pub use keymap::Keymap;
 pub use meaning::{

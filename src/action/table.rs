@@ -216,7 +216,8 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "copy", "[WHAT]", &["Y"], "", "Copy what is selected to the clipboard: a row, a value, a command; or row, command, keys, gap, f_n, …", Verb::Copy),
 
     entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "A guided lesson: a file, or a built-in one", Verb::Lesson),
-    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson", Verb::Do(Ui::On)),
+    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson: more of its words, then the next step", Verb::Do(Ui::On)),
+    entry(Group::Learn, "reread", "", &["Backspace"], "", "The lesson's words once more from their beginning, where the screen has no room for all", Verb::Do(Ui::Reread)),
     entry(Group::Learn, "answer", "[WORD]", &["a"], "answer", "Answer the lesson's question, or predict the selected node's next mode", Verb::Answer),
     entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Decisions hide until predicted: any one (selected), every changed one, or off", Verb::Predict),
 
@@ -228,7 +229,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Make a file of the shown state, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat that for Siconos", Verb::Export { what: Exported::Shown, overwrite: false }),
     entry(Group::Program, "export!", "[--frozen] FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Shown, overwrite: true }),
     entry(Group::Program, "journal", "[FILE]", &[], "", "Keep the journal in this new file, with all that was done; or tell where it is", Verb::Journal),
-    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one", Verb::Open),
+    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one; a journal goes on where it was", Verb::Open),
     entry(Group::Program, "keys", "", &[], "", "The present keys, as the file has them that changes them", Verb::Do(Ui::Keys)),
     entry(Group::Program, "colours", "[NAME]", &[], "", "Other colours: dark, light, high contrast, none", Verb::Colours),
     entry(Group::Program, "mouse", "[on|off]", &[], "", "Heed the mouse, or leave it to the terminal", Verb::Mouse),

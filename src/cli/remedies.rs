@@ -5,11 +5,13 @@ use super::base::{Error, Exit, SceneArgs, say, tell};
 use crate::explain::page;
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
+use crate::outside::shown;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::stepper::Stepper;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use unicode_width::UnicodeWidthStr;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -61,7 +63,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 /// Columns, the first to the left, all others to the right.
 fn table(headings: &[String], rows: &[Vec<String>]) -> String {
     let width = |k: usize| {
-        let cells = rows.iter().map(|row| row[k].chars().count());
+        let cells = rows.iter().map(|row| row[k].width());
         cells.chain([headings[k].len()]).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..headings.len()).map(width).collect();
@@ -69,9 +71,9 @@ fn table(headings: &[String], rows: &[Vec<String>]) -> String {
         let cells = row.iter().zip(&widths).enumerate();
         let cells: Vec<String> = cells
             .map(|(k, (cell, &width))| match k {
-                0 => format!("{cell:<width$}"),
+                0 => shown::padded(cell, width),
                 _ if k + 1 == widths.len() => cell.clone(),
-                _ => format!("{cell:>width$}"),
+                _ => shown::padded_before(cell, width),
             })
             .collect();
         cells.join("  ").trim_end().to_owned() + "\n"

@@ -13,6 +13,7 @@ use crate::explain::report;
 use crate::linear::norms::Norms;
 use crate::model::Model;
 use crate::outside::files::Output;
+use crate::outside::shown;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::scene::gaps;
@@ -299,7 +300,7 @@ impl<'a> Run<'a> {
             .iter()
             .zip(&self.tally.monitors)
         {
-            tell(&format!("  {:<12} {value:?}", monitor.name));
+            tell(&format!("  {} {value:?}", shown::padded(&monitor.name, 12)));
         }
     }
 }

@@ -481,15 +481,27 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
     }
 }
 
+/// Whether a file's name says that it is a journal.
+pub fn is_named_so(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending == EXTENSION)
+}
+
 /// Where journals are kept that are given no place: in the user's directory for states, or for data where the system
 /// has none.
 ///
 /// # Errors
 /// If the system names no home directory.
 pub fn directory() -> Result<PathBuf, JournalError> {
+    Ok(home()?.join("journals"))
+}
+
+/// The program's own place among what the user keeps: journals, and what was done of the lessons.
+///
+/// # Errors
+/// If the system names no home directory.
+pub fn home() -> Result<PathBuf, JournalError> {
     let ours = directories::ProjectDirs::from("", "", "stickslip").ok_or(JournalError::NoPlace)?;
-    let base = ours.state_dir().unwrap_or(ours.data_local_dir());
-    Ok(base.join("journals"))
+    Ok(ours.state_dir().unwrap_or(ours.data_local_dir()).to_owned())
 }
 
 /// The journal that was written last.

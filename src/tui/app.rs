@@ -8,6 +8,7 @@ use crate::teach::{Guess, Tutor};
 use crate::tui::ahead::{Ahead, Typed};
 use crate::tui::camera::Camera;
 use crate::tui::chartpage::ChartPage;
+use crate::tui::choosing::{Chooser, Offer, Preview};
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
@@ -56,11 +57,8 @@ pub enum Overlay {
     Help(Help),
     /// A page of the manual.
     Manual(manual::Reader),
-    /// The list of scenes, with one of them selected.
-    Chooser {
-        /// The scene that is chosen, from 0.
-        at: usize,
-    },
+    /// The list of what can be opened.
+    Chooser(Chooser),
     /// A work-precision chart.
     Chart(Box<ChartPage>),
     /// A line being typed.
@@ -98,13 +96,15 @@ pub enum Opens {
     Page,
 }
 
-/// A scene that the chooser offers.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Offer {
-    /// The name by which it is opened.
-    pub name: String,
-    /// Its title.
-    pub title: String,
+/// What of a lesson's words was read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// The page that this is about ([`Tutor::edition`]).
+    pub edition: (usize, u32),
+    /// The first line that is shown, from 0.
+    pub top: usize,
+    /// Lines from the first one on that were shown.
+    pub seen: usize,
 }
 
 /// Everything on the screen that is not in the session.
@@ -154,10 +154,14 @@ pub struct App {
     pub scroll: usize,
     /// Which of the panes that take turns is shown where there is room for one.
     pub chart: Pane,
-    /// Scenes to choose from.
+    /// What there is to choose from.
     pub offers: Vec<Offer>,
+    /// What is known of what is selected there.
+    pub preview: Option<Preview>,
     /// The lesson that is being taken.
     pub lesson: Option<Tutor>,
+    /// What of its words was read.
+    pub reading: Reading,
     /// Free mode, outside lessons.
     pub guess: Option<Guess>,
     /// Increments done of a chart that is being measured, and all of them.
@@ -211,7 +215,9 @@ impl App {
             scroll: 0,
             chart: Pane::Residual,
             offers,
+            preview: None,
             lesson: None,
+            reading: Reading::default(),
             guess: None,
             measuring: None,
             loading: None,
@@ -254,24 +260,22 @@ impl App {
 
     /// Whether nothing lies over the panes but the list of scenes, so that what is read or measured can be shown.
     pub fn is_open_to_pages(&self) -> bool {
-        matches!(self.overlay, Overlay::None | Overlay::Chooser { .. })
+        matches!(self.overlay, Overlay::None | Overlay::Chooser(_))
     }
 
-    /// Offers the scenes.
+    /// Offers scenes and lessons.
     pub fn choose(&mut self) {
-        self.overlay = Overlay::Chooser { at: 0 };
+        self.overlay = Overlay::Chooser(Chooser::default());
     }
 
     /// The user's part in the arrangement of the screen.
-    pub fn choice(&self, slaves: usize, outcome: u16, message: u16, lesson: u16) -> Choice {
+    pub fn choice(&self, slaves: usize, lesson: u16) -> Choice {
         Choice {
             focus: self.focus,
             page: self.page,
             chart: self.chart,
             zoomed: self.zoomed,
             slaves,
-            outcome,
-            message,
             lesson,
         }
     }
@@ -294,6 +298,7 @@ impl App {
     /// Does what a key means now. What was said before is over then.
     pub(super) fn take_key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
         let name = keys::name(key)?;
+        self.note_reading(view);
         self.say("");
         match &mut self.overlay {
             Overlay::None => self.pane_key(&name, view),
@@ -304,7 +309,7 @@ impl App {
                 }
                 None
             }
-            Overlay::Chooser { .. } => self.chooser_key(&name, view),
+            Overlay::Chooser(_) => self.chooser_key(&name, view),
             Overlay::Chart(_) => self.chart_key(&name, view),
             Overlay::Line(_) => self.line_key(key, &name, view),
             Overlay::Mode => self.mode_key(&name, view),
@@ -321,8 +326,10 @@ impl App {
     }
 
     pub(super) fn take_paste(&mut self, text: &str) {
-        if let Overlay::Line(line) = &mut self.overlay {
-            line.insert(text);
+        match &mut self.overlay {
+            Overlay::Line(line) => line.insert(text),
+            Overlay::Chooser(chooser) => chooser.type_text(&shown::line(text.trim())),
+            _ => {}
         }
     }
 
@@ -351,8 +358,10 @@ impl App {
         }
     }
 
+    /// Names of the built-in scenes.
     pub(super) fn scenes(&self) -> Vec<String> {
-        self.offers.iter().map(|offer| offer.name.clone()).collect()
+        let own = self.offers.iter().filter(|offer| offer.is_scene());
+        own.map(|offer| offer.name.clone()).collect()
     }
 
     /// Ctrl-C: closes what is open and stops a run; never the program.
@@ -434,6 +443,10 @@ impl App {
                 let effect = self.ui(ui, count, view);
                 if let (true, Some(tutor), Some(view)) = (wanted, &mut self.lesson, view) {
                     tutor.settled(view.cursor, view.frame());
+                    // What the lesson waited for is no error any more.
+                    if self.message.tone == Tone::Error {
+                        self.say("");
+                    }
                 }
                 effect
             }
@@ -492,6 +505,7 @@ impl App {
             Ui::Chart(of) => return Some(Effect::Chart(of)),
             Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
             Ui::On => self.go_on(view),
+            Ui::Reread => self.reread(),
             Ui::Answer(word) => self.answer(&word, view),
             Ui::Predict(whose) => self.predict(whose, view),
             Ui::Ask(question) => self.ask(question, view),

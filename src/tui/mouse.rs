@@ -31,7 +31,7 @@ impl App {
         if !matches!(self.overlay, Overlay::None) {
             return None;
         }
-        let places = screen::arranged(self.area, self, Some(view));
+        let places = screen::places(self, Some(view), self.area);
         places.panes.into_iter().find(|(_, area)| area.contains(at))
     }
 
@@ -100,7 +100,7 @@ impl App {
                 page.key(key);
                 return None;
             }
-            Overlay::Chooser { .. } if self.loading.is_none() => {
+            Overlay::Chooser(_) if self.loading.is_none() => {
                 return self.chooser_key(key, view);
             }
             _ => return None,

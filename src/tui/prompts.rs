@@ -8,6 +8,7 @@ use crate::teach::Tutor;
 use crate::teach::tutor::AnswerKind;
 use crate::tui::ahead::Typed;
 use crate::tui::app::{App, Effect, Overlay, PAGE};
+use crate::tui::choosing::{Chooser, Group};
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::screen;
 use crate::tui::theme;
@@ -38,6 +39,9 @@ impl App {
 
     /// Opens what an answer is typed into.
     pub(super) fn ask_answer(&mut self, view: Option<&View>) {
+        if let Err(why) = self.must_read(view) {
+            return self.complain(why);
+        }
         let asked = self.lesson.as_ref().and_then(Tutor::question);
         let open = view.is_some_and(|view| self.guessing().is_some() && self.hides_any(view));
         match asked.map(|question| question.kind) {
@@ -85,7 +89,7 @@ impl App {
     }
 
     pub(super) fn help_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        let body = screen::body(&screen::arranged(self.area, self, view));
+        let body = screen::body(&screen::places(self, view, self.area), view);
         // Without the frame.
         let size = body.inner(Margin::new(1, 1));
         let Overlay::Help(help) = &mut self.overlay else {
@@ -108,21 +112,37 @@ impl App {
     }
 
     pub(super) fn chooser_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        let Overlay::Chooser { at } = &mut self.overlay else {
+        let Overlay::Chooser(chooser) = &mut self.overlay else {
             return None;
         };
+        let left = chooser.left(&self.offers).len();
+        let fresh = chooser.typed.is_empty();
         match name {
             "Enter" => {
-                return self
-                    .offers
-                    .get(*at)
-                    .map(|offer| Effect::Open(offer.name.clone()));
+                let offer = chooser.selected(&self.offers)?;
+                let seen = self.preview.as_ref().filter(|seen| seen.name == offer.name);
+                let is_lesson = match seen.map(|seen| &seen.what) {
+                    Some(Ok(glance)) => glance.is_lesson,
+                    _ => offer.group == Group::Lessons,
+                };
+                let name = offer.name.clone();
+                return Some(match is_lesson {
+                    true => Effect::Lesson(name),
+                    false => Effect::Open(name),
+                });
             }
-            "q" | "Esc" if view.is_none() => return Some(Effect::Quit),
-            "q" | "Esc" => self.overlay = Overlay::None,
-            ":" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open ")),
-            "L" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson ")),
-            _ => *at = scrolled(*at, name, self.offers.len().saturating_sub(1)),
+            "q" if fresh && view.is_none() => return Some(Effect::Quit),
+            "q" if fresh => self.overlay = Overlay::None,
+            "Esc" if !fresh => *chooser = Chooser::default(),
+            "Esc" if view.is_some() => self.overlay = Overlay::None,
+            "Esc" => self.say("no scene is open to go back to; q quits"),
+            ":" if fresh => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open "))
+            }
+            "Backspace" => chooser.type_text(""),
+            "Space" if !fresh => chooser.type_text(" "),
+            _ if name.chars().count() == 1 => chooser.type_text(name),
+            _ => chooser.at = scrolled(chooser.at, name, left.saturating_sub(1)),
         }
         None
     }

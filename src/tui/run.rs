@@ -7,12 +7,14 @@ use crate::format::SceneError;
 use crate::outside::shown;
 use crate::record::command::Command;
 use crate::record::journal::{JournalError, Keep};
-use crate::scene::{Scene, builtin};
+use crate::scene::Scene;
 use crate::session::{Reply, Session};
 use crate::study::measuring::Measuring;
+use crate::teach::progress::{self, Keeper, Progress};
 use crate::teach::{Lesson, Tutor};
-use crate::tui::app::{App, Effect, Offer, Opens, Overlay};
+use crate::tui::app::{App, Effect, Opens, Overlay, Reading};
 use crate::tui::chartpage::{ChartPage, NoPage};
+use crate::tui::choosing::{self, Looking, Offer};
 use crate::tui::keys;
 use crate::tui::layout::Pane;
 use crate::tui::loading::{Loaded, Loading};
@@ -20,9 +22,11 @@ use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use crossterm::event::{self, Event, KeyEvent};
+use ratatui::layout::Rect;
 use signal_hook::consts::SIGHUP;
 use std::collections::VecDeque;
 use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -79,6 +83,7 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
     }
     let mut debugger = configured(Config::open()?, session);
     debugger.keeps = keeps;
+    debugger.in_the_world();
     if let Some(told) = told {
         debugger.app.say(told);
     }
@@ -94,6 +99,11 @@ pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
         return Err(Error::NoTerminal);
     }
     let mut debugger = configured(Config::open()?, None);
+    debugger.in_the_world();
+    if let Some(runs) = lesson.runs.clone() {
+        // Not while keys wait; what is wrong with it is told where it is asked for.
+        std::thread::spawn(move || runs.measure().is_ok());
+    }
     debugger.teach(lesson);
     run_on(debugger)
 }
@@ -131,6 +141,7 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
 pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
     let session = load(scene, &[])?;
     let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
+    debugger.app.area = Rect::new(0, 0, width, height);
     debugger.type_keys(keys);
     Ok(debugger.text(width, height))
 }
@@ -155,7 +166,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             let app = &debugger.app;
             debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
         }
-        let works = debugger.is_busy() || debugger.loading.is_some();
+        let works = debugger.is_busy() || debugger.loading.is_some() || debugger.looking.is_busy();
         let wait = if works { BUSY } else { IDLE };
         let mut ready = event::poll(wait)?;
         while ready {
@@ -206,13 +217,10 @@ fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, SceneErr
     Ok(Session::new(scene))
 }
 
-/// The built-in scenes.
+/// What there is to choose from, with what was done of the lessons.
 pub fn offers() -> Vec<Offer> {
-    let offer = |scene: &builtin::Builtin| Offer {
-        name: scene.name.into(),
-        title: scene.title(),
-    };
-    builtin::list().iter().map(offer).collect()
+    let progress = progress::place().and_then(|file| Progress::read(&file).ok());
+    choosing::offers(&progress.unwrap_or_default())
 }
 
 /// What only the event loop can do.
@@ -248,6 +256,12 @@ pub struct Debugger {
     measuring: Option<Measuring>,
     /// A file that is being read.
     loading: Option<Loading>,
+    /// An offer that is looked at.
+    looking: Looking,
+    /// How far the user came in the lessons, kept.
+    progress: Keeper,
+    /// Whether offers are listed anew, with what is in the folder, when they are shown.
+    lists: bool,
 }
 
 impl Debugger {
@@ -267,7 +281,45 @@ impl Debugger {
             keeps: false,
             measuring: None,
             loading: None,
+            looking: Looking::default(),
+            progress: Keeper::default(),
+            lists: false,
         }
+    }
+
+    /// From here on progress in lessons is kept, and offers are what is there.
+    fn in_the_world(&mut self) {
+        self.progress = Keeper::new(progress::place());
+        self.lists = true;
+    }
+
+    /// Keeps progress in lessons in this file.
+    pub fn keep_progress_in(&mut self, file: PathBuf) {
+        self.progress = Keeper::new(Some(file));
+    }
+
+    fn keep_progress(&mut self) {
+        let kept = self
+            .app
+            .lesson
+            .as_ref()
+            .map(|tutor| self.progress.follow(tutor));
+        if let Some(Err(why)) = kept {
+            self.app.complain(why);
+        }
+    }
+
+    /// Looks at the offer that is selected. Returns whether there is anything new to draw.
+    fn preview(&mut self) -> bool {
+        let chooser = match &self.app.overlay {
+            Overlay::Chooser(chooser) => Some(chooser),
+            _ => None,
+        };
+        let known = self.app.preview.as_ref();
+        let found = self.looking.follow(chooser, &self.app.offers, known);
+        let any = found.is_some();
+        self.app.preview = found.or(self.app.preview.take());
+        any
     }
 
     /// Says in a line where the journal is, or that there is none any more, to whoever started the program.
@@ -321,8 +373,13 @@ impl Debugger {
     /// Takes in a key.
     pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
         let view = self.session.as_ref().map(View::of);
-        let effect = self.app.key(key, view.as_ref())?;
-        self.carry_out(effect)
+        let chose = matches!(self.app.overlay, Overlay::Chooser(_));
+        let effect = self.app.key(key, view.as_ref());
+        self.keep_progress();
+        if self.lists && !chose && matches!(self.app.overlay, Overlay::Chooser(_)) {
+            self.app.offers = offers();
+        }
+        self.carry_out(effect?)
     }
 
     /// Does what a key asks of the world outside the app, as far as that is not the event loop's.
@@ -420,6 +477,10 @@ impl Debugger {
             if open && (self.loading.is_some() || self.measuring.is_some()) {
                 std::thread::sleep(Duration::from_millis(1));
                 continue;
+            }
+            while self.looking.is_busy() {
+                std::thread::sleep(Duration::from_millis(1));
+                self.advance();
             }
             match &mut self.session {
                 Some(session) if session.background().is_busy() => session.wait_for_background(),
@@ -547,12 +608,17 @@ impl Debugger {
     }
 
     fn open(&mut self, mut session: Session) {
-        if self.keeps {
+        let resumed = session.journal().is_some();
+        // A journal that was opened goes on itself.
+        if self.keeps && !resumed {
             session.keep_at_default_place();
         }
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
-        greet(&mut self.app, &session);
+        match resumed {
+            true => self.app.say("resumed from its journal, which goes on"),
+            false => greet(&mut self.app, &session),
+        }
         self.session = Some(session);
     }
 
@@ -568,6 +634,7 @@ impl Debugger {
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         self.app.lesson = Some(tutor);
+        self.app.reading = Reading::default();
         self.app.say("");
     }
 
@@ -581,7 +648,8 @@ impl Debugger {
     }
 
     fn gather(&mut self) -> bool {
-        let measured = self.follow_loading() | self.follow_chart();
+        let measured = self.follow_loading() | self.follow_chart() | self.preview();
+        self.keep_progress();
         let Some(session) = &mut self.session else {
             return measured;
         };

@@ -12,7 +12,7 @@ impl App {
     pub(super) fn awaits_all(&self) -> Option<Awaited> {
         let replaced = match (self.loading, &self.overlay) {
             (Some(Opens::Page), _) => true,
-            (Some(Opens::Scene), overlay) => matches!(overlay, Overlay::Chooser { .. }),
+            (Some(Opens::Scene), overlay) => matches!(overlay, Overlay::Chooser(_)),
             (None, _) => false,
         };
         replaced.then_some(Awaited::Reading)

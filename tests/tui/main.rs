@@ -11,6 +11,8 @@ mod by_hand;
 mod failures;
 // Whole screens at every size; what does not fit says so.
 mod screens;
+// What can be opened: found, looked at, taken; files completed.
+mod chooser;
 // The table of slave nodes: marks with and without colour, ties, order, words.
 mod nodes;
 // Keys and typed lines become commands; help lists them all.

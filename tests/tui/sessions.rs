@@ -23,6 +23,7 @@ const CTRL_C: &str = "\x03";
 const CTRL_Z: &str = "\x1a";
 const ESC: &str = "\x1b";
 const UP: &str = "\x1b[A";
+const DOWN: &str = "\x1b[B";
 
 /// The snapshots that a session left behind.
 fn snapshots(session: &Session) -> Vec<PathBuf> {
@@ -84,11 +85,13 @@ fn the_cycle_that_the_paper_s_rule_runs_into_is_left_by_forcing_the_tip_to_slide
 fn without_a_scene_the_built_in_ones_are_offered_and_enter_opens_one() {
     let mut session = Start::debugger(&[]).size(80, 36).go();
     session.see("Choose a scene");
+    session.type_and_see(DOWN, &format!("▸ {}", builtin::list()[1].name));
+    session.type_and_see(UP, &format!("▸ {FLOOR}"));
     for scene in builtin::list() {
-        session.see(scene.name);
+        session.type_and_see(scene.name, &format!("Choose: {}▏", scene.name));
+        session.see(&format!("▸ {}", scene.name));
+        session.type_and_see(ESC, "type to find one");
     }
-    session.type_and_see("j", &format!("▸ {}", builtin::list()[1].name));
-    session.type_and_see("k", &format!("▸ {FLOOR}"));
     session.keys("\r");
     session.see_picture(FLOOR, "", 80, 36);
     session.quit();

@@ -5,6 +5,7 @@ use crate::history::compare::{self, Sameness, Side};
 use crate::history::tree::Tree;
 use crate::history::verdicts::{BranchEnd, Summary};
 use crate::history::{branches, verdicts};
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
@@ -14,6 +15,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Width of one side of the comparison.
 const SIDE: usize = 32;
@@ -93,11 +95,11 @@ fn line<'a>(
         branch.whole.minors,
         branch.whole.majors
     );
-    let room = width.saturating_sub(cost.len() + 4);
+    let room = width.saturating_sub(cost.width() + 4);
     let name = paint::cut(&format!("{twig}{}", branch.name), room * 3 / 5);
-    let pad = (room * 3 / 5).saturating_sub(name.chars().count());
+    let pad = (room * 3 / 5).saturating_sub(name.width());
     let verdict = paint::cut(&verdict, (room - room * 3 / 5).saturating_sub(3));
-    let verdict_pad = (room - room * 3 / 5).saturating_sub(3 + verdict.chars().count());
+    let verdict_pad = (room - room * 3 / 5).saturating_sub(3 + verdict.width());
     Line::from(vec![
         Span::styled(if selected { "▸" } else { " " }, theme.focus),
         Span::styled(current.to_string(), theme.strong),
@@ -171,7 +173,7 @@ fn comparison(
         ]),
     ];
     let row = |name: &str, style: Style, cells: [String; 2]| {
-        let name = format!(" {:<NAME$} ", paint::cut(name, NAME));
+        let name = format!(" {} ", shown::padded(&paint::cut(name, NAME), NAME));
         let [a, b] = cells.map(|cell| Span::raw(format!("{cell:<SIDE$}")));
         Line::from(vec![Span::styled(name, style), a, b])
     };

@@ -18,6 +18,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Width of the rows' headings.
 const LABEL: usize = 9;
@@ -416,7 +417,7 @@ fn tests(
         } else {
             theme.text
         };
-        let used = inequality.chars().count() + margin.chars().count();
+        let used = inequality.width() + margin.width();
         if used < width {
             lines.push(Line::from(vec![
                 Span::styled(inequality, style_left),

@@ -5,6 +5,7 @@ use crate::explain::examination::Examination;
 use crate::explain::number;
 use crate::interface::census::Census;
 use crate::interface::problem::NodeAnswer;
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
@@ -117,7 +118,10 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
         let name = paint::cut(view.slave(node.slave), NAME);
         let mark = if differs { "*" } else { " " };
         let style = if differs { theme.strong } else { theme.text };
-        let mut spans = vec![Span::styled(format!("{mark}{name:<NAME$} "), style)];
+        let mut spans = vec![Span::styled(
+            format!("{mark}{} ", shown::padded(&name, NAME)),
+            style,
+        )];
         for number in shown.clone() {
             let answer = &census.answers[number].answer.nodes[place];
             spans.extend(cell(answer, app));

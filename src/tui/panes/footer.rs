@@ -6,6 +6,7 @@ use crate::tui::layout::{Pane, Places};
 use crate::tui::paint;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
@@ -13,22 +14,28 @@ use unicode_width::UnicodeWidthStr;
 /// Actions that the footer never leaves out, however narrow the screen.
 const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
-/// Most lines that a message takes.
-const MESSAGE: usize = 3;
-
-/// Draws message and keys.
+/// Draws message and keys. What their rows have no room for begins further up, over the panes.
 pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
-    let message = message(app, view, places.message.width as usize);
-    paint::lines(buffer, places.message, &message);
-    paint::lines(buffer, places.footer, &[keys(app, view, places)]);
+    let width = places.message.width as usize;
+    let mut lines = message(app, view, places, width);
+    let keys = keys(app, view, places);
+    // A screen without a row for keys has none for more of the message either.
+    let most = match places.footer.height {
+        0 => return paint::lines(buffer, places.message, &lines),
+        _ => usize::from(places.footer.bottom() / 2).max(2),
+    };
+    lines.truncate(most.saturating_sub(keys.len()).max(1));
+    lines.extend(keys.into_iter().take(most - lines.len()));
+    let height = lines.len() as u16;
+    let area = Rect {
+        y: places.footer.bottom() - height,
+        height,
+        ..places.footer
+    };
+    paint::over(buffer, area, &lines);
 }
 
-/// Lines that the message needs.
-pub fn message_lines(app: &App, view: Option<&View>, width: u16) -> u16 {
-    message(app, view, width as usize).len().min(MESSAGE) as u16
-}
-
-fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
+fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec<Line<'static>> {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
         use crate::tui::commandline::Purpose;
@@ -38,10 +45,10 @@ fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
             Purpose::Answer => "your answer: ".into(),
             Purpose::Increment => app.question(view).unwrap_or_else(|| "increment: ".into()),
         };
-        return vec![line.line(&prompt, width, theme)];
+        return line.lines(&prompt, width, theme);
     }
     if let Some(question) = app.question(view) {
-        return vec![Line::styled(format!(" {question}"), theme.key)];
+        return wrapped(&question, width, theme.key);
     }
     if let Some(note) = app.ahead.note() {
         return wrapped(&note, width, theme.warning);
@@ -49,8 +56,9 @@ fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     if let Some(count) = app.count {
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
-    if let (true, "", Some(tutor)) = (app.zoomed, app.message.text.as_str(), &app.lesson) {
-        return vec![Line::styled(format!(" ▶ {}", tutor.todo()), theme.key)];
+    let shown = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
+    if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.lesson) {
+        return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
     }
     let aside = view.map_or("", |view| view.aside.as_str());
     let text = app.message.text.as_str();
@@ -75,9 +83,9 @@ fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
         .collect()
 }
 
-fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
+fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
     let room = places.footer.width as usize;
-    match &app.overlay {
+    let line = match &app.overlay {
         Overlay::None => table_keys(app, places, room),
         Overlay::Manual(reader) => match reader.typed() {
             Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
@@ -113,18 +121,16 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
             ],
             app,
         ),
-        Overlay::Chooser { .. } => {
-            let leave = if view.is_some() { "back" } else { "quit" };
-            listed(
-                &[
-                    ("↑↓", "choose"),
-                    ("Enter", "open"),
-                    (":", "a file: open PATH"),
-                    ("L", "lessons"),
-                    ("q", leave),
-                ],
-                app,
-            )
+        Overlay::Chooser(chooser) => {
+            let (back, leave) = match (chooser.typed.is_empty(), view.is_some()) {
+                (false, _) => ("forget what was typed", None),
+                (true, true) => ("back", None),
+                (true, false) => ("back", Some(("q", "quit"))),
+            };
+            let mut keys = vec![("↑↓", "choose"), ("Enter", "open"), (":", "a file")];
+            keys.extend([("letters", "find"), ("Esc", back)]);
+            keys.extend(leave);
+            listed(&keys, app)
         }
         Overlay::Mode => listed(
             &[("f s x", "once"), ("F S X", "hold"), ("Esc", "leave it")],
@@ -132,10 +138,11 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
         ),
         Overlay::Answer => listed(&[("Esc", "look again first")], app),
         Overlay::Line(line) => {
-            let scenes: Vec<String> = app.offers.iter().map(|offer| offer.name.clone()).collect();
-            line.hint(&app.context(view, &scenes), &app.theme)
+            let scenes = app.scenes();
+            return line.hint(&app.context(view, &scenes), room, &app.theme);
         }
-    }
+    };
+    vec![line]
 }
 
 fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {

@@ -5,6 +5,7 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::table2::Tested;
 use crate::explain::number;
 use crate::explain::round_off::RoundOff;
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
@@ -278,7 +279,7 @@ fn modes(
     } else {
         style(next)
     };
-    let used = first.len() + arrow.chars().count() + second.len();
+    let used = first.width() + arrow.width() + second.width();
     let arrow_style = if changed {
         app.theme.strong
     } else {
@@ -356,14 +357,7 @@ fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
 
 /// A name cut or padded to a width; what is cut off at the end shows as `…`.
 fn fitted(name: &str, width: usize) -> String {
-    match name.chars().count() {
-        count if count <= width => format!("{name:<width$}"),
-        _ => name
-            .chars()
-            .take(width.saturating_sub(1))
-            .chain(['…'])
-            .collect(),
-    }
+    shown::padded(&paint::cut(name, width), width)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The remedies that were tried: what each costs and what it leaves; one of them selected, to be taken.
 
 use crate::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEnd};
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
@@ -9,6 +10,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Columns by [`COLUMNS`], the most telling first: a narrow screen shows as many as fit.
 const ORDER: [usize; 10] = [0, 1, 3, 5, 6, 7, 9, 8, 4, 2];
@@ -91,11 +93,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
                 name.clone(),
                 if selected { theme.selected } else { theme.text },
             ),
-            Span::raw(" ".repeat(names.saturating_sub(name.chars().count()))),
+            Span::raw(" ".repeat(names.saturating_sub(name.width()))),
         ];
         spans.extend(shown.iter().map(|&(k, w)| {
             let style = if k == 0 { style } else { theme.text };
-            Span::styled(format!("  {:>w$}", row[k]), style)
+            Span::styled(format!("  {}", shown::padded_before(&row[k], w)), style)
         }));
         lines.push(Line::from(spans));
     }
@@ -115,7 +117,7 @@ pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize>
 /// Which columns fit, in the order of [`COLUMNS`], and how wide they are.
 fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
     let wide = |k: usize| {
-        let cells = rows.iter().map(|row| row[k].chars().count());
+        let cells = rows.iter().map(|row| row[k].width());
         cells.chain([COLUMNS[k].len()]).max().unwrap_or(0)
     };
     let mut room = width.saturating_sub(3 + NAME);

@@ -43,8 +43,16 @@ const SPACING: f64 = 16.0;
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let inner = paint::frame(buffer, area, "Shape", app.focus == Pane::Shape, theme);
+    if let (Some(longest), 2..) = (picture(buffer, inner, app, view), inner.height) {
+        let moves = found(view).is_some_and(|found| !found.arrows.is_empty());
+        caption(buffer, inner, longest, moves, app, view);
+    }
+}
+
+/// Draws the shape alone, but in the last row; returns the longest force, `None` where there is no room.
+pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Option<f64> {
     if inner.is_empty() {
-        return;
+        return None;
     }
     let (mut canvas, window) = field(inner, app, view);
     bodies(&mut canvas, &window, app, view);
@@ -55,9 +63,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     heads(buffer, &canvas, &tips, app);
     names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
-    if inner.height > 1 {
-        caption(buffer, inner, longest, !tips.is_empty(), app, view);
-    }
+    Some(longest)
 }
 
 /// The canvas inside the frame, and what of the scene is seen on it.
