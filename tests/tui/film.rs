@@ -1,5 +1,6 @@
 //! A journal as a film: what a player shows in the end is the screen of the session.
 
+use std::num::NonZeroU16;
 use std::path::Path;
 use stickslip::record::journal::Record;
 use stickslip::tui::app::App;
@@ -35,7 +36,8 @@ fn the_last_screen_of_a_film_is_that_of_the_session() {
         let record = Record::read(&folder.join(name)).unwrap();
         let made = film(&record).unwrap();
         assert_eq!(made, film(&record).unwrap(), "not the same bytes");
-        let mut terminal = vt100::Parser::new(SIZE.1, SIZE.0, 0);
+        let [rows, columns] = [SIZE.1, SIZE.0].map(|n| NonZeroU16::new(n).unwrap());
+        let mut terminal = vt100::Parser::new(rows, columns, 0);
         for line in made.lines().skip(1) {
             let (_, rest) = line.trim_end_matches(']').split_once(", ").unwrap();
             let (kind, text) = rest.split_once(", ").unwrap();
