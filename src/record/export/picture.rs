@@ -317,7 +317,7 @@ fn normals(
 ) {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let length = x.hypot(y);
-    if !(length > 0.0) {
+    if length <= 0.0 || !length.is_finite() {
         return;
     }
     let (x, y) = (x / length, y / length);
