@@ -183,3 +183,18 @@ pub fn is_command_line(words: &[&str]) -> Result<(), String> {
         _ => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_subcommand_stands_in_one_group() {
+        let command = Cli::command();
+        let mut own: Vec<_> = command.get_subcommands().map(|c| c.get_name()).collect();
+        let mut grouped: Vec<_> = groups::names().collect();
+        own.sort_unstable();
+        grouped.sort_unstable();
+        assert_eq!(own, grouped);
+    }
+}

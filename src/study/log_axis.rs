@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn there_are_ticks_on_short_and_on_long_axes() {
         let ticks = |low: f64, high: f64| LogAxis::of([low, high].into_iter()).ticks(9);
-        assert_eq!(ticks(1.1e-2, 3e-2), [0.015, 0.02, 0.03]);
+        assert_eq!(ticks(1.1e-2, 3e-2), [0.01, 0.015, 0.02, 0.03]);
         assert_eq!(ticks(1e-3, 1.0), [1e-3, 1e-2, 0.1, 1.0]);
         for (low, high) in [(1.0, 1.0), (0.9, 8.0), (1e-12, 1.0), (1e-300, 1e300)] {
             let ticks = ticks(low, high);

@@ -234,8 +234,9 @@ pub fn run(
         true => &chart.monitors,
         false => &chart.by,
     };
+    measurable(&reference, &chart.by)?;
     let loads = compare(&mut precision, &mut all, &reference, wanted)?;
-    measurable(&precision, &reference, &chart.by)?;
+
     precision.points = all.into_iter().map(|measured| measured.point).collect();
     precision.about = origin(chart, &precision, loads, &reference);
     mark_front(&mut precision.points, measure.cost);
@@ -457,14 +458,10 @@ fn compare(
 }
 
 /// Refuses monitors that are asked for by name where the reference does not have them, or they are zero all along.
-fn measurable(
-    precision: &Precision,
-    reference: &Reference,
-    by: &[String],
-) -> Result<(), PrecisionError> {
+fn measurable(reference: &Reference, by: &[String]) -> Result<(), PrecisionError> {
     for name in by {
         let place = reference.monitors.iter().position(|own| own == name);
-        let (Some(place), true) = (place, precision.monitors.contains(name)) else {
+        let Some(place) = place else {
             return Err(PrecisionError::Reference(format!(
                 "{} has no {name}; it has {} (--reference finest takes a run of the set, which has all monitors of the scene)",
                 reference.source,

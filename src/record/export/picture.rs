@@ -300,17 +300,23 @@ fn surfaces(
             for chain in window.inside(&curve(&points)) {
                 for pair in chain.windows(2) {
                     taken.take_line(pair[0], pair[1]);
-                    normals(sheet, pair[0], pair[1], &mut walked);
+                    normals(sheet, pair[0], pair[1], &mut walked, taken);
                 }
             }
         }
     }
 }
 
-fn normals(sheet: &mut Sheet, from: (f64, f64), to: (f64, f64), walked: &mut f64) {
+fn normals(
+    sheet: &mut Sheet,
+    from: (f64, f64),
+    to: (f64, f64),
+    walked: &mut f64,
+    taken: &mut Placing,
+) {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let length = x.hypot(y);
-    if !(length > 0.0) {
+    if length <= 0.0 || !length.is_finite() {
         return;
     }
     let (x, y) = (x / length, y / length);
@@ -319,6 +325,7 @@ fn normals(sheet: &mut Sheet, from: (f64, f64), to: (f64, f64), walked: &mut f64
         // Right of the walk, on paper, whose y points downwards.
         let tip = (foot.0 - NORMAL * y, foot.1 + NORMAL * x);
         sheet.arrow(foot, tip, 1.0, GREY);
+        taken.take_line(foot, tip);
         *walked += SPACING;
     }
     *walked -= length;
