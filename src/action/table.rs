@@ -205,7 +205,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "diagnosis", "", &["d"], "diagnosis", "Why the minor iterations cycle, and which states are consistent; Enter starts from the selected one", Verb::Do(Ui::Page(Page::Diagnosis))),
     entry(Group::Look, "remedies", "", &["r"], "remedies", "Try every remedy from here; Enter takes the selected one", Verb::Do(Ui::Page(Page::Remedies))),
     entry(Group::Look, "timeline", "", &["t"], "timeline", "All modes by iteration; Left and Right go through them with the whole screen", Verb::Do(Ui::Page(Page::Timeline))),
-    entry(Group::Look, "census", "[NODES]", &[], "", "Try every assignment of modes on the problem that is solved next: of these nodes (at most 8), or of all that can touch", Verb::Census),
+    entry(Group::Look, "census", "[NODES]", &[], "", "Try every assignment of modes on the problem that is solved next: of these nodes, or of all that can touch (up to 8 one by one, up to 64 by branch and bound)", Verb::Census),
     entry(Group::Look, "chart", "[FILE|PATH=A,B,C]", &[], "", "Error over cost: of this scene, measured now (its own chart, or over settings), or a table that `stickslip chart --csv` made", Verb::Chart),
     entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
     entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),

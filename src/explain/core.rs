@@ -7,6 +7,7 @@ use crate::contact::state::ContactState;
 use crate::interface::minor_history::Cycle;
 use crate::interface::minor_history::MinorHistory;
 use crate::interface::problem::InterfaceProblem;
+use crate::interface::spiral::{Fate, spiral};
 use crate::interface::trials::Trials;
 use crate::model::Mode;
 use crate::strategy::method;
@@ -18,6 +19,8 @@ const MOST: usize = 40;
 /// Numbers of two iterations that differ by less than this, relatively, are the same.
 const SAME_ITERATION: f64 = 1e-12;
 
+/// Iterations that are run in search of a cycle into which T_max spirals.
+const AHEAD: usize = 600;
 /// Most rounds until the T_max of a cycle has come to rest.
 const ROUNDS: usize = 1000;
 
@@ -146,5 +149,20 @@ pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
             return Some(cycle);
         }
     }
-    None
+    spiralling(problem)
+}
+
+/// The cycle of modes that goes round while T_max still spirals in, so slowly that it has not come back within the limit.
+fn spiralling(problem: &InterfaceProblem) -> Option<Cycle> {
+    let found = spiral(problem, method(problem.settings.strategy), AHEAD)?;
+    let takes_part =
+        |(place, modes): &(usize, &Vec<Mode>)| changes(modes) || found.places.contains(place);
+    let members = found.modes.iter().enumerate().filter(takes_part);
+    (found.fate == Fate::Cycles).then(|| Cycle {
+        start: found.start + 1 - found.period,
+        period: found.period,
+        members: members
+            .map(|(place, modes)| (place, modes.clone()))
+            .collect(),
+    })
 }

@@ -7,7 +7,7 @@ use crate::contact::table2::{Rule, Tested};
 use crate::explain::core::{Core, core, cycle};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::names;
-use crate::interface::census::{Census, MOST, census};
+use crate::interface::census::{self, Census, MOST, search};
 use crate::interface::minor_history::Cycle;
 use crate::interface::problem::{Assumed, Condition, InterfaceProblem};
 use crate::interface::trials::Trials;
@@ -18,6 +18,10 @@ use crate::strategy::method;
 /// Most nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size. Of a scene
 /// with more, those that take part in the cycle are looked at ([`cycling`]).
 pub const MOST_NODES: usize = 200;
+/// Branches that are looked at to count the states of a cycle that has no small core.
+const BRANCHES: usize = census::BUDGET / 10;
+/// Most consistent states that are told one by one.
+const MOST_TOLD: usize = 12;
 /// Most iterations of a period that are told one by one.
 const MOST_PHASES: usize = 12;
 
@@ -104,11 +108,17 @@ impl Diagnosis {
         let phases = phases(problem, cycle.period)?;
         let core = core(problem);
         let members: Vec<usize> = cycle.members.iter().map(|member| member.0).collect();
+        let changes = |member: &&(usize, Vec<Mode>)| member.1.iter().any(|m| *m != member.1[0]);
+        let changing = cycle.members.iter().filter(changes).map(|member| member.0);
         let mut studied = match &core {
             Some(core) if members.len() > MOST => core.problem.clone(),
+            None if members.len() > MOST && changing.clone().next().is_some() => {
+                problem.reduced(&changing.collect::<Vec<_>>())?
+            }
             _ => problem.reduced(&members)?,
         };
-        let mut found = census(&studied).ok();
+        let counted = |problem: &InterfaceProblem| search(problem, BRANCHES, &|| false).ok();
+        let mut found = counted(&studied);
         // What is inconsistent with what the others do may be consistent with something else that they could do.
         let all = undecided(problem);
         let none = found.as_ref().is_some_and(|found| found.answers.is_empty());
@@ -116,7 +126,7 @@ impl Diagnosis {
             && (studied.nodes.len() + 1..=MOST).contains(&all.len())
             && let Some(wider) = problem.reduced(&all)
         {
-            found = census(&wider).ok();
+            found = counted(&wider);
             studied = wider;
         }
         let census = found;
@@ -245,6 +255,9 @@ fn cause(
     let Some(census) = census else {
         return Cause::Unknown;
     };
+    if census.answers.is_empty() && !census.exact {
+        return Cause::Unknown;
+    }
     if census.answers.is_empty() {
         return Cause::NoAnswer;
     }
@@ -277,7 +290,7 @@ fn cause(
 fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(Way, bool)> {
     let settles = |changed: &InterfaceProblem| cycle(changed).is_none() && runs(changed);
     let mut ways = Vec::new();
-    for number in 0..census.map_or(0, |c| c.answers.len()) {
+    for number in 0..census.map_or(0, |c| c.answers.len().min(MOST_TOLD)) {
         if let Some(started) = census.and_then(|census| started(problem, census, number)) {
             ways.push((Way::Answer(number), settles(&started)));
         }
@@ -449,12 +462,29 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
 }
 
 pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
-    let mut lines = vec![match census.answers.len() {
-        0 => format!("census: none of {} assignments is consistent", census.tried),
-        1 => format!("census: of {} assignments one is consistent", census.tried),
-        n => format!("census: of {} assignments {n} are consistent", census.tried),
+    let all = match (census.tried, census.answers.first()) {
+        (usize::MAX, Some(found)) => format!("up to 4^{}", found.answer.nodes.len()),
+        (usize::MAX, None) => "more than 10^19".to_owned(),
+        (tried, _) => tried.to_string(),
+    };
+    let count = census.answers.len();
+    let mut lines = vec![match (count, census.exact) {
+        (0, true) => format!("census: none of {all} assignments is consistent"),
+        (1, true) => format!("census: of {all} assignments one is consistent"),
+        (n, true) => format!("census: of {all} assignments {n} are consistent"),
+        (0, false) => format!("census: of {all} assignments none was found consistent so far"),
+        (n, false) => format!("census: of {all} assignments at least {n} are consistent"),
     }];
-    for (number, found) in census.answers.iter().enumerate() {
+    match (census.visited, census.exact) {
+        (0, _) => {}
+        (n, true) => lines.push(format!(
+            "  branch and bound: {n} branches rule all others out"
+        )),
+        (n, false) => lines.push(format!(
+            "  branch and bound: not done after {n} branches, so there may be more"
+        )),
+    }
+    for (number, found) in census.answers.iter().enumerate().take(MOST_TOLD) {
         let nodes: Vec<String> = found
             .answer
             .nodes
@@ -483,6 +513,9 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             nodes.join(", ")
         ));
     }
+    if count > MOST_TOLD {
+        lines.push(format!("  and {} more", count - MOST_TOLD));
+    }
     lines.extend(differing(census, name));
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(
@@ -508,7 +541,7 @@ fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<Strin
         if (1..all.len()).all(|number| of(number).assumed == of(0).assumed) {
             continue;
         }
-        let each = (0..all.len()).map(|number| {
+        let each = (0..all.len().min(MOST_TOLD)).map(|number| {
             let node = of(number);
             let (does, f_n, f_t) = (assumed_words(node.assumed), node.f_n, node.f_t);
             match node.assumed {

@@ -4,10 +4,12 @@
 use super::core::cycle;
 use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
 use super::names;
+use super::proven;
 use super::smaller::smaller;
-use crate::interface::census::{Census, MOST, census};
+use crate::interface::census::{BUDGET, Census, MOST_SEARCHED, search};
 use crate::interface::minor_history::Cycle;
 use crate::interface::problem::InterfaceProblem;
+use crate::interface::uniqueness::uniqueness;
 use crate::model::Model;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Failure, Outcome};
@@ -103,17 +105,24 @@ pub fn frozen(stepper: &mut Stepper, state: &State) -> Examination {
         };
     }
     let undecided = diagnosis::undecided(&problem);
-    if undecided.len() > MOST {
-        return nothing(&format!(
-            "The minor iterations do not cycle from here. A census is held over at most {MOST} slave nodes, and {} can touch.",
-            undecided.len()
-        ));
+    let name = |place: usize| names::slave(model, problem.nodes[place].slave);
+    let mut proven = Vec::new();
+    if problem.nodes.len() <= MOST_NODES {
+        proven = proven::slow_words(&problem, &name);
+        proven.push(proven::uniqueness_words(uniqueness(&problem), &name));
+    }
+    if undecided.len() > MOST_SEARCHED {
+        let mut found = nothing("The minor iterations do not cycle from here.");
+        found.lines.extend(proven);
+        found.lines.push(proven::too_many(undecided.len()));
+        return found;
     }
     let Some(studied) = problem.reduced(&undecided) else {
         return nothing("The frozen interface problem is singular here.");
     };
     let head = "The minor iterations do not cycle from here.";
     let mut found = counted(model, &studied, head);
+    found.lines.extend(proven);
     if found
         .census
         .as_ref()
@@ -149,7 +158,7 @@ pub fn examine_nodes(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> 
 
 /// What a census finds.
 fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Examination {
-    let census = match census(studied) {
+    let census = match search(studied, BUDGET, &|| false) {
         Err(why) => return nothing(&why.to_string()),
         Ok(census) => census,
     };

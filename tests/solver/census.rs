@@ -1,10 +1,15 @@
 //! The census finds every consistent state of a frozen interface problem.
 
 use crate::common::{self, run, scene};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
-use stickslip::interface::census::census;
+use stickslip::format::condensed::Problem;
+use stickslip::interface::census::{BUDGET, by_blocks, census, search};
+use stickslip::interface::problem::InterfaceProblem;
+use stickslip::scene::Scene;
 use stickslip::step::event::Failure;
 use stickslip::step::stepper::Stepper;
+use stickslip::study::random::Population;
 
 #[test]
 fn where_free_and_fixed_take_turns_sliding_is_the_one_answer() {
@@ -53,4 +58,123 @@ fn where_nothing_touches_the_free_state_is_the_one_answer() {
             "F".repeat(count)
         );
     }
+}
+
+/// A problem drawn as the survey draws it.
+pub fn survey(seed: u64, k: usize, nodes: RangeInclusive<usize>) -> Problem {
+    let count = k + 1;
+    let population = Population { seed, count, nodes };
+    population.draw(k).problem
+}
+
+/// The frozen problem of a problem drawn as the survey draws it.
+pub fn drawn(seed: u64, k: usize, nodes: RangeInclusive<usize>) -> InterfaceProblem {
+    let problem = survey(seed, k, nodes);
+    let scene = Scene::from_spec(&problem.title, problem.spec()).unwrap();
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    stepper.interface_problem().unwrap()
+}
+
+fn never() -> bool {
+    false
+}
+
+#[test]
+fn branch_and_bound_finds_what_trying_all_assumptions_finds() {
+    let mut several = 0;
+    let mut none = 0;
+    for (nodes, count) in [(1..=4, 300), (5..=6, 60), (7..=8, 12)] {
+        for k in 0..count {
+            let problem = drawn(11, k, nodes.clone());
+            let all = census(&problem).unwrap();
+            let found = by_blocks(&problem, BUDGET, &never);
+            assert!(found.exact);
+            assert_eq!(found.tried, all.tried);
+            assert_eq!(found.answers, all.answers, "{k} of {nodes:?}");
+            several += usize::from(all.answers.len() > 1);
+            none += usize::from(all.answers.is_empty());
+        }
+    }
+    assert!(several > 3 && none > 3, "{several} {none}");
+}
+
+#[test]
+fn nodes_that_do_not_touch_each_others_forces_are_counted_block_by_block() {
+    let one = drawn(11, 3, 4..=4);
+    let states = census(&one).unwrap();
+    // The problem three times over, in one matrix.
+    let size = one.relation.count();
+    let mut three = one.clone();
+    three.nodes = [one.nodes.clone(), one.nodes.clone(), one.nodes.clone()].concat();
+    three.relation.start = one.relation.start.repeat(3);
+    three.relation.response = vec![0.0; 9 * size * size];
+    for block in 0..3 {
+        for j in 0..size {
+            for i in 0..size {
+                let at = (block * size + j) * 3 * size + block * size + i;
+                three.relation.response[at] = one.relation.response[j * size + i];
+            }
+        }
+    }
+    let found = search(&three, BUDGET, &never).unwrap();
+    assert!(found.exact);
+    assert_eq!(found.answers.len(), states.answers.len().pow(3));
+    assert_eq!(found.tried, states.tried.pow(3));
+}
+
+#[test]
+fn twenty_nodes_are_counted_and_each_state_counted_obeys() {
+    let counts: Vec<usize> = [1, 7, 20, 21]
+        .map(|k| {
+            let problem = drawn(1, k, 20..=20);
+            let found = search(&problem, BUDGET, &never).unwrap();
+            assert!(found.exact && found.visited < 5000, "{k}");
+            assert!(found.answers.iter().all(|state| state.answer.obeys(1e-9)));
+            found.answers.len()
+        })
+        .to_vec();
+    assert_eq!(counts, [1, 1, 1, 0]);
+}
+
+#[test]
+fn a_search_that_is_stopped_or_out_of_budget_counts_at_least_what_it_found() {
+    let problem = drawn(1, 3, 20..=20);
+    let whole = search(&problem, BUDGET, &never).unwrap();
+    assert!(whole.exact);
+    let stopped = search(&problem, BUDGET, &|| true).unwrap();
+    assert!(!stopped.exact && stopped.answers.is_empty());
+    let half = search(&problem, whole.visited / 2, &never).unwrap();
+    assert!(!half.exact && half.visited == whole.visited / 2);
+    assert!(half.answers.len() <= whole.answers.len());
+    assert_eq!(half, search(&problem, whole.visited / 2, &never).unwrap());
+}
+
+/// Run by itself: `cargo test --release --test solver -- --ignored --nocapture thousand`.
+#[test]
+#[ignore = "takes minutes; its figures are in the manual"]
+fn a_thousand_problems_of_twenty_nodes_are_counted_exactly_within_ten_seconds_each() {
+    let count = std::env::var("SEEDS").map_or(1000, |n| n.parse().unwrap());
+    let mut runs: Vec<(f64, usize, usize)> = (0..count)
+        .map(|k| {
+            let problem = drawn(1, k, 20..=20);
+            let start = std::time::Instant::now();
+            let found = search(&problem, BUDGET, &never).unwrap();
+            let time = start.elapsed().as_secs_f64();
+            assert!(found.exact, "{k}");
+            if time > 4.0 {
+                println!("{k}: {time:.2} s, {} branches", found.visited);
+            }
+            (time, found.visited, found.answers.len())
+        })
+        .collect();
+    let with = |states: usize| runs.iter().filter(|run| run.2 == states).count();
+    println!("states: none {}, one {}, two {}", with(0), with(1), with(2));
+    println!("most states: {:?}", runs.iter().map(|run| run.2).max());
+    println!("most branches: {:?}", runs.iter().map(|run| run.1).max());
+    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for part in [0.5, 0.9, 0.99, 1.0] {
+        let at = ((runs.len() - 1) as f64 * part) as usize;
+        println!("{part}: {:.3} s", runs[at].0);
+    }
+    assert!(runs.iter().all(|run| run.0 < 10.0));
 }

@@ -18,6 +18,8 @@ mod siconos;
 mod cycles;
 // The census finds every consistent state of a frozen problem.
 mod census;
+// Where T_max goes while the modes repeat, and what a matrix proves.
+mod spirals;
 // The small scenes that fail do what their heads say.
 mod oscillators;
 // No strategy accepts what is no Coulomb state; the ladder finds an answer wherever there is one.

@@ -2,29 +2,42 @@
 //!
 //! With Coulomb's law, a frozen problem may have no consistent state, one, or several. The minor iterations cannot tell
 //! which, since they go from assumption to assumption by Table 2. With k nodes there are up to 4^k assumptions (free, fixed,
-//! sliding either way); for few nodes all of them can be tried.
+//! sliding either way); for few nodes all of them are tried. For more, [`search`] looks at each block of the matrix by itself
+//! and tries only what branch and bound ([`crate::interface::branches`]) does not rule out.
 
+use crate::interface::branches;
 use crate::interface::kinematics::NodeIncrement;
 use crate::interface::problem::{
     self, Answer, Assumed, InterfaceProblem, Margin, NodeAnswer, SINGULAR,
 };
+use crate::interface::response::InterfaceResponse;
 
 /// Largest number of nodes of a census: 4^8 = 65,536 assumptions.
 pub const MOST: usize = 8;
+/// Branches that a search looks at where nothing else is said.
+pub const BUDGET: usize = 30_000;
+/// Most nodes of a search.
+pub const MOST_SEARCHED: usize = 64;
+/// Most consistent states that are kept of a problem of several blocks, whose states combine.
+const MOST_KEPT: usize = 1000;
 /// Conditions that are broken by less than this (relative) count as obeyed; forces and gaps that differ by less are equal.
 const TOLERANCE: f64 = 1e-9;
 
 /// What a census found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Census {
-    /// Number of assumptions that were tried.
+    /// Number of assumptions that were tried, or ruled out by branch and bound; `usize::MAX` if there are more.
     pub tried: usize,
-    /// Number of those that have no unique solution.
+    /// Number of those that have no unique solution, of those that were tried.
     pub singular: usize,
+    /// Branches that were looked at; 0 where all assumptions were tried one by one.
+    pub visited: usize,
+    /// Whether nothing was left out: the consistent states are all there are. Otherwise there are at least these.
+    pub exact: bool,
     /// The consistent states, each different in forces or gaps.
     pub answers: Vec<Consistent>,
     /// If there is no consistent state: the assumption that comes closest, the node (its place in the problem) and the
-    /// condition that it breaks. `None` if there is one.
+    /// condition that it breaks. `None` if there is one, and where not all assumptions were tried one by one.
     pub nearest: Option<(Answer, usize, Margin)>,
 }
 
@@ -40,7 +53,7 @@ pub struct Consistent {
 /// More nodes than a census can be held over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a census is held over at most {MOST} nodes, and these are {nodes}; find the core of the cycle first"
+    "a census tries all assumptions of at most {MOST} nodes, and searches among at most {MOST_SEARCHED}; these are {nodes}; find the core of the cycle first"
 )]
 pub struct TooMany {
     /// Number of nodes of the problem.
@@ -63,6 +76,180 @@ pub fn census(problem: &InterfaceProblem) -> Result<Census, TooMany> {
         found.nearest = None;
     }
     Ok(found)
+}
+
+/// The consistent states of a problem of any size: by [`census`] for up to [`MOST`] nodes, else by branch and bound, block
+/// by block. After `budget` branches, or once `stop` says so, the census is not exact: there are at least the states found.
+///
+/// # Errors
+/// [`TooMany`] with more than [`MOST_SEARCHED`] nodes.
+pub fn search(
+    problem: &InterfaceProblem,
+    budget: usize,
+    stop: &dyn Fn() -> bool,
+) -> Result<Census, TooMany> {
+    if problem.nodes.len() <= MOST {
+        return census(problem);
+    }
+    if problem.nodes.len() > MOST_SEARCHED {
+        return Err(TooMany {
+            nodes: problem.nodes.len(),
+        });
+    }
+    Ok(by_blocks(problem, budget, stop))
+}
+
+/// [`search`] without trying all assumptions one by one where they are few.
+pub fn by_blocks(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) -> Census {
+    let mut whole = Census::empty();
+    whole.tried = 1;
+    let none = Consistent {
+        answer: Answer {
+            nodes: vec![NOTHING; problem.nodes.len()],
+        },
+        ties: Vec::new(),
+    };
+    whole.answers = vec![none];
+    for places in blocks(problem) {
+        let found = branched(
+            &part(problem, &places),
+            budget - whole.visited.min(budget),
+            stop,
+        );
+        whole.tried = whole.tried.saturating_mul(found.tried);
+        whole.singular += found.singular;
+        whole.visited += found.visited;
+        whole.exact &= found.exact;
+        let combined = whole.answers.iter().flat_map(|had| {
+            let places = &places;
+            found
+                .answers
+                .iter()
+                .map(move |own| joined(had, own, places))
+        });
+        let combined: Vec<Consistent> = combined.take(MOST_KEPT + 1).collect();
+        whole.answers = combined;
+        if whole.answers.len() > MOST_KEPT {
+            whole.answers.truncate(MOST_KEPT);
+            whole.exact = false;
+        }
+        // A block without any state leaves none, however the others are; one that was not done may have some.
+        if whole.answers.is_empty() && found.exact {
+            whole.exact = true;
+            break;
+        }
+    }
+    whole
+}
+
+/// A node that no block has been looked at of.
+const NOTHING: NodeAnswer = NodeAnswer {
+    assumed: Assumed::Free,
+    f_n: 0.0,
+    f_t: 0.0,
+    limit: 0.0,
+    gap: 0.0,
+    slip: 0.0,
+    worst: Margin {
+        condition: problem::Condition::NoPenetration,
+        value: f64::INFINITY,
+        relative: f64::INFINITY,
+    },
+};
+
+/// A state with that of a block, whose nodes are at these places.
+fn joined(had: &Consistent, own: &Consistent, places: &[usize]) -> Consistent {
+    let mut answer = had.answer.clone();
+    for (&place, node) in places.iter().zip(&own.answer.nodes) {
+        answer.nodes[place] = *node;
+    }
+    let with = |letters: &str, of_block: &str| -> String {
+        let letters = letters.chars().enumerate().map(|(at, letter)| {
+            let own = places.iter().position(|&place| place == at);
+            own.and_then(|k| of_block.chars().nth(k)).unwrap_or(letter)
+        });
+        letters.collect()
+    };
+    let (first, of_block) = (had.answer.letters(), own.answer.letters());
+    let olds = std::iter::once(&first).chain(&had.ties);
+    let news = || std::iter::once(&of_block).chain(&own.ties);
+    let all = olds.flat_map(|old| news().map(|new| with(old, new)).collect::<Vec<_>>());
+    Consistent {
+        answer,
+        ties: all.skip(1).take(MOST_KEPT).collect(),
+    }
+}
+
+/// The nodes that forces connect, by place; each block by itself.
+fn blocks(problem: &InterfaceProblem) -> Vec<Vec<usize>> {
+    let (count, nodes) = (problem.relation.count(), problem.nodes.len());
+    let touches = |a: usize, b: usize| {
+        let entry = |i: usize, j: usize| problem.relation.response[j * count + i] != 0.0;
+        (0..4).any(|k| entry(2 * a + k % 2, 2 * b + k / 2) || entry(2 * b + k % 2, 2 * a + k / 2))
+    };
+    let mut block_of: Vec<Option<usize>> = vec![None; nodes];
+    let mut blocks: Vec<Vec<usize>> = Vec::new();
+    for first in 0..nodes {
+        if block_of[first].is_some() {
+            continue;
+        }
+        let mut block = vec![first];
+        block_of[first] = Some(blocks.len());
+        let mut next = 0;
+        while let Some(&node) = block.get(next) {
+            for (other, of) in block_of.iter_mut().enumerate() {
+                if of.is_none() && touches(node, other) {
+                    *of = Some(blocks.len());
+                    block.push(other);
+                }
+            }
+            next += 1;
+        }
+        block.sort_unstable();
+        blocks.push(block);
+    }
+    blocks
+}
+
+/// The problem of a block.
+fn part(problem: &InterfaceProblem, places: &[usize]) -> InterfaceProblem {
+    let count = problem.relation.count();
+    let own: Vec<usize> = places.iter().flat_map(|&s| [2 * s, 2 * s + 1]).collect();
+    let entries = own
+        .iter()
+        .flat_map(|&j| own.iter().map(move |&i| j * count + i));
+    InterfaceProblem {
+        relation: InterfaceResponse {
+            stiffness: problem.relation.stiffness,
+            start: own.iter().map(|&i| problem.relation.start[i]).collect(),
+            response: entries.map(|at| problem.relation.response[at]).collect(),
+        },
+        nodes: places.iter().map(|&s| problem.nodes[s]).collect(),
+        ..problem.clone()
+    }
+}
+
+/// The consistent states among the assumptions that branch and bound leaves, in the order of [`census`].
+fn branched(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) -> Census {
+    let mut walk = Walk::new(problem);
+    let Some(mut left) = branches::left(problem, budget, stop) else {
+        walk.found.exact = false;
+        return walk.found;
+    };
+    left.assumptions
+        .sort_by(|a, b| a.iter().rev().cmp(b.iter().rev()));
+    for assumed in &left.assumptions {
+        walk.try_one(assumed);
+    }
+    let choices = problem.nodes.iter().map(|node| node.choices().len());
+    let tried = choices.fold(1_usize, |all, choices| all.saturating_mul(choices));
+    Census {
+        tried,
+        visited: left.visited,
+        exact: left.all,
+        nearest: None,
+        ..walk.found
+    }
 }
 
 /// The walk through all assumptions, node by node, the last node first, so that only the equations of few nodes differ
@@ -113,12 +300,7 @@ impl<'a> Walk<'a> {
             pivots: vec![0; count],
             assumed: vec![Assumed::Free; problem.nodes.len()],
             z: [vec![0.0; count], vec![0.0; count]],
-            found: Census {
-                tried: 0,
-                singular: 0,
-                answers: Vec::new(),
-                nearest: None,
-            },
+            found: Census::empty(),
         }
     }
 
@@ -144,6 +326,29 @@ impl<'a> Walk<'a> {
                 self.found.tried += all;
                 self.found.singular += all;
             }
+        }
+    }
+
+    /// Tries one assumption.
+    fn try_one(&mut self, assumed: &[Assumed]) {
+        let nodes = self.problem.nodes.len();
+        self.assumed.copy_from_slice(assumed);
+        for depth in 0..nodes {
+            let place = nodes - depth - 1;
+            let choices = self.problem.nodes[place].choices();
+            let choice = choices.iter().position(|c| *c == assumed[place]);
+            let reduced = choice.is_some_and(|choice| {
+                self.reduce(2 * depth, place, choice, 0)
+                    && self.reduce(2 * depth + 1, place, choice, 1)
+            });
+            if !reduced {
+                self.found.singular += 1;
+                return;
+            }
+        }
+        match self.solve() {
+            true => self.take_solution(),
+            false => self.found.singular += 1,
         }
     }
 
@@ -227,6 +432,17 @@ fn probe(k: usize) -> f64 {
 }
 
 impl Census {
+    fn empty() -> Self {
+        Census {
+            tried: 0,
+            singular: 0,
+            visited: 0,
+            exact: true,
+            answers: Vec::new(),
+            nearest: None,
+        }
+    }
+
     fn take(&mut self, problem: &InterfaceProblem, answer: Answer) {
         if !answer.obeys(TOLERANCE) {
             let Some((node, margin)) = answer.worst() else {

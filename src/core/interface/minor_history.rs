@@ -91,6 +91,12 @@ impl MinorHistory {
         &self.entries[..nodes.min(self.entries.len())]
     }
 
+    /// Input of the iteration `back` before the next one, one entry a node. `None` if it is not remembered.
+    pub fn before(&self, nodes: usize, back: usize) -> Option<&[Input]> {
+        let from = self.entries.len().checked_sub(back * nodes)?;
+        self.entries.get(from..from + nodes)
+    }
+
     /// The cycle that closes if the iteration after `minor`, with input `nodes`, starts from the same input as an earlier
     /// one; else `None`. Two values of T_max are equal if they differ by at most `force`, two ratios ρ if they differ by at
     /// most `ratio` (1 + |ρ|).

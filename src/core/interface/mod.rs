@@ -4,9 +4,14 @@
 //!   answer motions; [`kinematics`]: how a node stands over its surface.
 //! - [`minor`]: one minor iteration at one node; [`method`]: what a strategy decides in it; [`minor_history`]: what went
 //!   into the minor iterations so far, and cycles of them.
-//! - [`census`] and [`lemke`]: what finds a consistent state, all nodes together.
+//! - [`census`] and [`lemke`]: what finds a consistent state, all nodes together; [`branches`] and [`feasible`]: what
+//!   cannot be consistent, which a census of many nodes leaves out.
+//! - [`spiral`]: where T_max goes while the modes repeat.
+//! - [`uniqueness`]: whether the matrix alone allows no second state.
 
+pub mod branches;
 pub mod census;
+pub mod feasible;
 pub mod kinematics;
 pub mod lemke;
 pub mod method;
@@ -15,4 +20,6 @@ pub mod minor_history;
 pub mod problem;
 pub mod response;
 pub mod rows;
+pub mod spiral;
 pub mod trials;
+pub mod uniqueness;

@@ -32,6 +32,11 @@ impl<'a> Trials<'a> {
         })
     }
 
+    /// The problem that is tried.
+    pub fn problem(&self) -> &'a InterfaceProblem {
+        self.problem
+    }
+
     /// The answer to an assumption, one entry a node. `None` if its equations are singular.
     pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
         let problem = self.problem;

@@ -5,9 +5,10 @@ use crate::contact::table2::Ties;
 use crate::interface::minor::{self, Check};
 use crate::interface::minor_history::Cycle;
 use crate::interface::rows::carried;
+use crate::interface::spiral::{Fate, spiral};
 use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
-use crate::model::{self, AtCycle, AtLimit};
+use crate::model::{self, AtCycle, AtLimit, Mode};
 use crate::step::event::{Failure, Outcome};
 use crate::step::stepper::Stepper;
 use crate::strategy;
@@ -18,6 +19,11 @@ use std::sync::Arc;
 const REPEATED: f64 = 1e-14;
 /// Forces this many times larger than the interface's stiffness over the scene's length are no forces.
 const UNBOUNDED: f64 = 1e10;
+/// Minor iterations after which a cycle is looked for into which T_max spirals slowly; also at the settings' limit.
+const LOOK: u32 = 100;
+/// Iterations that are looked ahead for it, and most nodes with which that takes no time to speak of.
+const AHEAD: usize = 600;
+const MOST_AHEAD: usize = 40;
 /// Rounds that all changes at once may go on without getting fewer.
 const PATIENCE: u32 = 10;
 
@@ -179,7 +185,9 @@ impl Stepper {
         let moves_on = method.counts_changes() && !self.is_stalled();
         if !accept
             && !moves_on
-            && let Some(cycle) = self.find_cycle()
+            && let Some(cycle) = self
+                .find_cycle()
+                .or_else(|| (at_limit || tried == LOOK).then(|| self.find_spiral())?)
         {
             if settings.at_cycle == AtCycle::Damp && self.damp() {
                 self.state.next.minor += 1;
@@ -217,5 +225,47 @@ impl Stepper {
         state
             .minor_history
             .cycle(&state.nodes, minor, force, REPEATED)
+    }
+
+    /// The cycle of modes that goes round for ever while T_max still spirals in: certain, since T_max goes linearly.
+    fn find_spiral(&mut self) -> Option<Cycle> {
+        let count = self.state.nodes.len();
+        if count > MOST_AHEAD {
+            return None;
+        }
+        let problem = self.source.problem(&self.state.at()).ok()?;
+        let method = strategy::method(self.state.settings().strategy);
+        let found = spiral(&problem, method, AHEAD)?;
+        let period = found.period as usize;
+        let history = &self.state.minor_history;
+        // What iteration `back` before the next one does in the round: rounds end `start` iterations from now.
+        let phase = |back: usize| (2 * period - back - found.start as usize % period) % period;
+        let patterns = || problem.nodes.iter().zip(&found.modes);
+        let went_round = (1..=period).all(|back| {
+            let inputs = history.before(count, back);
+            let as_found = |inputs: &[_]| {
+                patterns().all(|(node, modes)| {
+                    let input: &crate::interface::minor_history::Input = &inputs[node.slave];
+                    input.mode == modes[phase(back)]
+                })
+            };
+            inputs.is_some_and(as_found)
+        });
+        if found.fate != Fate::Cycles || !went_round {
+            return None;
+        }
+        let pattern = |modes: &[Mode]| (1..=period).rev().map(|b| modes[phase(b)]).collect();
+        let takes_part = |place: usize, modes: &[Mode]| {
+            modes.iter().any(|mode| *mode != modes[0]) || found.places.contains(&place)
+        };
+        let members = patterns().enumerate();
+        let members = members.filter(|(place, (_, modes))| takes_part(*place, modes));
+        Some(Cycle {
+            start: self.state.next.minor + 1 - found.period,
+            period: found.period,
+            members: members
+                .map(|(_, (node, modes))| (node.slave, pattern(modes)))
+                .collect(),
+        })
     }
 }

@@ -17,6 +17,8 @@ use ratatui::text::{Line, Span};
 /// Width of a consistent state's column: a letter and three numbers.
 const CELL: usize = 34;
 const NAME: usize = 12;
+/// Most nodes that are listed; of more, those in which the states differ come first.
+const MOST_LISTED: usize = 8;
 
 /// Draws the diagnosis.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -113,7 +115,9 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
         head.extend([Span::styled(text, style), Span::styled(rest, theme.faint)]);
     }
     let mut lines = vec![Line::default(), Line::from(head)];
-    for (place, node) in problem.nodes.iter().enumerate() {
+    let listed = listed(census, problem.nodes.len());
+    for &place in &listed {
+        let node = &problem.nodes[place];
         let differs = differs(census, place);
         let name = paint::cut(view.slave(node.slave), NAME);
         let mark = if differs { "*" } else { " " };
@@ -128,7 +132,18 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
         }
         lines.push(Line::from(spans));
     }
-    let more = if count > fit {
+    let left = problem.nodes.len() - listed.len();
+    if left > 0 {
+        let all = (0..problem.nodes.len()).filter(|&place| differs(census, place));
+        let text = match all.count() > listed.len() {
+            true => format!(" and {left} more nodes"),
+            false => format!(" and {left} more nodes, which do the same in all"),
+        };
+        lines.push(Line::styled(text, theme.faint));
+    }
+    let more = if !census.exact {
+        format!(" at least {count} in all;")
+    } else if count > fit {
         format!(" {count} in all;")
     } else {
         String::new()
@@ -139,6 +154,17 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
     );
     lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));
     lines
+}
+
+/// The nodes that are listed, by place: all where there are few; else first those in which the states differ.
+fn listed(census: &Census, nodes: usize) -> Vec<usize> {
+    let mut listed: Vec<usize> = (0..nodes).collect();
+    if nodes > MOST_LISTED {
+        listed.sort_by_key(|&place| !differs(census, place));
+        listed.truncate(MOST_LISTED);
+        listed.sort_unstable();
+    }
+    listed
 }
 
 /// Whether the consistent states differ at a node.

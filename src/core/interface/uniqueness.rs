@@ -1,0 +1,359 @@
+//! Whether the matrix of a frozen problem alone allows no second state, however many nodes there are.
+//!
+//! Of two states, let d be the difference of their forces and e that of their motions (of −gap along n, of the slip along
+//! t), with e = −W d, W the compliance. At every node
+//!
+//! - d_n e_n ≥ 0, since F_n ≥ 0, gap ≥ 0 and F_n gap = 0 in both;
+//! - F_t = h τ with h = tan φ F_n + c ≥ 0, |τ| ≤ 1, and τ is the sign of the slip where there is any. With the means h̄ of
+//!   both h and τ̄ of both τ, d_t = h̄ (τ − τ′) + tan φ τ̄ d_n, and (τ − τ′) e_t ≥ 0; so (d_t − tan φ τ̄ d_n) e_t ≥ 0.
+//!
+//! With positive weights p and q of each node the sum of both says, for some τ̄ in −1 to 1,
+//!
+//! ```text
+//! Σ p d_n (W d)_n + q (d_t − tan φ τ̄ d_n) (W d)_t ≤ 0
+//! ```
+//!
+//! Take p = q = 1. The sum is at least d·W d − Σ tan φ |d_n| |(W d)_t|, and 2 |d_n| |(W d)_t| ≤ d_n² / α + α (W d)_t² for any
+//! α > 0 of the node. So if
+//!
+//! ```text
+//! M = W − ½ Σ tan φ (n nᵀ / α + α (W t) (W t)ᵀ)
+//! ```
+//!
+//! is positive definite for some α, then d = 0: there is one state at most. (n, t: the unit vectors of a node's components.)
+//! With α = 1 / √(λ_max λ_min) for all nodes, M ≥ (1 − tan φ √cond W) W, so that the criterion holds at least where
+//! tan φ √cond W < 1; tan φ may differ from node to node.
+//!
+//! Where it does not apply:
+//!
+//! - A node with **cohesion** loses it when it opens: F_t = h τ does not hold there, and nothing follows.
+//! - **What is prescribed, and slip made before**, is the same in both states and drops out of e.
+//! - **T_max**: a settled minor iteration has T_max of its own F_n, lagged or consistent, so its states are these.
+//! - Without a surface, forces are zero in both states, and without friction F_t is: such components are left out of W.
+//! - A component in which no unknown takes part moves nothing: **supports carry** its force, e is zero there and its row of W,
+//!   too. It is left out; the other forces and all motions are the same in both states.
+//!
+//! The bound is sufficient only: it looks neither at loads nor at gaps. That uniqueness for all loads needs a friction that
+//! is small against the mesh is known of Coulomb friction (Haslinger, Math. Methods Appl. Sci. 5, 1983; Hassani, Ionescu &
+//! Oudet, Int. J. Solids Struct. 44, 2007).
+
+use crate::interface::problem::InterfaceProblem;
+use crate::linalg::DenseFactors;
+
+/// Scales of α that are tried, each twice the one before, about 1.
+const SCALES: i32 = 8;
+/// Rounds in which the α of single nodes are bettered.
+const ROUNDS: usize = 12;
+/// An eigenvalue must be positive by this part of the largest entry, times the size.
+const ROUND_OFF: f64 = 1e-12;
+/// Condition of the response above which its inverse is not believed.
+const SINGULAR: f64 = 1e10;
+
+/// What the matrix says of the number of states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Uniqueness {
+    /// One state at most. With all friction coefficients times `spare` that would still be proven.
+    Unique {
+        /// At least 1.
+        spare: f64,
+        /// Whether supports carry a force at some node: the states are the same but for that force.
+        carried: bool,
+    },
+    /// Not proven; with friction coefficients `spare` times as large it would be.
+    Unproven {
+        /// Less than 1.
+        spare: f64,
+    },
+    /// The criterion does not apply.
+    Not(Inapplicable),
+}
+
+/// Why the criterion does not apply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Inapplicable {
+    /// A node (its place) has cohesion.
+    Cohesion(usize),
+    /// Bodies are loose, or forces move nothing: there is no definite compliance.
+    Singular,
+    /// The compliance is not positive definite.
+    Indefinite,
+}
+
+/// Looks at a problem's matrix. It takes a few dense factorisations of the interface's size.
+pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
+    let compliance = match Compliance::of(problem) {
+        Ok(compliance) => compliance,
+        Err(why) => return Uniqueness::Not(why),
+    };
+    let spare = compliance.spare();
+    match spare >= 1.0 {
+        true => Uniqueness::Unique {
+            spare,
+            carried: compliance.carried,
+        },
+        false => Uniqueness::Unproven { spare },
+    }
+}
+
+/// tan φ √cond W with the largest tan φ: below 1, states are unique, too. `None` where there is no definite compliance.
+pub fn plain(problem: &InterfaceProblem) -> Option<f64> {
+    let compliance = Compliance::of(problem).ok()?;
+    let (size, w) = (compliance.size, &compliance.matrix);
+    let largest = power(size, |x| times(w, size, x));
+    let mut factors = DenseFactors::new(size, 1).ok()?;
+    factors.factor(w);
+    let inverse = power(size, |x| {
+        let mut y = x.to_vec();
+        // Its factors exist: it is definite.
+        let _ = factors.solve(&mut y);
+        y
+    });
+    let steepest = compliance.pairs.iter().fold(0.0_f64, |m, p| m.max(p.2));
+    Some(steepest * (largest * inverse).sqrt())
+}
+
+/// W of the components that can differ, scaled to a unit diagonal's mean.
+struct Compliance {
+    size: usize,
+    /// Its symmetric part, column by column.
+    matrix: Vec<f64>,
+    /// W row by row: not symmetric where the tangent is not.
+    rows: Vec<f64>,
+    /// Round-off of W, relative to its largest entry.
+    round_off: f64,
+    /// Rows of n and t of each rough node, and its tan φ.
+    pairs: Vec<(usize, usize, f64)>,
+    carried: bool,
+}
+
+impl Compliance {
+    fn of(problem: &InterfaceProblem) -> Result<Compliance, Inapplicable> {
+        let relation = &problem.relation;
+        let count = relation.count();
+        let mut kept = Vec::new();
+        let mut pairs = Vec::new();
+        let mut carried = false;
+        for (place, node) in problem.nodes.iter().enumerate() {
+            if node.kinematics.is_none() {
+                continue;
+            }
+            if node.friction.cohesion != 0.0 {
+                return Err(Inapplicable::Cohesion(place));
+            }
+            let smooth = node.friction.is_smooth();
+            let [n, t] = node.moves();
+            carried |= !n || !(t || smooth);
+            if !n {
+                continue;
+            }
+            kept.push(2 * place);
+            if !smooth && t {
+                pairs.push((kept.len() - 1, kept.len(), node.friction.coefficient()));
+                kept.push(2 * place + 1);
+            }
+        }
+        // F changes by R z, motions by z + R z / k: e = −W d with W = −(R⁻¹ + 1/k).
+        let mut factors = DenseFactors::new(count, count).map_err(|_| Inapplicable::Singular)?;
+        factors.factor(&relation.response);
+        let norm = factors.inverse_norm();
+        if norm > SINGULAR {
+            return Err(Inapplicable::Singular);
+        }
+        let mut inverse = vec![0.0; count * count];
+        for k in 0..count {
+            inverse[k * count + k] = 1.0;
+        }
+        let solved = factors.solve(&mut inverse);
+        solved.map_err(|_| Inapplicable::Singular)?;
+        let size = kept.len();
+        let entry = |i: usize, j: usize| {
+            let spring = if i == j {
+                1.0 / relation.stiffness
+            } else {
+                0.0
+            };
+            -inverse[j * count + i] - spring
+        };
+        let pairs_of = kept.iter().flat_map(|&i| kept.iter().map(move |&j| (i, j)));
+        let mut rows: Vec<f64> = pairs_of.map(|(i, j)| entry(i, j)).collect();
+        let mean = (0..size).map(|k| rows[k * size + k]).sum::<f64>() / size.max(1) as f64;
+        if mean <= 0.0 && size > 0 {
+            return Err(Inapplicable::Indefinite);
+        }
+        rows.iter_mut().for_each(|x| *x /= mean);
+        let both = |k: usize| (rows[k] + rows[k % size * size + k / size]) / 2.0;
+        let compliance = Compliance {
+            size,
+            matrix: (0..size * size).map(both).collect(),
+            rows,
+            round_off: ROUND_OFF.max(1e-15 * norm),
+            pairs,
+            carried,
+        };
+        match compliance.is_definite(&compliance.matrix) {
+            true => Ok(compliance),
+            false => Err(Inapplicable::Indefinite),
+        }
+    }
+
+    /// By how much all coefficients of friction can be multiplied until the criterion fails; infinite without friction.
+    /// It is found by bisection and proven at its value.
+    fn spare(&self) -> f64 {
+        if self.pairs.is_empty() {
+            return f64::INFINITY;
+        }
+        let alphas = self.alphas();
+        let holds = |spare: f64| self.is_definite(&self.reduced(&alphas, spare));
+        let (mut low, mut high) = (0.0, 1.0);
+        while holds(high) {
+            (low, high) = (high, 2.0 * high);
+            if high > 1e6 {
+                return low;
+            }
+        }
+        for _ in 0..20 {
+            let middle = (low + high) / 2.0;
+            if holds(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// The α of each rough node: those of one scale that spare most, then bettered node by node where the two terms of
+    /// the vector that comes first to fail are not the same.
+    fn alphas(&self) -> Vec<f64> {
+        let Ok(mut factors) = DenseFactors::new(self.size, 1) else {
+            return vec![1.0; self.pairs.len()];
+        };
+        factors.factor(&self.matrix);
+        let mut worst = |alphas: &[f64]| self.first_to_fail(alphas, &mut factors);
+        let (mut least, mut alphas) = (f64::INFINITY, vec![1.0; self.pairs.len()]);
+        for k in -SCALES..=SCALES {
+            let tried = vec![2f64.powi(k); self.pairs.len()];
+            let now = worst(&tried).0;
+            if now < least {
+                (least, alphas) = (now, tried);
+            }
+        }
+        for _ in 0..ROUNDS {
+            let (_, x) = worst(&alphas);
+            let wx = times(&self.matrix, self.size, &x);
+            let scale = |(&(n, t, _), alpha): (&(usize, usize, f64), &f64)| {
+                let (a, b) = (x[n].abs() / alpha.sqrt(), wx[t].abs() * alpha.sqrt());
+                let lean = ((a + 1e-3) / (b + 1e-3)).clamp(0.5, 2.0);
+                alpha * lean.powf(0.5)
+            };
+            let turned: Vec<f64> = self.pairs.iter().zip(&alphas).map(scale).collect();
+            let now = worst(&turned).0;
+            if now >= least {
+                break;
+            }
+            (least, alphas) = (now, turned);
+        }
+        alphas
+    }
+
+    /// The largest of ½ Σ tan φ (x_n² / α + α (W x)_t²) over x·W x, by power iteration, and its x (x·W x = 1).
+    fn first_to_fail(&self, alphas: &[f64], factors: &mut DenseFactors) -> (f64, Vec<f64>) {
+        let size = self.size;
+        let mut x: Vec<f64> = (0..size)
+            .map(|k| 1.0 + (0.618 * k as f64).fract())
+            .collect();
+        let mut value = 0.0;
+        for _ in 0..60 {
+            let wx = times(&self.matrix, size, &x);
+            let norm = x.iter().zip(&wx).map(|(a, b)| a * b).sum::<f64>().sqrt();
+            // W⁻¹ N x, with N = ½ Σ tan φ (n nᵀ / α + α W t tᵀ W): the first part is solved, the second is t.
+            let (mut first, mut second) = (vec![0.0; size], vec![0.0; size]);
+            for (&(n, t, tangent), alpha) in self.pairs.iter().zip(alphas) {
+                first[n] = tangent / 2.0 * x[n] / alpha / norm;
+                second[t] = tangent / 2.0 * alpha * wx[t] / norm;
+            }
+            let _ = factors.solve(&mut first);
+            value = first
+                .iter()
+                .zip(&second)
+                .zip(&wx)
+                .map(|((a, b), w)| (a + b) * w / norm)
+                .sum();
+            x = first.iter().zip(&second).map(|(a, b)| a + b).collect();
+        }
+        let wx = times(&self.matrix, size, &x);
+        let norm = x.iter().zip(&wx).map(|(a, b)| a * b).sum::<f64>().sqrt();
+        x.iter_mut().for_each(|x| *x /= norm);
+        (value, x)
+    }
+
+    /// M of these α, all coefficients times `spare`.
+    fn reduced(&self, alphas: &[f64], spare: f64) -> Vec<f64> {
+        let size = self.size;
+        let mut m = self.matrix.clone();
+        for (&(n, t, tangent), alpha) in self.pairs.iter().zip(alphas) {
+            let half = spare * tangent / 2.0;
+            m[n * size + n] -= half / alpha;
+            let across = &self.rows[t * size..(t + 1) * size];
+            for (j, column) in m.chunks_exact_mut(size).enumerate() {
+                let factor = half * alpha * across[j];
+                column
+                    .iter_mut()
+                    .zip(across)
+                    .for_each(|(x, a)| *x -= factor * a);
+            }
+        }
+        m
+    }
+}
+
+impl Compliance {
+    /// Whether a symmetric matrix is positive definite by more than round-off: by Cholesky's factors of it less that much.
+    fn is_definite(&self, matrix: &[f64]) -> bool {
+        let size = self.size;
+        let mut a = matrix.to_vec();
+        let largest = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let least = self.round_off * size as f64 * largest;
+        for k in 0..size {
+            a[k * size + k] -= least;
+        }
+        for k in 0..size {
+            let (before, rest) = a.split_at_mut((k + 1) * size);
+            let column = &before[k * size..];
+            let pivot = column[k];
+            if pivot.is_nan() || pivot <= 0.0 {
+                return false;
+            }
+            for (j, other) in (k + 1..size).zip(rest.chunks_exact_mut(size)) {
+                let factor = column[j] / pivot;
+                let own = other[j..].iter_mut().zip(&column[j..]);
+                own.for_each(|(x, c)| *x -= factor * c);
+            }
+        }
+        true
+    }
+}
+
+fn times(matrix: &[f64], size: usize, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; size];
+    for (column, x) in matrix.chunks_exact(size.max(1)).zip(x) {
+        y.iter_mut().zip(column).for_each(|(y, a)| *y += a * x);
+    }
+    y
+}
+
+/// The largest eigenvalue of a definite operator.
+fn power(size: usize, mut apply: impl FnMut(&[f64]) -> Vec<f64>) -> f64 {
+    let mut x: Vec<f64> = (0..size)
+        .map(|k| 1.0 + (0.618 * k as f64).fract())
+        .collect();
+    let mut value = 0.0;
+    for _ in 0..200 {
+        let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        x.iter_mut().for_each(|x| *x /= norm);
+        let y = apply(&x);
+        value = x.iter().zip(&y).map(|(a, b)| a * b).sum();
+        x = y;
+    }
+    value
+}
