@@ -1,15 +1,15 @@
 //! Arguments of actions: what is typed after a name, read.
 
 use super::context::{Context, any_or_exact, chosen, exact, find, model, several};
-use super::meaning::{Action, ChartOf, Filter, Question, Sort, Ui, Whose};
+use super::meaning::{Action, ChartOf, Colours, Copied, Filter, Question, Sort, Ui, Whose};
 use super::misread::Misread;
-use super::table::{Entry, Verb, by_name};
+use super::table::{Entry, Verb};
 use crate::format::paths;
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::manual;
 use crate::model::Mode;
-use crate::record::command::{Command, To};
+use crate::record::command::{Command, Exported, To};
 use crate::study::Vary;
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub fn parse(line: &str, context: &Context) -> Result<Action, Misread> {
     if word.is_empty() {
         return Err(Misread::Nothing);
     }
-    by_name(word)?.act(rest.trim(), context)
+    context.entry(word)?.act(rest.trim(), context)
 }
 
 impl Entry {
@@ -90,12 +90,22 @@ impl Entry {
             Verb::Watch => Command::Watch(self.watch(&words, context)?),
             Verb::Plain(command) => command.clone(),
             Verb::Census => Command::Census(several(&words, context)?),
-            Verb::Export { .. } if rest.is_empty() => return Err(self.misused()),
-            Verb::Export { what, overwrite } => Command::Export {
-                what: *what,
-                file: PathBuf::from(rest),
-                overwrite: *overwrite,
-            },
+            Verb::Export { what, overwrite } => {
+                let frozen = match what {
+                    Exported::Shown => rest.strip_prefix("--frozen"),
+                    _ => None,
+                };
+                let frozen = frozen.filter(|file| file.is_empty() || file.starts_with(' '));
+                let file = frozen.map_or(rest, str::trim_start);
+                if file.is_empty() {
+                    return Err(self.misused());
+                }
+                Command::Export {
+                    what: frozen.map_or(*what, |_| Exported::Whole),
+                    file: PathBuf::from(file),
+                    overwrite: *overwrite,
+                }
+            }
             Verb::Snapshot { overwrite: true } if rest.is_empty() => return Err(self.misused()),
             Verb::Snapshot { overwrite } => {
                 let file = (!rest.is_empty()).then(|| PathBuf::from(rest));
@@ -116,6 +126,21 @@ impl Entry {
             Verb::Filter => {
                 let filter = one_of(&words, Filter::ALL, Filter::word)?;
                 return Ok(Action::Ui(Ui::Filter(filter)));
+            }
+            Verb::Copy => {
+                let what = one_of(&words, Copied::all(), Copied::word)?;
+                return Ok(Action::Ui(Ui::Copy(what)));
+            }
+            Verb::Colours => {
+                let rest = words.join(" ");
+                let rest = (!rest.is_empty()).then_some(rest.as_str());
+                let colours = one_of(rest.as_slice(), Colours::ALL, Colours::word)?;
+                return Ok(Action::Ui(Ui::Colours(colours)));
+            }
+            Verb::Mouse => {
+                let word = |on: bool| if on { "on" } else { "off" };
+                let on = one_of(&words, [true, false], word)?;
+                return Ok(Action::Ui(Ui::Mouse(on)));
             }
             Verb::Chart => return Ok(Action::Ui(Ui::Chart(chart_of(rest, &words)?))),
             Verb::Lesson if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Lesson))),
@@ -333,15 +358,20 @@ fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Misread> {
 /// The choice that a word, or its beginning, stands for; `None` without a word.
 fn one_of<T: Copy>(
     words: &[&str],
-    all: [T; 3],
+    all: impl IntoIterator<Item = T>,
     spell: fn(T) -> &'static str,
 ) -> Result<Option<T>, Misread> {
     let Some(word) = words.first() else {
         return Ok(None);
     };
-    let found = all.into_iter().find(|&one| spell(one).starts_with(word));
-    found.map(Some).ok_or_else(|| {
-        let (word, all) = (word.to_string(), all.map(spell));
+    let all: Vec<T> = all.into_iter().collect();
+    let found = all.iter().find(|&&one| spell(one) == *word);
+    let begun = || all.iter().find(|&&one| spell(one).starts_with(word));
+    found.or_else(begun).copied().map(Some).ok_or_else(|| {
+        let (word, all) = (
+            word.to_string(),
+            all.iter().map(|&one| spell(one)).collect(),
+        );
         Misread::NoneOf { word, all }
     })
 }

@@ -2,7 +2,8 @@
 
 use super::arguments::{CONDITIONS, set_paths};
 use super::context::{Context, names};
-use super::meaning::{Filter, Sort, Whose};
+use super::meaning::{Colours, Copied, Filter, Sort, Whose};
+use super::paths::beginning_with;
 use super::table::{ACTIONS, Entry, Verb, by_name};
 use crate::format::paths;
 use crate::history::tree::Tree;
@@ -12,7 +13,7 @@ use crate::manual;
 /// What a line could go on as: whole lines, of which the first is the likeliest.
 pub fn complete(line: &str, context: &Context) -> Vec<String> {
     let first = line.split_whitespace().next();
-    let entry = first.and_then(|name| by_name(name).ok());
+    let entry = first.and_then(|name| context.entry(name).ok());
     let start = match entry.filter(|entry| entry.takes_rest()) {
         // What is one argument, blanks and all, goes on as a whole.
         Some(_) => line.find(char::is_whitespace),
@@ -21,13 +22,22 @@ pub fn complete(line: &str, context: &Context) -> Vec<String> {
     let (before, word) = line.split_at(start.map_or(0, |at| at + 1));
     let candidates: Vec<String> = match before.split_whitespace().next() {
         None => ACTIONS.iter().map(|entry| entry.name.to_string()).collect(),
-        Some(name) => by_name(name).map_or(Vec::new(), |entry| entry.candidates(before, context)),
+        Some(name) => context.entry(name).map_or(Vec::new(), |entry| {
+            let mut all = entry.candidates(before, context);
+            all.extend(entry.paths(word));
+            all
+        }),
     };
     candidates
         .iter()
         .filter(|c| c.starts_with(word))
         .map(|c| format!("{before}{c}"))
         .collect()
+}
+
+/// Whether what follows an action's name is a path, blanks and all.
+pub fn takes_path(name: &str) -> bool {
+    by_name(name).is_ok_and(|entry| entry.endings().is_some())
 }
 
 /// Whether an action takes nodes apart by commas.
@@ -38,7 +48,27 @@ fn is_list(entry: Option<&Entry>) -> bool {
 impl Entry {
     /// Whether all that stands after its name is one argument that can be completed.
     fn takes_rest(&self) -> bool {
-        matches!(self.verb, Verb::Branch(None) | Verb::Compare)
+        matches!(
+            self.verb,
+            Verb::Branch(None) | Verb::Compare | Verb::Colours
+        ) || self.endings().is_some()
+    }
+
+    /// Endings of the files that it takes, any where there are none; `None` if it takes no path.
+    fn endings(&self) -> Option<&'static [&'static str]> {
+        match self.verb {
+            Verb::Open => Some(&["ron", "dat", "journal"]),
+            Verb::Lesson => Some(&["ron"]),
+            Verb::Chart => Some(&["csv"]),
+            Verb::Journal | Verb::Export { .. } | Verb::Snapshot { .. } => Some(&[]),
+            _ => None,
+        }
+    }
+
+    /// Files and folders that its path could go on as.
+    fn paths(&self, word: &str) -> Vec<String> {
+        self.endings()
+            .map_or(Vec::new(), |endings| beginning_with(word, endings))
     }
 
     /// What can stand as the next argument after the text before it.
@@ -84,6 +114,9 @@ impl Entry {
                 names.map(|lesson| lesson.name.into()).collect()
             }
             (Verb::Predict, 0) => Whose::ALL.map(|whose| whose.word().into()).into(),
+            (Verb::Copy, 0) => Copied::all().map(|what| what.word().into()).collect(),
+            (Verb::Colours, 0) => Colours::ALL.map(|colours| colours.word().into()).into(),
+            (Verb::Mouse, 0) => ["on", "off"].map(String::from).into(),
             (Verb::Sort, 0) => Sort::ALL.map(|sort| sort.word().into()).into(),
             (Verb::Filter, 0) => Filter::ALL.map(|filter| filter.word().into()).into(),
             (Verb::Monitor, 0) => {

@@ -1,6 +1,8 @@
 //! What an action needs to know to understand its arguments, and slave nodes by the names that are typed.
 
+use super::keymap::Keymap;
 use super::misread::Misread;
+use super::table::{Entry, begun, by_name};
 use crate::history::tree::Tree;
 use crate::interface::census::MOST;
 use crate::model::Model;
@@ -21,6 +23,22 @@ pub struct Context<'a> {
     pub scenes: &'a [String],
     /// Lessons that the program carries.
     pub lessons: &'a [Builtin],
+    /// The present keys; none are those of the table.
+    pub keymap: Option<&'a Keymap>,
+}
+
+impl Context<'_> {
+    /// The entry that a word names: its name, its one-letter key, or the beginning of one name only.
+    pub fn entry(&self, word: &str) -> Result<&'static Entry, Misread> {
+        let key = (word.chars().count() == 1).then_some(word);
+        match (self.keymap, key) {
+            (Some(keymap), Some(key)) => match keymap.by_key(key) {
+                Some(entry) => Ok(entry),
+                None => begun(word),
+            },
+            _ => by_name(word),
+        }
+    }
 }
 
 /// The slave node that a word names, or the selected one where there is no word.

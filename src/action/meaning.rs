@@ -1,5 +1,6 @@
 //! What a key or a typed line can mean: a command for the session, or something that concerns the terminal alone.
 
+use crate::history::watches::WatchQuantity;
 use crate::manual;
 use crate::record::command::Command;
 use crate::study::Vary;
@@ -69,6 +70,8 @@ pub enum Ui {
     Lesson(String),
     /// On with the lesson.
     On,
+    /// The lesson's words once more from their beginning.
+    Reread,
     /// An answer to the lesson's question, or a prediction.
     Answer(String),
     /// Free mode: whose decisions hide until predicted; none switches it on or off.
@@ -83,6 +86,14 @@ pub enum Ui {
     Help,
     /// Show this page of the manual.
     Manual(&'static manual::Page),
+    /// Copy something to the terminal's clipboard; none is what is selected.
+    Copy(Option<Copied>),
+    /// Show the present keys, as a file would have them.
+    Keys,
+    /// Other colours; none tells the present ones.
+    Colours(Option<Colours>),
+    /// Heed the mouse or not; none switches.
+    Mouse(Option<bool>),
     /// Draw the whole screen again.
     Redraw,
     /// Give the terminal back to the shell until it resumes the program (Ctrl-Z).
@@ -219,4 +230,71 @@ pub enum Question {
     Lesson,
     /// The answer to the lesson's question, or the next mode of the selected node.
     Answer,
+}
+
+/// What can be copied, besides what is selected in the pane with the focus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Copied {
+    /// All numbers of the selected slave node.
+    Row,
+    /// The line that was typed last.
+    Command,
+    /// The present keys, as a file would have them.
+    Keys,
+    /// A number of the selected slave node, or of the solve.
+    Number(WatchQuantity),
+}
+
+impl Copied {
+    /// All, in the order in which they are offered.
+    pub fn all() -> impl Iterator<Item = Copied> {
+        let numbers = WatchQuantity::ALL.into_iter().map(Copied::Number);
+        [Copied::Row, Copied::Command, Copied::Keys]
+            .into_iter()
+            .chain(numbers)
+    }
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Copied::Row => "row",
+            Copied::Command => "command",
+            Copied::Keys => "keys",
+            Copied::Number(quantity) => quantity.word(),
+        }
+    }
+}
+
+/// Which colours the screen has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Colours {
+    /// The terminal's own, for dark grounds; they do on most light ones.
+    #[default]
+    Dark,
+    /// The terminal's own, those that stand out on light grounds.
+    Light,
+    /// White and bright colours on black, nothing dim.
+    HighContrast,
+    /// Bold, dim, underlined and reversed only.
+    None,
+}
+
+impl Colours {
+    /// All, in the order in which they are offered.
+    pub const ALL: [Colours; 4] = [
+        Colours::Dark,
+        Colours::Light,
+        Colours::HighContrast,
+        Colours::None,
+    ];
+
+    /// The word for them.
+    pub fn word(self) -> &'static str {
+        match self {
+            Colours::Dark => "dark",
+            Colours::Light => "light",
+            Colours::HighContrast => "high contrast",
+            Colours::None => "none",
+        }
+    }
 }

@@ -52,13 +52,13 @@ pub enum Misread {
     /// A word that is no place in a run.
     #[error(transparent)]
     NoPlace(#[from] NoPlace),
-    /// A word that is none of three.
+    /// A word that is none of a few.
     #[error("'{word}' is none of {}", all.join(", "))]
     NoneOf {
         /// What was typed.
         word: String,
         /// The words that would do.
-        all: [&'static str; 3],
+        all: Vec<&'static str>,
     },
     /// A word that is no quantity to watch, and the quantities.
     #[error("'{0}' cannot be watched; {1} can")]

@@ -5,20 +5,29 @@
 //! round. An action that lacks an argument it needs asks for it ([`Ui::Ask`]).
 //!
 //! - [`meaning`]: what an action can be; [`table`]: all of them by name; [`context`]: what their arguments are read against.
-//! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as; [`misread`]: why it means nothing.
+//! - [`keymap`]: which key does which; [`config`]: what the user has set; `turns`: what must wait for the solver.
+//! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as, `paths` for files;
+//!   [`misread`]: why it means nothing.
 
 pub mod arguments;
 pub mod complete;
+pub mod config;
 pub mod context;
+pub mod keymap;
 pub mod meaning;
 pub mod misread;
+mod paths;
 pub mod table;
 #[cfg(test)]
 mod tests;
+mod turns;
 
 pub use arguments::{increment, mode, parse};
-pub use complete::complete;
+pub use complete::{complete, takes_path};
 pub use context::{Context, exact};
-pub use meaning::{Action, ChartOf, Filter, Page, Question, Sort, Step, Ui, Whose};
+pub use keymap::Keymap;
+pub use meaning::{
+    Action, ChartOf, Colours, Copied, Filter, Page, Question, Sort, Step, Ui, Whose,
+};
 pub use misread::Misread;
 pub use table::{ACTIONS, Entry, Group, by_key, by_name, markdown};

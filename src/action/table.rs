@@ -117,6 +117,9 @@ pub(super) enum Verb {
     Chart,
     Answer,
     Predict,
+    Copy,
+    Colours,
+    Mouse,
     Help,
     Do(Ui),
 }
@@ -193,7 +196,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "page-down", "", &["PageDown"], "", "A page of nodes down", Verb::Do(Ui::Move(Step::PageDown))),
     entry(Group::Look, "first", "", &["Home", "g"], "", "First node", Verb::Do(Ui::Move(Step::First))),
     entry(Group::Look, "last", "", &["End", "G"], "", "Last node", Verb::Do(Ui::Move(Step::Last))),
-    entry(Group::Look, "node", "NAME", &["/"], "", "Select a slave node by its name or a part of it", Verb::Node),
+    entry(Group::Look, "node", "NAME", &["/"], "", "Find a slave node, a branch or a remedy by a part of its name; `/` and Enter alone find the next", Verb::Node),
     entry(Group::Look, "sort", "[ORDER]", &[">"], "", "Sort the nodes: as in the scene, by margin (closest to switching first), by gap", Verb::Sort),
     entry(Group::Look, "sort-backward", "", &["<"], "", "Sort the other way round, and back", Verb::Do(Ui::SortBackward)),
     entry(Group::Look, "filter", "[WHICH]", &["A"], "", "Show all nodes, active ones (touching or changing), those on the selected one's surface", Verb::Filter),
@@ -210,9 +213,11 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "enlarge", "", &["+", "="], "", "The shape larger", Verb::Do(Ui::Enlarge)),
     entry(Group::Look, "shrink", "", &["-"], "", "The shape smaller", Verb::Do(Ui::Shrink)),
     entry(Group::Look, "fit", "", &["0"], "", "The whole shape", Verb::Do(Ui::Fit)),
+    entry(Group::Look, "copy", "[WHAT]", &["Y"], "", "Copy what is selected to the clipboard: a row, a value, a command; or row, command, keys, gap, f_n, …", Verb::Copy),
 
     entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "A guided lesson: a file, or a built-in one", Verb::Lesson),
-    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson", Verb::Do(Ui::On)),
+    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson: more of its words, then the next step", Verb::Do(Ui::On)),
+    entry(Group::Learn, "reread", "", &["Backspace"], "", "The lesson's words once more from their beginning, where the screen has no room for all", Verb::Do(Ui::Reread)),
     entry(Group::Learn, "answer", "[WORD]", &["a"], "answer", "Answer the lesson's question, or predict the selected node's next mode", Verb::Answer),
     entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Decisions hide until predicted: any one (selected), every changed one, or off", Verb::Predict),
 
@@ -221,10 +226,13 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "snapshot!", "FILE", &[], "", "The same, over a file that is there already", Verb::Snapshot { overwrite: true }),
     entry(Group::Program, "core", "FILE", &[], "", "Write the fewest nodes that still cycle as a scene of their own", Verb::Export { what: Exported::Core, overwrite: false }),
     entry(Group::Program, "core!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Core, overwrite: true }),
-    entry(Group::Program, "export", "FILE", &[], "", "Write the frozen interface problem of all nodes as a scene of its own", Verb::Export { what: Exported::Whole, overwrite: false }),
-    entry(Group::Program, "export!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Whole, overwrite: true }),
+    entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Make a file of the shown state, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat that for Siconos", Verb::Export { what: Exported::Shown, overwrite: false }),
+    entry(Group::Program, "export!", "[--frozen] FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Shown, overwrite: true }),
     entry(Group::Program, "journal", "[FILE]", &[], "", "Keep the journal in this new file, with all that was done; or tell where it is", Verb::Journal),
-    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one", Verb::Open),
+    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one; a journal goes on where it was", Verb::Open),
+    entry(Group::Program, "keys", "", &[], "", "The present keys, as the file has them that changes them", Verb::Do(Ui::Keys)),
+    entry(Group::Program, "colours", "[NAME]", &[], "", "Other colours: dark, light, high contrast, none", Verb::Colours),
+    entry(Group::Program, "mouse", "[on|off]", &[], "", "Heed the mouse, or leave it to the terminal", Verb::Mouse),
     entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
     entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
     entry(Group::Program, "cancel", "", &["Esc"], "", "Drop a count, close a prompt, unzoom", Verb::Do(Ui::Cancel)),
@@ -253,6 +261,11 @@ pub fn by_name(word: &str) -> Result<&'static Entry, Misread> {
     {
         return Ok(entry);
     }
+    begun(word)
+}
+
+/// The only entry whose name begins with a word.
+pub(super) fn begun(word: &str) -> Result<&'static Entry, Misread> {
     let found: Vec<_> = ACTIONS
         .iter()
         .filter(|entry| begins(entry.name, word))
@@ -297,7 +310,7 @@ impl Entry {
             Verb::Lesson | Verb::Chart | Verb::Journal => usize::MAX,
             Verb::Export { .. } | Verb::Census => usize::MAX,
             Verb::Branch(None) | Verb::Rename | Verb::Compare => usize::MAX,
-            Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,
+            Verb::Colours | Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,
             _ => self.arguments.split_whitespace().count(),
         }
     }

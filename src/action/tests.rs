@@ -25,6 +25,7 @@ fn model() -> Model {
         friction: Friction::default(),
         start: Mode::Free,
         state: Default::default(),
+        overlap: 0.0,
     };
     Model {
         title: String::new(),
@@ -295,9 +296,21 @@ fn files_to_export_to_must_be_named() {
         read("core a b.ron"),
         export(Exported::Core, "a b.ron", false)
     );
-    assert_eq!(read("export! x"), export(Exported::Whole, "x", true));
+    assert_eq!(read("export! x"), export(Exported::Shown, "x", true));
+    assert_eq!(
+        read("export --frozen a b.ron"),
+        export(Exported::Whole, "a b.ron", false)
+    );
+    assert_eq!(
+        read("export --frozen.svg"),
+        export(Exported::Shown, "--frozen.svg", false)
+    );
+    assert!(read("export --frozen").is_err());
     assert_eq!(read("core"), Err("usage: core FILE".into()));
-    assert_eq!(read("export!"), Err("usage: export! FILE".into()));
+    assert_eq!(
+        read("export!"),
+        Err("usage: export! [--frozen] FILE".into())
+    );
 }
 
 #[test]

@@ -118,8 +118,7 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     let model = &course.scene.model;
     say(&table(name, model, &audit))?;
     if let Some((position, load, failure)) = failed {
-        let last = stepper.state().start.load_factor;
-        let told = report::failure(model, position, load, last, &failure);
+        let told = report::failure(model, stepper.state(), position, load, &failure);
         tell(&format!("{name}: the history ends early: {told}"));
     }
     Ok(match audit.broken().next() {

@@ -18,9 +18,9 @@ pub enum Exit {
     Differ = 1,
     /// Bad input or usage.
     Bad = 2,
-    /// The solve did not converge.
+    /// The solve did not converge, or nothing that was tried helps.
     Unconverged = 3,
-    /// Stopped from outside: Ctrl-C, or a reader that closed the pipe.
+    /// Stopped from outside by Ctrl-C; a reader that closes the pipe stops nothing that he wants.
     Interrupted = 130,
 }
 

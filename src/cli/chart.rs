@@ -3,10 +3,10 @@
 use super::base::{Error, Exit, NoValue, SetArgs, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
-use super::sink::Sent;
 use crate::explain::number::six;
+use crate::format::kind::{FileKind, mistaken};
 use crate::study::chart_file::{Chart, Truth};
-use crate::study::precision::{self, Cost, Measure, Precision};
+use crate::study::precision::{self, Cost, Measure, Point, Precision, ROUND_OFF};
 use crate::study::precision_table;
 use crate::study::{Vary, Watch, precision_figure};
 use std::path::{Path, PathBuf};
@@ -34,6 +34,10 @@ pub struct Args {
     over: Vec<Vary>,
     #[command(flatten)]
     set: SetArgs,
+    /// Measures errors by this monitor, whatever it is: a displacement, a contact force; may be repeated
+    /// [default: the chart's own, else all displacements]
+    #[arg(long, value_name = "MONITOR", conflicts_with = "from")]
+    by: Vec<String>,
     /// Names the cheapest run whose error is at most this
     #[arg(long, value_name = "ERROR", value_parser = target)]
     target: Option<f64>,
@@ -68,8 +72,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(file) = &args.from {
         let name = file.display().to_string();
         let text = precision_table::open(file).map_err(|e| Error::Usage(e.to_string()))?;
-        let charts = precision_table::read(&name, &text, args.cost, args.target)
-            .map_err(|e| Error::Usage(e.to_string()))?;
+        let charts = precision_table::read(&name, &text, args.cost, args.target);
+        let charts = charts.map_err(|error| {
+            let told = mistaken(&name, &text, FileKind::ChartTable);
+            Error::Usage(told.map_or(error.to_string(), |told| format!("{name}: {told}")))
+        })?;
         let outputs = Outputs::open(&args.out)?;
         return finish(args, outputs, &charts);
     }
@@ -78,6 +85,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     for scene in &args.scenes {
         let mut chart = Chart::open(scene, &args.over)?;
         chart.set.extend(args.set.set.iter().cloned());
+        chart.by.clone_from(&args.by);
         match args.reference.as_deref() {
             Some("finest") => chart.truth = Truth::Finest,
             Some(file) => chart.truth = Truth::Table(Path::new(file).to_owned()),
@@ -118,7 +126,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 
 /// Writes, draws and tells charts.
 fn finish(args: &Args, outputs: Outputs, charts: &[Precision]) -> Result<Exit, Error> {
-    let sent = outputs.write(
+    outputs.write(
         &precision_table::csv(charts),
         || precision_figure::sheet(charts)?.svg(),
         || precision_figure::sheet(charts)?.png(),
@@ -132,8 +140,8 @@ fn finish(args: &Args, outputs: Outputs, charts: &[Precision]) -> Result<Exit, E
     if left > 0 {
         tell(&format!("interrupted; {left} runs were not done"));
     }
-    Ok(match (sent, left) {
-        (Sent::Well, 0) => Exit::Good,
+    Ok(match left {
+        0 => Exit::Good,
         _ => Exit::Interrupted,
     })
 }
@@ -163,6 +171,7 @@ fn tell_chart(chart: &Precision) {
             .error
             .zip(chart.target)
             .is_some_and(|(error, target)| error <= target);
+        let round_off = if point.is_round_off() { " =" } else { "" };
         table.push(vec![
             format!(
                 "{}{}",
@@ -173,7 +182,7 @@ fn tell_chart(chart: &Precision) {
             point.name.clone(),
             point
                 .error
-                .map_or_else(String::new, |error| format!("{error:.2e}")),
+                .map_or_else(String::new, |error| format!("{error:.2e}{round_off}")),
             six((point.seconds * 1e5).round() / 1e5),
             point.factorizations.to_string(),
             point.majors.to_string(),
@@ -185,6 +194,11 @@ fn tell_chart(chart: &Precision) {
         tell(&line);
     }
     tell("* beaten by no other run in cost and error   + as near as is wanted");
+    if chart.points.iter().any(Point::is_round_off) {
+        tell(&format!(
+            "= round-off: errors below {ROUND_OFF:.1e} are equal"
+        ));
+    }
     for line in chart
         .verdict()
         .into_iter()

@@ -1,9 +1,10 @@
 //! `stickslip check`: is the scene sound, and what does it cost.
 
-use super::base::{Error, Exit, SceneArgs, say};
+use super::base::{Error, Exit, SceneArgs, say, tell};
 use crate::format::paths;
 use crate::scene::Scene;
 use crate::scene::cost::Cost;
+use crate::scene::gaps;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -22,6 +23,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         format!("{}: sound\n{}", scene.name, Cost::of(&scene))
     };
     say(&text)?;
+    if !args.paths {
+        for warning in gaps::warnings(&scene.model) {
+            tell(&format!("warning: {warning}"));
+        }
+    }
     Ok(Exit::Good)
 }
 

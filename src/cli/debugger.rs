@@ -1,6 +1,7 @@
 //! `stickslip [SCENE]`: the debugger.
 
 use super::base::{Error, Exit, SetArgs};
+use super::groups;
 use crate::record::journal::Keep;
 use crate::tui;
 use std::io::IsTerminal;
@@ -28,6 +29,9 @@ pub struct Args {
 pub fn main(args: Args) -> Result<Exit, Error> {
     if args.scene.is_none() && !args.set.set.is_empty() {
         return Err(Error::Usage("--set needs a scene to change".into()));
+    }
+    if let Some(told) = args.scene.as_deref().and_then(groups::unknown) {
+        return Err(Error::Usage(told));
     }
     if !has_terminal() {
         let scene = args.scene.as_deref().unwrap_or("SCENE");

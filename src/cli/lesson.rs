@@ -1,12 +1,15 @@
 //! `stickslip lesson [NAME|FILE]`: lists the guided lessons, begins one, or checks one without a terminal.
 
 use super::base::{Error, Exit, say};
+use crate::outside::shown;
 use crate::teach::play::play;
+use crate::teach::progress::{self, Progress};
 use crate::teach::{self, Lesson};
 use crate::tui;
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::sync::Arc;
+use unicode_width::UnicodeWidthStr;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -19,7 +22,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let Some(name) = &args.lesson else {
-        say(&list())?;
+        say(&list()?)?;
         return Ok(Exit::Good);
     };
     let lesson = Lesson::open(name)?;
@@ -36,20 +39,33 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-fn list() -> String {
+/// The built-in lessons, one a line, with what was done of them before.
+fn list() -> Result<String, Error> {
+    let progress = match progress::place() {
+        Some(file) => Progress::read(&file).map_err(|why| Error::Usage(why.to_string()))?,
+        None => Progress::default(),
+    };
     let lessons: Vec<_> = teach::list()
         .iter()
         .filter_map(|lesson| Lesson::from_text(lesson.name, lesson.text).ok())
         .collect();
-    let width = |lesson: &Lesson| lesson.name.len();
-    let width = lessons.iter().map(width).max().unwrap_or(0);
-    let line = |lesson: &Lesson| {
-        let Lesson {
-            name, title, about, ..
-        } = lesson;
-        format!("{name:<width$}  {title}: {about}\n")
+    let done = |lesson: &Lesson| {
+        progress
+            .of(&lesson.name)
+            .map_or(String::new(), |r| r.told())
     };
-    lessons.iter().map(line).collect()
+    let names = lessons.iter().map(|lesson| lesson.name.width());
+    let width = names.max().unwrap_or(0);
+    let column = lessons.iter().map(|lesson| done(lesson).width()).max();
+    let line = |lesson: &Lesson| {
+        let mut line = shown::padded(&lesson.name, width) + "  ";
+        // Who has done nothing yet sees no empty column.
+        if let Some(column @ 1..) = column {
+            line += &(shown::padded(&done(lesson), column) + "  ");
+        }
+        format!("{line}{}: {}\n", lesson.title, lesson.about)
+    };
+    Ok(lessons.iter().map(line).collect())
 }
 
 fn check(lesson: Lesson) -> Result<String, Error> {

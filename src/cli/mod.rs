@@ -10,12 +10,15 @@ mod check;
 mod core;
 mod debugger;
 mod diff;
+mod export;
+mod groups;
 mod help;
 mod interrupt;
 mod lesson;
 mod list;
 mod map;
 mod outputs;
+mod place;
 mod record;
 mod remedies;
 mod replay;
@@ -29,7 +32,7 @@ mod table;
 
 use crate::study::origin;
 use base::{Exit, say, tell};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Steps through contact iterations of the finite element method, in a terminal.
@@ -41,7 +44,7 @@ SCENE is a file or the name of a built-in scene (`stickslip list`).
 The manual: `stickslip help TOPIC`; `stickslip help` lists the topics.
 
 Exit codes: 0 converged, equal or sound; 1 snapshots differ; 2 bad input or usage;
-3 the solve did not converge; 130 interrupted.")]
+3 the solve did not converge, or no remedy helps; 130 interrupted.")]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -73,6 +76,8 @@ enum Command {
     Remedies(remedies::Args),
     /// Writes the fewest nodes that still cycle as a scene of their own
     Core(core::Args),
+    /// Makes a picture or another file of a scene, a snapshot or a journal, by the file's extension
+    Export(export::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
     /// Shows where the iterations converge and where they do not
@@ -89,9 +94,13 @@ enum Command {
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match parsed() {
         Ok(cli) => cli,
         Err(error) => {
+            if let Some(told) = groups::mistyped(&error, std::env::args_os().nth(1)) {
+                tell(&told);
+                return Exit::Bad.into();
+            }
             // Help is an error for clap, too; where it cannot be printed there is nobody to tell.
             let told = error.render().to_string();
             match error.use_stderr() {
@@ -113,6 +122,7 @@ pub fn main() -> ExitCode {
                 | Command::Resume(_)
                 | Command::Lesson(_)
                 | Command::Audit(_)
+                | Command::Export(_)
                 | Command::Help(_)
         )
     ) {
@@ -132,12 +142,13 @@ pub fn main() -> ExitCode {
         Some(Command::Story(args)) => story::main(args),
         Some(Command::Remedies(args)) => remedies::main(args),
         Some(Command::Core(args)) => core::main(args),
+        Some(Command::Export(args)) => export::main(args),
         Some(Command::Study(args)) => study::main(args),
         Some(Command::Map(args)) => map::main(args),
         Some(Command::Chart(args)) => chart::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
         Some(Command::Show(args)) => show::main(args),
-        Some(Command::Help(args)) => help::main(args, Cli::command()),
+        Some(Command::Help(args)) => help::main(args, program()),
     };
     ended
         .unwrap_or_else(|error| {
@@ -145,6 +156,15 @@ pub fn main() -> ExitCode {
             Exit::Bad
         })
         .into()
+}
+
+/// The command line, with the subcommands in groups.
+fn program() -> clap::Command {
+    groups::grouped(Cli::command())
+}
+
+fn parsed() -> Result<Cli, clap::Error> {
+    Cli::from_arg_matches(&program().try_get_matches()?)
 }
 
 /// All subcommands with their arguments and options, as the manual shows them.
@@ -161,5 +181,20 @@ pub fn is_command_line(words: &[&str]) -> Result<(), String> {
     match Cli::try_parse_from(program.chain(words.iter().copied())) {
         Err(error) if error.use_stderr() => Err(error.to_string()),
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_subcommand_stands_in_one_group() {
+        let command = Cli::command();
+        let mut own: Vec<_> = command.get_subcommands().map(|c| c.get_name()).collect();
+        let mut grouped: Vec<_> = groups::names().collect();
+        own.sort_unstable();
+        grouped.sort_unstable();
+        assert_eq!(own, grouped);
     }
 }

@@ -1,7 +1,7 @@
 //! What all sweeps share: where their tables and pictures go, their progress, and tables for people.
 
 use super::base::Error;
-use super::sink::{Sent, Sink};
+use super::sink::Sink;
 use crate::outside::files::Output;
 use crate::outside::shown;
 use crate::study::plot::PlotError;
@@ -92,7 +92,7 @@ impl Outputs {
         })
     }
 
-    /// Writes all that is wanted; a picture is drawn only then.
+    /// Writes all that is wanted; a picture is drawn only then. A reader that closes the pipe has what he wanted.
     ///
     /// # Errors
     /// If it cannot be written or drawn.
@@ -101,11 +101,10 @@ impl Outputs {
         table: &str,
         svg: impl FnOnce() -> Result<String, PlotError>,
         png: impl FnOnce() -> Result<Vec<u8>, PlotError>,
-    ) -> Result<Sent, Error> {
-        let mut sent = Sent::Well;
+    ) -> Result<(), Error> {
         // The numbers first: they are kept even if a figure cannot be drawn.
         if let Some(mut sink) = self.csv {
-            sent = sink.send(table)?;
+            sink.send(table)?;
             sink.finish()?;
         }
         let undrawn = |e: PlotError| Error::Usage(e.to_string());
@@ -115,7 +114,7 @@ impl Outputs {
         if let Some(output) = self.png {
             write(output, &png().map_err(undrawn)?)?;
         }
-        Ok(sent)
+        Ok(())
     }
 }
 

@@ -2,20 +2,23 @@
 
 use super::base::{Error, Exit, SceneArgs, tell};
 use super::interrupt::Interrupt;
+use super::outputs::aligned;
 use super::sink::{Sent, Sink};
 use super::table;
-use crate::explain::diagnosis::{self, Cause, Diagnosis};
+use crate::contact::record::ContactRecord;
 use crate::explain::names;
+use crate::explain::number::six;
+use crate::explain::page;
 use crate::explain::report;
-use crate::explain::smaller::smaller;
-use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::model::Model;
 use crate::outside::files::Output;
+use crate::outside::shown;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
+use crate::scene::gaps;
 use crate::step::drive::{RunEnd, Until};
-use crate::step::event::{Event, Failure, Outcome};
+use crate::step::event::{Event, Outcome};
 use crate::step::stepper::Stepper;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -25,6 +28,8 @@ use std::time::{Duration, Instant};
 
 /// Warnings that are printed one by one; the rest is counted.
 const MOST_WARNINGS: u32 = 10;
+/// Slave nodes whose modes and forces are told at the end.
+const MOST_SLAVES: usize = 40;
 /// Time between two lines of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
 
@@ -54,6 +59,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     // Before the solve, so that nobody waits for a result that then has no place to go.
     let mut outputs = Outputs::open(args)?;
+    if !args.quiet {
+        for warning in gaps::warnings(&scene.model) {
+            tell(&format!("warning: {warning}"));
+        }
+    }
     let mut run = Run::new(&scene, args.quiet);
     let end = run.go(&mut outputs, &interrupt)?;
     run.tally.progress.clear();
@@ -61,7 +71,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(output) = snapshot {
         write_snapshot(output, &run)?;
     }
-    Ok(run.tell(&end, args))
+    Ok(run.tell(&end, args, &interrupt))
 }
 
 /// What a run writes.
@@ -102,7 +112,13 @@ impl Outputs {
     fn headers(&mut self, model: &Model) -> Result<Sent, Error> {
         let csv = send(&mut self.csv, || table::csv_header(model))?;
         let trace = send(&mut self.trace, || table::TRACE_HEADER.to_owned())?;
-        Ok(first_closed(csv, trace))
+        Ok(self.after(first_closed(csv, trace)))
+    }
+
+    /// What to do after lines were sent: where nobody reads on and nothing else is written there is nothing to solve for.
+    fn after(&self, sent: Sent) -> Sent {
+        let wanted = self.csv.is_some() || self.trace.is_some() || self.snapshot.is_some();
+        if wanted { Sent::Well } else { sent }
     }
 
     /// Ends the tables; what is left is the snapshot to be written.
@@ -113,8 +129,13 @@ impl Outputs {
     }
 }
 
+/// Sends lines to a table that is wanted. Whose reader has closed the pipe is wanted no more.
 fn send(sink: &mut Option<Sink>, lines: impl FnOnce() -> String) -> Result<Sent, Error> {
-    sink.as_mut().map_or(Ok(Sent::Well), |s| s.send(&lines()))
+    let sent = sink.as_mut().map_or(Ok(Sent::Well), |s| s.send(&lines()))?;
+    if sent == Sent::Closed {
+        *sink = None;
+    }
+    Ok(sent)
 }
 
 fn first_closed(a: Sent, b: Sent) -> Sent {
@@ -154,8 +175,9 @@ struct Tally<'a> {
     /// Norms of the accepted increment whose forces are known the least.
     noisiest: Norms,
     quiet: bool,
-    /// Monitors after the last accepted increment.
+    /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
+    slaves: Vec<ContactRecord>,
 }
 
 /// How a run ended; it is stopped where nobody reads on.
@@ -180,6 +202,7 @@ impl<'a> Run<'a> {
                 noisiest: Norms::default(),
                 quiet,
                 monitors: Vec::new(),
+                slaves: Vec::new(),
             },
         }
     }
@@ -205,7 +228,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells how the run ended.
-    fn tell(&mut self, end: &Ended, args: &Args) -> Exit {
+    fn tell(&mut self, end: &Ended, args: &Args, interrupt: &Interrupt) -> Exit {
         if self.tally.doubtful > MOST_WARNINGS {
             tell(&format!(
                 "warning: {} increments in all were accepted like this",
@@ -223,11 +246,15 @@ impl<'a> Run<'a> {
         }
         if !args.quiet {
             self.tell_summary(args.csv.is_none());
+            if self.tally.scene.model.monitors.is_empty() {
+                self.tally.tell_slaves();
+            }
         }
         let name = &self.tally.scene.name;
         match end {
             RunEnd::Finished | RunEnd::Spent => Exit::Good,
-            RunEnd::Stopped(Closed) => Exit::Interrupted,
+            // Who closes the pipe has what he wanted.
+            RunEnd::Stopped(Closed) => Exit::Good,
             RunEnd::Interrupted => {
                 let at = names::position(self.stepper.state().next);
                 tell(&format!("{name}: interrupted before {at}"));
@@ -237,56 +264,20 @@ impl<'a> Run<'a> {
                 let (event, state) = (self.stepper.event(), self.stepper.state());
                 let told = report::failure(
                     &self.tally.scene.model,
+                    state,
                     event.position,
                     event.load_factor,
-                    state.start.load_factor,
                     failure,
                 );
                 tell(&format!("{name}: {told}"));
-                let cycle = match failure {
-                    Failure::NoAnswer {
-                        first: Some(first), ..
-                    }
-                    | Failure::LadderEnded { first, .. } => first,
-                    failure => failure,
-                };
-                let mut none = matches!(failure, Failure::NoAnswer { .. });
-                if let Failure::Cycle(cycle) = cycle {
-                    none |= self.diagnose(cycle);
-                }
-                if none {
-                    self.look_for_smaller();
+                let (state, model) = (state.clone(), self.stepper.model().clone());
+                let mut scratch = Stepper::new(model);
+                for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
+                    tell(&format!("  {line}"));
                 }
                 Exit::Unconverged
             }
         }
-    }
-
-    /// Tells whether a smaller increment has a consistent state, where this one has none.
-    fn look_for_smaller(&mut self) {
-        let state = self.stepper.state().clone();
-        let mut scratch = Stepper::new(self.stepper.model().clone());
-        if let Some(found) = smaller(&mut scratch, &state) {
-            tell(&format!("  {}", found.words()));
-        }
-    }
-
-    /// Tells why the minor iterations cycle, and what gets out; returns whether nothing can.
-    fn diagnose(&mut self, cycle: &Cycle) -> bool {
-        let Some(problem) = self.stepper.interface_problem() else {
-            return false;
-        };
-        let Some(problem) = diagnosis::cycling(problem, cycle) else {
-            tell(&format!("  not diagnosed: {}", diagnosis::too_many(cycle)));
-            return false;
-        };
-        let Some(diagnosis) = Diagnosis::of(&problem) else {
-            return false;
-        };
-        for line in diagnosis::words(&self.tally.scene.model, &problem, &diagnosis) {
-            tell(&format!("  {line}"));
-        }
-        diagnosis.cause == Cause::NoAnswer
     }
 
     fn tell_summary(&self, monitors: bool) {
@@ -309,7 +300,7 @@ impl<'a> Run<'a> {
             .iter()
             .zip(&self.tally.monitors)
         {
-            tell(&format!("  {:<12} {value:?}", monitor.name));
+            tell(&format!("  {} {value:?}", shown::padded(&monitor.name, 12)));
         }
     }
 }
@@ -332,17 +323,19 @@ impl Tally<'_> {
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {
-                return Ok(first_closed(sent, self.accept(stepper, outputs)?));
+                let sent = first_closed(sent, self.accept(stepper, outputs)?);
+                return Ok(outputs.after(sent));
             }
             Outcome::Minor | Outcome::Major { .. } => {}
         }
-        Ok(sent)
+        Ok(outputs.after(sent))
     }
 
     fn accept(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
         self.monitors.clear();
         stepper.monitors(&mut self.monitors);
         let event = stepper.event();
+        self.slaves.clone_from(&event.nodes);
         self.warn(event);
         let (minors, monitors) = (self.minors, &self.monitors);
         let sent = send(&mut outputs.csv, || table::csv_row(event, minors, monitors));
@@ -350,6 +343,34 @@ impl Tally<'_> {
         self.majors += u64::from(event.position.major);
         self.minors = 0;
         sent
+    }
+
+    /// Tells modes and forces of the last accepted increment, for a scene that asks for no numbers itself.
+    fn tell_slaves(&self) {
+        if self.slaves.is_empty() {
+            return;
+        }
+        let heads = ["", "node", "mode", "gap", "F_n", "F_t"];
+        let mut table = vec![heads.map(str::to_owned).to_vec()];
+        for (slave, found) in self.slaves.iter().enumerate().take(MOST_SLAVES) {
+            table.push(vec![
+                String::new(),
+                names::slave(&self.scene.model, slave).to_owned(),
+                names::mode(found.decision.before).to_owned(),
+                six(found.gap),
+                six(found.f_n),
+                six(found.f_t),
+            ]);
+        }
+        for line in aligned(&table, 3) {
+            tell(&line);
+        }
+        if self.slaves.len() > MOST_SLAVES {
+            let more = self.slaves.len() - MOST_SLAVES;
+            tell(&format!(
+                "  and {more} slave nodes more; --trace writes all"
+            ));
+        }
     }
 
     /// Tells how the strategy went on where it could not go on as it was.

@@ -3,7 +3,6 @@
 use super::base::{Error, Exit, SetArgs, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
-use super::sink::Sent;
 use crate::explain::number::six;
 use crate::study::figure;
 use crate::study::{self, AxisQuantity, CaseEnd, Plan, Run, Study, Vary, Watch, csv, plot};
@@ -53,7 +52,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     progress.finish_and_clear();
     let runs = runs.map_err(|e| Error::Usage(e.to_string()))?;
     let chart = figure::chart(&plan, &runs);
-    let sent = outputs.write(
+    outputs.write(
         &csv::table(&plan, &runs),
         || plot::svg(&chart),
         || plot::png(&chart),
@@ -61,10 +60,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if !args.out.quiet {
         tell_table(&plan, &runs);
     }
-    let whole = tell_end(&plan, &runs);
-    Ok(match (sent, whole) {
-        (Sent::Well, true) => Exit::Good,
-        _ => Exit::Interrupted,
+    Ok(match tell_end(&plan, &runs) {
+        true => Exit::Good,
+        false => Exit::Interrupted,
     })
 }
 

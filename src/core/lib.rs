@@ -46,6 +46,7 @@
 //!         friction: Friction { angle: 20.0, cohesion: 0.0 },
 //!         start: Mode::Free,
 //!         state: InitialState::default(),
+//!         overlap: 0.0,
 //!     }],
 //!     // Only the slave node has unknowns: its x and its y.
 //!     dofs: Dofs {

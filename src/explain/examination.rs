@@ -18,6 +18,8 @@ use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::ops::ControlFlow;
 
+/// What is said at the end of the history.
+pub const DONE: &str = "The history is done; nothing is solved next from here.";
 /// What is said where there is no small problem.
 pub const NOT_CONDENSED: &str =
     "The bodies cannot be condensed to the interface here, so there is no small problem to study.";
@@ -33,13 +35,19 @@ pub enum Untold {
     TooMany(String),
 }
 
-/// What is known of the frozen problem at a place.
-#[derive(Debug, Clone, PartialEq)]
+/// What is known at a place.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Examination {
-    /// In words, most important first.
+    /// In words, a line each: what happened, where, why, what to do, and then the details.
     pub lines: Vec<String>,
-    /// Whether the minor iterations cycle from here.
-    pub cycles: bool,
+    /// Whether the minor iterations cycle from here, or the increment failed.
+    pub fails: bool,
+    /// Slave numbers of the nodes that it is about.
+    pub nodes: Vec<usize>,
+    /// Where bodies move that nothing holds: a place, and a direction of at most length one.
+    pub arrows: Vec<[[f64; 2]; 2]>,
+    /// What is being found out still; empty where that is all.
+    pub going_on: String,
     /// The problem that the census was held over.
     pub problem: Option<InterfaceProblem>,
     /// All consistent states; `None` if they were not counted.
@@ -62,16 +70,14 @@ impl Examination {
 fn nothing(why: &str) -> Examination {
     Examination {
         lines: vec![why.into()],
-        cycles: false,
-        problem: None,
-        census: None,
+        ..Examination::default()
     }
 }
 
-/// Diagnosis or census at a state.
-pub fn examine(stepper: &mut Stepper, state: &State) -> Examination {
+/// What is known of the frozen problem that is solved next from a state: the diagnosis of its cycle, or else its census.
+pub fn frozen(stepper: &mut Stepper, state: &State) -> Examination {
     if state.status == Status::Finished {
-        return nothing("The history is done; nothing is solved next from here.");
+        return nothing(DONE);
     }
     stepper.restore(state);
     let Some(problem) = stepper.interface_problem() else {
@@ -82,7 +88,7 @@ pub fn examine(stepper: &mut Stepper, state: &State) -> Examination {
         Ok(round) => round,
     };
     let model = stepper.model();
-    if let Some((problem, _)) = round
+    if let Some((problem, cycle)) = round
         && let Some(diagnosis) = Diagnosis::of(&problem)
     {
         let mut lines = diagnosis::words(model, &problem, &diagnosis);
@@ -91,9 +97,11 @@ pub fn examine(stepper: &mut Stepper, state: &State) -> Examination {
         }
         return Examination {
             lines,
-            cycles: true,
+            fails: true,
+            nodes: cycle.members.iter().map(|member| member.0).collect(),
             problem: Some(diagnosis.problem),
             census: diagnosis.census,
+            ..Examination::default()
         };
     }
     let undecided = diagnosis::undecided(&problem);
@@ -115,13 +123,22 @@ pub fn examine(stepper: &mut Stepper, state: &State) -> Examination {
     let head = "The minor iterations do not cycle from here.";
     let mut found = counted(model, &studied, head);
     found.lines.extend(proven);
+    if found
+        .census
+        .as_ref()
+        .is_some_and(|census| census.answers.is_empty())
+    {
+        found
+            .lines
+            .extend(smaller(stepper, state).map(|found| found.words()));
+    }
     found
 }
 
 /// Census of these slave nodes at a state, all others going on with what they do.
 pub fn examine_nodes(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> Examination {
     if state.status == Status::Finished {
-        return nothing("The history is done; nothing is solved next from here.");
+        return nothing(DONE);
     }
     stepper.restore(state);
     let Some(problem) = stepper.interface_problem() else {
@@ -150,9 +167,9 @@ fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Examination
     lines.extend(diagnosis::census_words(&census, &name));
     Examination {
         lines,
-        cycles: false,
         census: Some(census),
         problem: Some(studied.clone()),
+        ..Examination::default()
     }
 }
 

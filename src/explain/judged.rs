@@ -2,6 +2,7 @@
 
 use crate::contact::laws::{Finding, Law, Numbers};
 use crate::explain::names::slave;
+use crate::explain::number::four;
 use crate::model::Model;
 
 /// What a finding says, as a part of a sentence.
@@ -46,4 +47,27 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         Law::Moments => "loads and reactions are not in balance".into(),
     };
     format!("{told} ({}: {:.1e})", finding.law.name(), finding.amount)
+}
+
+/// Where a finding is, as a part of a sentence: the node and its place, with its numbers.
+pub fn place(model: &Model, places: &[[f64; 2]], finding: &Finding) -> String {
+    let Some(contact) = finding.slave.and_then(|s| model.contacts.get(s)) else {
+        return "in the scene as a whole".into();
+    };
+    let [x, y] = places[contact.node].map(four);
+    let Numbers {
+        gap,
+        f_n,
+        f_t,
+        limit,
+        ..
+    } = finding.numbers;
+    let name = &model.nodes[contact.node].name;
+    format!(
+        "{name} at ({x}, {y}): gap {}, F_n {}, F_t {} of at most {}",
+        four(gap),
+        four(f_n),
+        four(f_t),
+        four(limit)
+    )
 }

@@ -1,22 +1,34 @@
 //! Explanations: what happened, why, and what could be done about it, in the words that the command line and the debugger
 //! share.
 //!
-//! - [`names`]: the words for things; [`number`]: numbers for a person; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
+//! - [`names`]: the words for things; [`number`]: numbers for a person; [`round_off`]: which of them are nothing; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
 //! - [`influence`]: who pushed whom; [`core`]: the fewest nodes that still cycle; [`diagnosis`]: why a cycle goes round;
 //!   [`smaller`]: whether a smaller increment has a consistent state, where one has none.
 //! - [`proven`]: what a matrix proves: one state at most, and where T_max goes while the modes repeat.
-//! - [`examination`]: all of that at a state; [`remedies`]: every way out, tried.
-//! - [`audit`]: the judge's findings over a history.
+//! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
+//! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
+//!   where nothing holds it; [`reach`]: up to which load there is an answer.
+//! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
+//! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
+pub mod advice;
+pub mod attempt;
 pub mod audit;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;
 pub mod influence;
 pub mod judged;
+pub mod loose;
+pub mod majors;
 pub mod names;
 pub mod number;
+pub mod outline;
+pub mod page;
 pub mod proven;
+pub mod reach;
 pub mod remedies;
+pub mod remedy;
 pub mod report;
+pub mod round_off;
 pub mod smaller;

@@ -1,18 +1,16 @@
 //! Remedies for an increment that does not converge: each is tried from the same state, and measured.
 //!
-//! A remedy is what is done before the first minor iteration (a consistent state of the census, a strategy or another
-//! setting, a smaller increment), and perhaps hysteresis, which corrects the verdict after each. A trial ends where the
-//! load that failed is accepted, where it fails, or after [`BUDGET`] minor iterations. What it did is kept as steps, so
-//! that the chosen one can be done again in a branch.
+//! What there is to try is in [`super::remedy`]. A trial ends where the load that failed is accepted, where it fails, or
+//! after [`BUDGET`] minor iterations. What it did is kept as steps, so that the chosen one can be done again in a branch.
 
-use super::examination::examine;
+use super::advice::{Advice, advice};
+use super::examination::frozen;
+use super::remedy::{How, Kind, Remedy};
 use crate::contact::laws::Law;
 use crate::contact::record::{ContactRecord, Forced};
-use crate::explain::names;
 use crate::interface::method::NotFound;
 use crate::linear::norms::Norms;
-use crate::model::Settings;
-use crate::model::{AtCycle, BoundUpdate, ResidualMethod, Sticking, Strategy};
+use crate::model::{Mode, Strategy};
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::Intervention;
@@ -28,16 +26,6 @@ pub const BUDGET: u32 = 400;
 pub const HYSTERESIS: f64 = 1e-3;
 /// Violations below this, relatively, are round-off.
 pub const CLEAN: f64 = 1e-8;
-
-/// Something to try.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Remedy {
-    /// In a few words; the name of its branch.
-    pub label: String,
-    first: Vec<Intervention>,
-    /// Whether a node that misses its condition by less than [`HYSTERESIS`] is held.
-    hysteresis: bool,
-}
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +65,8 @@ pub struct Left {
 pub struct Trial {
     /// What was tried, as the list calls it.
     pub label: String,
+    /// What is typed to take it.
+    pub how: How,
     /// How it ended.
     pub end: TrialEnd,
     /// Minor iterations that it took.
@@ -93,87 +83,55 @@ pub struct Trial {
     pub steps: Vec<Option<Intervention>>,
 }
 
-impl Remedy {
-    fn new(label: &str, first: Vec<Intervention>) -> Self {
-        Remedy {
-            label: label.to_owned(),
-            first,
-            hysteresis: false,
-        }
-    }
-}
+/// Everything that is tried from a state, whatever it failed of, in the order of the list.
+const KINDS: [Kind; 19] = [
+    Kind::Strategy(Strategy::Sliding),
+    Kind::Strategy(Strategy::Least),
+    Kind::Strategy(Strategy::SlidingLeast),
+    Kind::Strategy(Strategy::Block),
+    Kind::Strategy(Strategy::Newton),
+    Kind::Strategy(Strategy::Lemke),
+    Kind::Strategy(Strategy::Ladder),
+    Kind::ConsistentLimit,
+    Kind::ConsistentGeometry,
+    Kind::OtherResidual,
+    Kind::OtherSticking,
+    Kind::TouchAtStart,
+    Kind::Damp,
+    Kind::Part(0.5),
+    Kind::Part(0.37),
+    Kind::Part(0.1),
+    Kind::Start(Mode::Fixed),
+    Kind::Start(Mode::Sliding),
+    Kind::Hysteresis,
+];
 
-/// All that there is to try from a state.
+/// All that there is to try from a state: the consistent states, what helps against its failure, and everything else.
 pub fn all(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
     if state.status == Status::Finished {
         return Vec::new();
     }
-    let mut all = answers(stepper, state);
-    let mut set = |label: &str, change: &dyn Fn(&mut Settings)| {
-        let mut settings = state.controls.settings;
-        change(&mut settings);
-        if settings != state.controls.settings {
-            let first = vec![Intervention::Settings(settings)];
-            all.push(Remedy::new(label, first));
+    let found = frozen(stepper, state);
+    let model = stepper.model();
+    let mut all = Remedy::answers(model, &found);
+    let mut add = |remedy: Remedy| {
+        if all.iter().all(|known: &Remedy| known.kind != remedy.kind) {
+            all.push(remedy);
         }
     };
-    for (label, strategy) in [
-        ("enter contact as sliding", Strategy::Sliding),
-        ("one change at a time, least index", Strategy::Least),
-        (
-            "enter as sliding, one change at a time",
-            Strategy::SlidingLeast,
-        ),
-        ("block changes, least-index fallback", Strategy::Block),
-        ("semismooth Newton", Strategy::Newton),
-        ("Lemke's pivoting", Strategy::Lemke),
-        ("the ladder of strategies", Strategy::Ladder),
-    ] {
-        set(label, &|s| s.strategy = strategy);
+    for kind in KINDS {
+        if let Some(remedy) = Remedy::of(kind, model, state) {
+            add(remedy);
+        }
     }
-    set("t_max consistent", &|s| s.t_max = BoundUpdate::Consistent);
-    let (residual, label) = match state.controls.settings.residual {
-        ResidualMethod::Stress => (ResidualMethod::Accumulate, "residual accumulate"),
-        ResidualMethod::Accumulate => (ResidualMethod::Stress, "residual stress"),
-    };
-    set(label, &|s| s.residual = residual);
-    let (sticking, label) = match state.controls.settings.sticking {
-        Sticking::Anchored => (Sticking::Increments, "sticking increments"),
-        Sticking::Increments => (Sticking::Anchored, "sticking anchored"),
-    };
-    set(label, &|s| s.sticking = sticking);
-    set("at_cycle damp", &|s| s.at_cycle = AtCycle::Damp);
-    for (label, part) in [
-        ("half the increment", 2.0),
-        ("a tenth of the increment", 10.0),
-    ] {
-        let first = vec![Intervention::Increment(state.controls.increment / part)];
-        all.push(Remedy::new(label, first));
+    if let Status::Failed(failure) = &state.status {
+        for advice in advice(model, state, failure) {
+            if let Advice::Remedy(remedy) = advice {
+                add(remedy);
+            }
+        }
     }
-    all.push(Remedy {
-        hysteresis: true,
-        ..Remedy::new("hysteresis of 1e-3", Vec::new())
-    });
     all
-}
-
-/// The consistent states of the frozen problem that is solved next.
-fn answers(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
-    let finding = examine(stepper, state);
-    let count = finding.census.as_ref().map_or(0, |c| c.answers.len());
-    let model = stepper.model();
-    let answer = |number: usize| {
-        let starts = finding.starts(number)?;
-        const SHOWN: usize = 2;
-        let name = |s: &crate::step::intervene::Start| {
-            format!("{} {}", names::slave(model, s.slave), names::mode(s.mode))
-        };
-        let some: Vec<String> = starts.iter().take(SHOWN).map(name).collect();
-        let more = if starts.len() > SHOWN { ", …" } else { "" };
-        let label = format!("answer {}: {}{more}", number + 1, some.join(", "));
-        Some(Remedy::new(&label, vec![Intervention::Assume(starts)]))
-    };
-    (0..count).filter_map(answer).collect()
 }
 
 /// Tries a remedy; `None` if it was stopped.
@@ -187,6 +145,7 @@ pub fn attempt(
     let target = (state.start.leg, state.load_factor);
     let mut trial = Trial {
         label: remedy.label.clone(),
+        how: remedy.how.clone(),
         end: TrialEnd::Budget,
         minors: 0,
         majors: 0,
@@ -227,7 +186,7 @@ pub fn attempt(
                 trial.left = Some(left(stepper, event, after));
                 return ControlFlow::Break(TrialEnd::Converged);
             }
-            Outcome::Minor if remedy.hysteresis => {
+            Outcome::Minor if remedy.kind == Kind::Hysteresis => {
                 for what in hysteresis(stepper, event) {
                     change(stepper, &mut trial, what);
                 }

@@ -1,6 +1,7 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
 use crate::contact::table2::{Decision, Rule, Tested};
+use crate::explain::advice;
 use crate::explain::judged;
 use crate::explain::names::{mode, position, slave};
 use crate::interface::census;
@@ -12,6 +13,7 @@ use crate::model::{Mode, Model};
 use crate::step::event::{Event, Failure, Outcome, Position};
 use crate::step::intervene::Intervention;
 use crate::step::major_history::{MajorCycle, Stop};
+use crate::step::state::State;
 
 /// Why Table 2 decided as it did; `friction` says whether there is any.
 pub fn reason(decision: &Decision, friction: bool) -> String {
@@ -264,64 +266,32 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
 }
 
 /// Where and why a run ended, up to which load it is sound, and what to try. `at` and `load` are those of the minor
-/// iteration that failed, `accepted` is the load factor of the last equilibrium.
-pub fn failure(model: &Model, at: Position, load: f64, accepted: f64, failure: &Failure) -> String {
+/// iteration that failed, and `state` is what it left.
+pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &Failure) -> String {
     let again = match at.attempt {
         0 | 1 => String::new(),
         n => format!(" in attempt {n}"),
     };
-    let sound = match at.increment {
+    format!(
+        "increment {} (load {load}){again}, major {}, minor {}: {}; {}; try {}",
+        at.increment,
+        at.major,
+        at.minor,
+        describe_failure(model, failure),
+        sound(at, state),
+        advice::in_a_line(model, state, failure)
+    )
+}
+
+/// Up to which load a failed run is sound.
+pub fn sound(at: Position, state: &State) -> String {
+    let accepted = state.start.load_factor;
+    match at.increment {
         0 | 1 => format!("no equilibrium was accepted beyond the start, load {accepted}"),
         n => format!(
             "the last equilibrium is that of increment {}, load {accepted}",
             n - 1
         ),
-    };
-    format!(
-        "increment {} (load {load}){again}, major {}, minor {}: {}; {sound}; try {}",
-        at.increment,
-        at.major,
-        at.minor,
-        describe_failure(model, failure),
-        advice(failure)
-    )
-}
-
-/// What to try after a failure.
-pub fn advice(failure: &Failure) -> &'static str {
-    match failure {
-        Failure::Cycle(_) => {
-            "settings.strategy=ladder, or the debugger, to force one of the nodes to its third mode, or another history.increment"
-        }
-        Failure::NoAnswer { .. } => {
-            "other loads or friction, or a prescribed displacement instead of a load"
-        }
-        Failure::LadderEnded { .. } => {
-            "a smaller history.least, another history.increment, or the debugger, to see where it stands"
-        }
-        Failure::NotFound(_) => "settings.strategy=ladder, or a smaller history.increment",
-        Failure::MinorLimit { .. } => "a larger settings.minors, or a smaller history.increment",
-        Failure::MajorLimit { .. } => "a smaller history.increment, or a larger settings.majors",
-        Failure::MajorCycle(_) => "a smaller history.increment; at a corner, a rounded one",
-        Failure::Singular(Singular::Rigid { .. }) => {
-            "a support against that motion, or slave nodes that start sliding or fixed"
-        }
-        Failure::Singular(Singular::Unexplained) => {
-            "a smaller history.increment; past a limit point, prescribe a displacement instead of the load"
-        }
-        Failure::Diverged { .. } => "a smaller history.increment",
-        Failure::Refused(_) => {
-            "a smaller history.increment or history.least (settings.strategy=ladder cuts by itself), or another mesh of the surface"
-        }
-        Failure::Leapt { .. } => {
-            "history.jumps=cut, to go on on the other branch, or a prescribed displacement instead of the load"
-        }
-        Failure::RoundOff { .. } => {
-            "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid"
-        }
-        Failure::OverConstrained { .. } => {
-            "to move the node out of the surface, to free its support, or to turn the surface (reverse)"
-        }
     }
 }
 
@@ -349,11 +319,11 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
                 format!("no consistent state at this increment: all {tried} assignments were tried");
             match first {
                 None => none,
-                Some(first) => format!("{none} (table2: {})", describe_failure(model, first)),
+                Some(first) => format!("{none} (at first: {})", describe_failure(model, first)),
             }
         }
         Failure::LadderEnded { first, last } => format!(
-            "no strategy of the ladder found a consistent state (table2: {}; at last: {})",
+            "no strategy of the ladder found a consistent state (at first: {}; at last: {})",
             describe_failure(model, first),
             describe_failure(model, last)
         ),
@@ -478,6 +448,9 @@ fn pattern(modes: &[Mode]) -> String {
     stays.collect::<Vec<_>>().join(" > ")
 }
 
+/// Most stops of a node in a cycle of major iterations that are named.
+const MOST_STOPS: usize = 4;
+
 /// A cycle of major iterations.
 pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
     let member = |(s, stops): &(usize, Vec<Stop>)| {
@@ -490,7 +463,7 @@ pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
             (false, true) => mode(stop.mode).to_string(),
             _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
         };
-        let words: Vec<String> = stops.iter().map(stop).collect();
+        let words: Vec<String> = stops.iter().take(MOST_STOPS).map(stop).collect();
         match (moves, switches) {
             (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
             _ => format!("{} {} > …", slave(model, *s), words.join(" > ")),
@@ -505,7 +478,7 @@ pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
 }
 
 /// A master element's name: its surface, and its number from 1.
-fn place(model: &Model, element: Option<(usize, usize)>) -> String {
+pub fn place(model: &Model, element: Option<(usize, usize)>) -> String {
     match element {
         Some((surface, element)) => {
             let name = model.surfaces.get(surface).map_or("?", |s| s.name.as_str());

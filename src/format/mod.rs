@@ -5,13 +5,14 @@
 //!   [`markdown`] writes.
 //! - [`notation`]: how RON is written here; [`read`]: from a text to a value; [`locate`]: from a path to its line.
 //! - [`paths`]: every scalar of a scene by its path, to list and to set.
-//! - [`error`]: what is wrong, and where.
+//! - [`error`]: what is wrong, and where; [`kind`]: what a file is that is none of these.
 //!
 //! Whether what is written makes sense is for [`scene`](crate::scene) to say.
 
 pub mod condensed;
 pub mod described;
 pub mod error;
+pub mod kind;
 pub mod locate;
 pub mod markdown;
 pub mod notation;

@@ -2,6 +2,7 @@
 
 use super::condensed::Problem;
 use super::error::{Path, SceneError, Step, did_you_mean, quoted, shortened};
+use super::kind::{FileKind, mistaken};
 use super::locate::{line_and_column, locate, too_deep};
 use super::notation::options;
 use super::spec::Spec;
@@ -16,7 +17,20 @@ pub const FILE_BYTES: usize = 512 << 20;
 
 /// Reads a scene's text.
 pub(crate) fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
-    value(file, text, "scene")
+    value(file, text, "scene").map_err(|error| or_mistaken(error, file, text, FileKind::Scene))
+}
+
+/// An error of reading a text, or, where the text is of another kind than wanted, that.
+pub(crate) fn or_mistaken(
+    error: SceneError,
+    file: &str,
+    text: &str,
+    wanted: FileKind,
+) -> SceneError {
+    match mistaken(file, text, wanted) {
+        Some(message) => SceneError::whole(file, message),
+        None => error,
+    }
 }
 
 /// Reads an interface problem's text.

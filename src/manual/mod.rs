@@ -4,6 +4,7 @@
 //! names the command or the test that it comes from.
 
 pub mod render;
+pub mod search;
 
 use crate::format::error::did_you_mean;
 
@@ -38,6 +39,7 @@ pages! {
     tour "tour" "pages/tour.md" "Five minutes with problem 01, and the case that cycles";
     diagnosing "diagnosing" "pages/diagnosing.md" "From \"it does not converge\" to why, and to what helps";
     lessons "lessons" "pages/lessons.md" "Guided lessons, and how to write one";
+    teaching "teaching" "pages/teaching.md" "A course of six sessions, for lecturers";
     scenes "scenes" "pages/scenes.md" "The scene file: every type and field with its default";
     settings "settings" "pages/settings.md" "The choices of the method, and its limits";
     strategies "strategies" "pages/strategies.md" "How the next modes are chosen; the ladder; jumps";

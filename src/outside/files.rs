@@ -265,14 +265,14 @@ pub fn stem(scene: &str) -> String {
         .collect()
 }
 
-/// Writes a whole text.
+/// Writes a whole text, or other bytes.
 ///
 /// # Errors
 /// As [`Output::create`] and [`Output::finish`].
-pub fn write(path: &Path, text: &str, overwrite: bool) -> Result<(), FileError> {
+pub fn write(path: &Path, text: impl AsRef<[u8]>, overwrite: bool) -> Result<(), FileError> {
     let mut output = Output::create(path, overwrite)?;
     output
-        .write_all(text.as_bytes())
+        .write_all(text.as_ref())
         .map_err(|e| output.failed(e))?;
     output.finish()
 }

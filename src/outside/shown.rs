@@ -4,6 +4,7 @@
 //! [`line()`]. Both leave what is harmless as it is, so that it does no harm to go through them twice.
 
 use std::borrow::Cow;
+use unicode_width::UnicodeWidthStr;
 
 /// Whether a terminal or a viewer may take a character for an order: C0 and C1 controls and DEL, marks that turn the
 /// direction of writing or end lines, and what is never seen at all.
@@ -38,6 +39,18 @@ pub fn cut(text: &str, most: usize) -> String {
         Some((end, _)) => format!("{}…", line(&text[..end])),
         None => line(text).into_owned(),
     }
+}
+
+/// A text filled up with blanks at its end to so many columns of a terminal, in which a Chinese character takes two.
+pub fn padded(text: &str, columns: usize) -> String {
+    let missing = columns.saturating_sub(text.width());
+    format!("{text}{}", " ".repeat(missing))
+}
+
+/// The same with the blanks before it.
+pub fn padded_before(text: &str, columns: usize) -> String {
+    let missing = columns.saturating_sub(text.width());
+    format!("{}{text}", " ".repeat(missing))
 }
 
 fn escaped(text: &str, harmful: impl Fn(char) -> bool) -> Cow<'_, str> {

@@ -92,8 +92,8 @@ pub enum Command {
     Watch(Watch),
     /// End a watch, by its name.
     Unwatch(String),
-    /// Write the core of the cycle that the shown state runs into, or its whole frozen interface problem, as a scene of
-    /// its own. `overwrite` only when asked.
+    /// Write a file of the shown state, the kind by the file's extension; the core of the cycle that it runs into; or its
+    /// whole frozen interface problem. `overwrite` only when asked.
     Export {
         /// What is written.
         what: Exported,
@@ -113,13 +113,15 @@ pub enum Command {
     Journal(Option<PathBuf>),
 }
 
-/// What can be written as a scene of its own.
+/// What can be written of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Exported {
     /// The fewest nodes that still cycle.
     Core,
     /// The whole interface problem.
     Whole,
+    /// What the file's extension says: a picture, the scene, a problem for another program.
+    Shown,
 }
 
 /// Which branch.

@@ -11,11 +11,13 @@ use crate::explain::names;
 use crate::format::paths;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{Motion, Singular};
+use crate::outside::shown;
 use crate::scene::Scene;
 use crate::step::event::Failure;
 use crate::step::state::Status;
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
+use unicode_width::UnicodeWidthStr;
 
 /// How far numbers may be apart, relative to their scale.
 pub const TOLERANCE: f64 = 1e-9;
@@ -333,15 +335,15 @@ impl fmt::Display for Differences {
                 .iter()
                 .map(|r| [r.what.clone(), r.left.clone(), r.right.clone(), apart(r)]),
         );
-        let width = |k: usize| lines.iter().map(|l| l[k].chars().count()).max();
+        let width = |k: usize| lines.iter().map(|l| l[k].width()).max();
         let widths = [0, 1, 2].map(|k| width(k).unwrap_or(0));
         for line in &lines {
             let [what, left, right, apart] = line;
             let text = format!(
-                "{what:<w0$}  {left:<w1$}  {right:<w2$}  {apart}",
-                w0 = widths[0],
-                w1 = widths[1],
-                w2 = widths[2]
+                "{}  {}  {}  {apart}",
+                shown::padded(what, widths[0]),
+                shown::padded(left, widths[1]),
+                shown::padded(right, widths[2])
             );
             writeln!(f, "{}", text.trim_end())?;
         }

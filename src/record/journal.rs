@@ -6,6 +6,7 @@
 //! the disk, moves of the cursor only handed to the system: a kill loses neither, a power cut the latter.
 //! A last line without its end is what a kill leaves of an entry; it is dropped, and told.
 
+use crate::format::kind::{FileKind, mistaken};
 use crate::format::{SceneError, Spec, notation, read};
 use crate::outside::files;
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
@@ -117,6 +118,14 @@ pub enum JournalError {
         column: usize,
         /// What is wrong there.
         message: String,
+    },
+    /// It is another file of the program.
+    #[error("{file}: {told}")]
+    Mistaken {
+        /// The file.
+        file: String,
+        /// What it is, and what reads it.
+        told: String,
     },
     /// It is of another format than this program knows.
     #[error("{file}: the journal has format {found}, and this program knows only format {FORMAT}")]
@@ -364,7 +373,16 @@ impl Record {
                 "the file has no whole line; a journal's first is its scene",
             )
         })?;
-        let header = header(file, first)?;
+        let header = header(file, first).map_err(|error| {
+            let told = match &error {
+                JournalError::Damaged { .. } => mistaken(file, text, FileKind::Journal),
+                _ => None,
+            };
+            told.map_or(error, |told| JournalError::Mistaken {
+                file: file.to_owned(),
+                told,
+            })
+        })?;
         let mut record = Record {
             file: file.to_owned(),
             header,
@@ -463,15 +481,27 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
     }
 }
 
+/// Whether a file's name says that it is a journal.
+pub fn is_named_so(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending == EXTENSION)
+}
+
 /// Where journals are kept that are given no place: in the user's directory for states, or for data where the system
 /// has none.
 ///
 /// # Errors
 /// If the system names no home directory.
 pub fn directory() -> Result<PathBuf, JournalError> {
+    Ok(home()?.join("journals"))
+}
+
+/// The program's own place among what the user keeps: journals, and what was done of the lessons.
+///
+/// # Errors
+/// If the system names no home directory.
+pub fn home() -> Result<PathBuf, JournalError> {
     let ours = directories::ProjectDirs::from("", "", "stickslip").ok_or(JournalError::NoPlace)?;
-    let base = ours.state_dir().unwrap_or(ours.data_local_dir());
-    Ok(base.join("journals"))
+    Ok(ours.state_dir().unwrap_or(ours.data_local_dir()).to_owned())
 }
 
 /// The journal that was written last.

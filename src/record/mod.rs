@@ -3,7 +3,7 @@
 //! - [`snapshot`]: a recorded state; [`differences`]: what differs between two.
 //! - [`command`]: what a session can be told, as journals have it; [`journal`]: the record of a session; [`story`]: it as
 //!   text to read.
-//! - [`export`]: the fewest nodes that still cycle, or the whole frozen problem, as a scene.
+//! - [`export`]: files made of a state, the kind by the extension: pictures, scenes, problems for other programs.
 
 pub mod command;
 pub mod differences;

@@ -6,6 +6,7 @@
 
 use crate::contact::record::Forced;
 use crate::contact::table2::Rule;
+use crate::format::kind::{FileKind, mistaken};
 use crate::format::{SceneError, Spec, notation, read};
 use crate::linear::norms::Norms;
 use crate::model::{Mode, Model};
@@ -162,6 +163,14 @@ pub enum SnapshotError {
         /// What is wrong there.
         message: String,
     },
+    /// It is another file of the program.
+    #[error("{file}: {told}")]
+    Mistaken {
+        /// The file.
+        file: String,
+        /// What it is, and what reads it.
+        told: String,
+    },
     /// It is of another format than this program knows.
     #[error(
         "{file}: the snapshot has format {found}, and this program knows only format {FORMAT}; read it with the version that wrote it"
@@ -276,14 +285,18 @@ impl Snapshot {
                 found: header.format,
             });
         }
-        notation::options()
-            .from_str(text)
-            .map_err(|e| SnapshotError::Syntax {
-                file: file.to_owned(),
-                line: e.span.start.line,
-                column: e.span.start.col,
-                message: read::plainly(&e.code),
-            })
+        notation::options().from_str(text).map_err(|e| {
+            let file = file.to_owned();
+            match mistaken(&file, text, FileKind::Snapshot) {
+                Some(told) => SnapshotError::Mistaken { file, told },
+                None => SnapshotError::Syntax {
+                    file,
+                    line: e.span.start.line,
+                    column: e.span.start.col,
+                    message: read::plainly(&e.code),
+                },
+            }
+        })
     }
 
     /// Computes the snapshot again, from the start of its scene.

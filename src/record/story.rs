@@ -54,8 +54,8 @@ fn is_look(entry: &Entry) -> bool {
     motion && entry.solved == 0
 }
 
-/// What the user did.
-fn done(model: &Model, entry: &Entry) -> String {
+/// What the user did, in a sentence.
+pub fn done(model: &Model, entry: &Entry) -> String {
     let slave = |s: &usize| names::slave(model, *s);
     match &entry.command {
         _ if is_look(entry) => "Looked at another iteration.".into(),

@@ -2,6 +2,7 @@
 
 use super::Scene;
 use super::compile::increments;
+use super::gaps;
 use crate::linear::estimate::Estimate;
 use crate::model::{Beam, Body, BodyKind, Elastic, Form, Linear, Model, Solid, Surface};
 use crate::model::{Solver, Update};
@@ -30,6 +31,8 @@ pub struct Cost {
     pub surfaces: Vec<String>,
     /// Slave nodes, and how many of them start in each mode, as text.
     pub slaves: String,
+    /// Range of the start gaps, a line per surface.
+    pub gaps: Vec<String>,
     /// Increments, with the path that they follow.
     pub history: String,
     /// What each solver takes, estimated, the chosen one first.
@@ -75,6 +78,7 @@ impl Cost {
             bodies: model.bodies.iter().map(body_line).collect(),
             surfaces: model.surfaces.iter().map(surface_line).collect(),
             slaves: slaves_line(model),
+            gaps: gaps::words(model),
             history: history_line(model),
             solvers: solver_lines(model),
             without: without(model),
@@ -334,6 +338,7 @@ impl fmt::Display for Cost {
         section(f, "bodies", &self.bodies)?;
         section(f, "surfaces", &self.surfaces)?;
         section(f, "slaves", std::slice::from_ref(&self.slaves))?;
+        section(f, "gaps", &self.gaps)?;
         section(f, "history", std::slice::from_ref(&self.history))?;
         section(f, "solver", &self.solvers)?;
         section(f, "without", &self.without)

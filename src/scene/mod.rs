@@ -8,6 +8,7 @@
 
 pub mod builtin;
 pub mod cost;
+pub mod gaps;
 pub mod limits;
 pub mod memory;
 pub mod nodes;

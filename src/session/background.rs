@@ -4,26 +4,30 @@
 //!   thread goes over both iterations again and takes the frozen interface problem between them.
 //! - **Findings**: the diagnosis of the cycle that the shown state runs into, or else the census of the frozen problem
 //!   that is solved next from it.
-//! - **Exports**: the frozen problem, or the core of its cycle, written as a scene of its own ([`export`]).
+//! - **Exports**: files of a state: pictures, the frozen problem, the core of its cycle ([`export`]).
 //! - **Remedies**: trials of every way out ([`remedies`]).
 //!
 //! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
 
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
-use crate::explain::examination::{
-    Examination, NOT_CONDENSED, Untold, examine, examine_nodes, going_round,
-};
+use crate::explain::examination::{Examination, NOT_CONDENSED, Untold, examine_nodes, going_round};
 use crate::explain::influence::{Push, Way, pushes};
+use crate::explain::page::page;
 use crate::explain::remedies::{self, Trial};
+use crate::explain::report;
+use crate::history::strip::Strip;
 use crate::model::Model;
 use crate::outside::files::{self, FileError};
 use crate::record::command::Exported;
-use crate::record::export::{self, NoExport, Origin};
+use crate::record::export::shown::{NotMade, Shown};
+use crate::record::export::{self, Kind, MadeOf, NoExport, Origin, UnknownKind};
+use crate::scene::Scene;
+use crate::step::event::Event;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -31,6 +35,8 @@ use std::thread;
 
 /// Most entries that are kept of pushes, and of examinations.
 const KEPT: usize = 512;
+/// What a page says that was stopped.
+const STOPPED: &str = "stopped; :census goes on from the beginning";
 /// A place: branch, and step on its line.
 pub type LinePlace = (usize, usize);
 
@@ -49,7 +55,7 @@ pub struct Tried {
     pub stopped: bool,
 }
 
-/// A scene to be written of the problem that is frozen at a state.
+/// A file to be made of a state.
 pub struct Export {
     /// What is written.
     pub what: Exported,
@@ -61,6 +67,20 @@ pub struct Export {
     pub origin: Origin,
     /// The shown state.
     pub state: Box<State>,
+    /// What a picture shows of it besides.
+    pub shown: Option<Box<Seen>>,
+}
+
+/// What there is to be seen of a state.
+pub struct Seen {
+    /// The scene that led there.
+    pub scene: Scene,
+    /// The last minor iteration.
+    pub event: Option<Arc<Event>>,
+    /// The last ones.
+    pub strips: Vec<Strip>,
+    /// The state in which the last major iteration began, if it is known.
+    pub last_major: Option<State>,
 }
 
 /// Why no scene was written.
@@ -84,6 +104,17 @@ pub enum NotWritten {
     /// No file can say what the problem says.
     #[error(transparent)]
     NoExport(#[from] NoExport),
+    /// No file of that kind can be made of the state.
+    #[error(transparent)]
+    NotMade(#[from] NotMade),
+    /// The extension is none that is known.
+    #[error(transparent)]
+    UnknownKind(#[from] UnknownKind),
+    /// The kind is made of a journal.
+    #[error(
+        "a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is"
+    )]
+    OfJournal,
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -98,10 +129,21 @@ enum Ask {
 
 enum Told {
     Pushes(LinePlace, usize, Option<Vec<Push>>),
-    Examination(LinePlace, Vec<usize>, Box<Examination>),
-    Trying { all: usize, now: String },
+    /// The page as far as it is made, or (not `going_on`) whole.
+    Examination {
+        place: LinePlace,
+        nodes: Vec<usize>,
+        found: Option<Box<Examination>>,
+        going_on: bool,
+    },
+    Trying {
+        all: usize,
+        now: String,
+    },
     Tried(Box<Trial>),
-    Done { stopped: bool },
+    Done {
+        stopped: bool,
+    },
     Exported(Result<String, NotWritten>),
 }
 
@@ -119,6 +161,8 @@ pub struct Background {
     exported: Option<Result<String, NotWritten>>,
     tried: Option<Tried>,
     trying: bool,
+    /// Whether a page is being made that grows.
+    examining: bool,
 }
 
 impl Background {
@@ -147,6 +191,7 @@ impl Background {
             exported: None,
             tried: None,
             trying: false,
+            examining: false,
         }
     }
 
@@ -176,6 +221,11 @@ impl Background {
         self.trying
     }
 
+    /// Whether a page is being made that grows.
+    pub fn is_examining(&self) -> bool {
+        self.examining
+    }
+
     /// Asks what pushed a node. One question at a time: while another waits, this one may be asked again later.
     pub(super) fn ask_pushes(&mut self, place: LinePlace, slave: usize, way: impl FnOnce() -> Way) {
         if self.waiting == 0 && !self.pushes.contains_key(&(place, slave)) {
@@ -192,6 +242,7 @@ impl Background {
             }
             self.examinations.insert(place, (nodes.to_vec(), None));
             let state = Box::new(state.clone());
+            self.stop.store(false, Ordering::Relaxed);
             self.send(Ask::Examination(place, state, nodes.to_vec()));
         }
     }
@@ -220,7 +271,7 @@ impl Background {
         self.send(Ask::Remedies(Box::new(state.clone())));
     }
 
-    /// Stops trying remedies after the present minor iteration.
+    /// Stops trying remedies, for the list or for a page, after the present minor iteration.
     pub fn interrupt(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -241,7 +292,7 @@ impl Background {
                 Err(TryRecvError::Empty) => return any,
                 Err(TryRecvError::Disconnected) => {
                     any |= self.waiting > 0;
-                    (self.waiting, self.trying) = (0, false);
+                    self.gone();
                     return any;
                 }
             }
@@ -254,9 +305,14 @@ impl Background {
         while self.waiting > 0 {
             match self.told.recv() {
                 Ok(told) => self.take(told),
-                Err(_) => (self.waiting, self.trying) = (0, false),
+                Err(_) => self.gone(),
             }
         }
+    }
+
+    /// The thread is gone: nothing is waited for.
+    fn gone(&mut self) {
+        (self.waiting, self.trying, self.examining) = (0, false, false);
     }
 
     fn take(&mut self, told: Told) {
@@ -268,14 +324,25 @@ impl Background {
                 self.pushes.insert((place, slave), found);
                 self.waiting -= 1;
             }
-            Told::Examination(place, nodes, found) => {
+            Told::Examination {
+                place,
+                nodes,
+                found,
+                going_on,
+            } => {
                 // Something else may have been asked for in the meantime.
-                if let Some(kept) = self.examinations.get_mut(&place)
-                    && kept.0 == nodes
-                {
-                    kept.1 = Some(*found);
+                match (found, self.examinations.get_mut(&place)) {
+                    (Some(found), Some(kept)) if kept.0 == nodes => kept.1 = Some(*found),
+                    (None, Some(kept)) if kept.0 == nodes => match &mut kept.1 {
+                        Some(part) => STOPPED.clone_into(&mut part.going_on),
+                        None => {
+                            self.examinations.remove(&place);
+                        }
+                    },
+                    _ => {}
                 }
-                self.waiting -= 1;
+                self.examining = going_on;
+                self.waiting -= usize::from(!going_on);
             }
             Told::Exported(result) => {
                 self.exported = Some(result);
@@ -317,11 +384,25 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
             news.send(Told::Pushes(place, slave, found)).ok()
         }
         Ask::Examination(place, state, nodes) => {
-            let found = Box::new(match nodes.as_slice() {
-                [] => examine(stepper, &state),
-                some => examine_nodes(stepper, &state, some),
-            });
-            news.send(Told::Examination(place, nodes, found)).ok()
+            let send = |found: Option<Examination>, going_on: bool| {
+                news.send(Told::Examination {
+                    place,
+                    nodes: nodes.clone(),
+                    found: found.map(Box::new),
+                    going_on,
+                })
+            };
+            let found = match nodes.as_slice() {
+                [] => page(
+                    stepper,
+                    &state,
+                    &|| stop.load(Ordering::Relaxed),
+                    // That nobody listens any more shows at the end.
+                    &mut |part| drop(send(Some(part.clone()), true)),
+                ),
+                some => Some(examine_nodes(stepper, &state, some)),
+            };
+            send(found, false).ok()
         }
         Ask::Export(ask) => {
             let done = write(stepper, &ask).map(|()| format!("wrote {}", ask.file.display()));
@@ -350,8 +431,22 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
     }
 }
 
-/// Writes a core, or a whole problem, as a scene.
+/// Makes a file of a state.
 fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
+    let bytes = match ask.what {
+        Exported::Core => core_of(stepper, ask)?.into_bytes(),
+        // Any name will do for it, as it always did.
+        Exported::Whole => match export::kind(&ask.file) {
+            Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
+            _ => shown(stepper, ask, export::kind(Path::new("a.ron"))?)?,
+        },
+        Exported::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
+    };
+    Ok(files::write(&ask.file, &bytes, ask.overwrite)?)
+}
+
+/// The scene of the core of the cycle that a state runs into.
+fn core_of(stepper: &mut Stepper, ask: &Export) -> Result<String, NotWritten> {
     if ask.state.status == Status::Finished {
         return Err(NotWritten::Finished);
     }
@@ -359,14 +454,33 @@ fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
     let problem = stepper
         .interface_problem()
         .ok_or(NotWritten::NotCondensed)?;
-    let text = match ask.what {
-        Exported::Whole => export::whole(stepper.model(), &ask.origin, &problem)?,
-        Exported::Core => {
-            let (problem, cycle) =
-                going_round(stepper, &ask.state, &problem)?.ok_or(NotWritten::NoCycle)?;
-            let core = core(&problem).ok_or_else(|| NotWritten::TooMany(too_many(&cycle)))?;
-            export::core(stepper.model(), &ask.origin, &cycle, &core)?
-        }
+    let (problem, cycle) =
+        going_round(stepper, &ask.state, &problem)?.ok_or(NotWritten::NoCycle)?;
+    let core = core(&problem).ok_or_else(|| NotWritten::TooMany(too_many(&cycle)))?;
+    Ok(export::core(stepper.model(), &ask.origin, &cycle, &core)?)
+}
+
+/// A file of a kind.
+fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<u8>, NotWritten> {
+    let MadeOf::State(make) = kind.made_of else {
+        return Err(NotWritten::OfJournal);
     };
-    Ok(files::write(&ask.file, &text, ask.overwrite)?)
+    let Some(seen) = &ask.shown else {
+        return Err(NotWritten::Finished);
+    };
+    let ended = match &ask.state.status {
+        Status::Failed(failure) => report::describe_failure(stepper.model(), failure),
+        _ => String::new(),
+    };
+    let shown = Shown {
+        scene: &seen.scene,
+        origin: &ask.origin,
+        state: &ask.state,
+        event: seen.event.as_deref(),
+        strips: &seen.strips,
+        last_major: seen.last_major.as_ref(),
+        ended,
+        frozen: ask.what == Exported::Whole,
+    };
+    Ok(make(&shown, stepper)?)
 }

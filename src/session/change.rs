@@ -4,12 +4,13 @@ use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
 use super::worker::Job;
 use crate::explain::report;
-use crate::format::paths;
+use crate::format::{Spec, paths};
 use crate::history::branches;
 use crate::history::strip::PointKind;
 use crate::outside::shown;
 use crate::scene::Scene;
 use crate::step::intervene::Intervention;
+use crate::step::state::Controls;
 
 impl Session {
     /// Changes something at the cursor; `setting` is the path and the value that it came from.
@@ -22,7 +23,17 @@ impl Session {
         state
             .intervene(self.model(), &intervention)
             .map_err(Refusal::Intervention)?;
-        let mut told = report::intervention(self.model(), &intervention);
+        let then = setting.and_then(|(path, _)| self.value_of(path, &self.frame().state.controls));
+        let now = setting.and_then(|(path, _)| self.value_of(path, &state.controls));
+        let mut told = match (setting, then, now) {
+            (Some((path, _)), Some(then), Some(now)) if then == now => {
+                format!("{} stays {now}", path.trim())
+            }
+            (Some((path, _)), Some(then), Some(now)) => {
+                format!("{} changed from {then} to {now}", path.trim())
+            }
+            _ => report::intervention(self.model(), &intervention),
+        };
         let label = branches::label(self.model(), &intervention, setting);
         let before = self.strips()[self.cursor].kind;
         let forks = self.tree.intervene(self.cursor, state, intervention);
@@ -66,15 +77,28 @@ impl Session {
         Ok(Reply(format!("running in the new branch {name}")))
     }
 
-    /// What `:set` means, on top of what was set before.
-    pub(super) fn setting(&self, path: &str, value: &str) -> Result<Intervention, Refusal> {
-        let controls = &self.frame().state.controls;
+    /// The scene with what was set since.
+    fn with(&self, controls: &Controls) -> Spec {
         let mut spec = self.scene.spec.clone();
         spec.settings = controls.settings;
         spec.history.increment = controls.increment;
         if let Some(friction) = controls.friction.first() {
             spec.friction = *friction;
         }
+        spec
+    }
+
+    /// A scalar of the scene with what was set since, as a person types it.
+    fn value_of(&self, path: &str, controls: &Controls) -> Option<String> {
+        let all = paths::list(&self.with(controls));
+        let listed = all.into_iter().find(|listed| listed.path == path.trim());
+        let plain = |value: String| value.strip_suffix(".0").map_or(value.clone(), String::from);
+        listed.map(|listed| plain(listed.value))
+    }
+
+    /// What `:set` means, on top of what was set before.
+    pub(super) fn setting(&self, path: &str, value: &str) -> Result<Intervention, Refusal> {
+        let mut spec = self.with(&self.frame().state.controls);
         paths::set(&mut spec, path, value)?;
         let sound =
             Scene::from_spec(&self.scene.name, spec).map_err(|e| Refusal::Unsound(e.message))?;

@@ -118,11 +118,8 @@ impl Session {
         if self.watches.iter().any(|other| other.name == watch.name) {
             return Err(Refusal::Watched(watch.name));
         }
-        let value = watch.value(self.frame());
-        let told = match value {
-            Some(value) => format!("{} = {value:e}", watch.name),
-            None => format!("{}: nothing is solved for it here", watch.name),
-        };
+        // Its number stands beside, with those of the others ([`Session::aside`]).
+        let told = format!("watching {}", watch.name);
         self.watches.push(watch);
         Ok(Reply(told))
     }

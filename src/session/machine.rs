@@ -14,6 +14,7 @@ use super::background::Background;
 use super::diary::Diary;
 use super::refusal::Refusal;
 use super::worker::{Message, Worker};
+use crate::explain::advice;
 use crate::explain::report;
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoint;
@@ -28,7 +29,9 @@ use crate::model::Model;
 use crate::record::command::Command;
 use crate::record::journal::{self, Entry, Journal};
 use crate::scene::Scene;
+use crate::scene::gaps;
 use crate::step::intervene::Intervention;
+use crate::step::state::Status;
 use crate::step::stepper::Stepper;
 use std::path::Path;
 use std::sync::Arc;
@@ -40,6 +43,8 @@ pub struct Reply(pub String);
 /// A debugging session.
 pub struct Session {
     pub(super) scene: Scene,
+    /// What the start gaps are, and what is doubtful about them.
+    start: (String, Vec<String>),
     pub(super) tree: Tree,
     pub(super) cursor: usize,
     pub(super) worker: Worker,
@@ -82,6 +87,7 @@ impl Session {
         let model = Arc::new(scene.model.clone());
         let start = Stepper::new(model.clone()).state().clone();
         Session {
+            start: (gaps::words(&model).join(", "), gaps::warnings(&model)),
             scene,
             tree: Tree::new(model.clone(), start, bytes),
             cursor: 0,
@@ -121,6 +127,16 @@ impl Session {
     /// Scene as read.
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// The range of the start gaps of each surface, in a few words; empty where no slave node stands over a surface.
+    pub fn start_gaps(&self) -> &str {
+        &self.start.0
+    }
+
+    /// What is doubtful about how the scene starts, the worst first.
+    pub fn doubts(&self) -> &[String] {
+        &self.start.1
     }
 
     /// Scene as checked.
@@ -417,7 +433,14 @@ impl Session {
         let frame = self.frame();
         match &frame.event {
             None => "at the start".into(),
-            Some(event) => report::outcome(self.model(), event),
+            Some(event) => match &frame.state.status {
+                Status::Failed(failure) => format!(
+                    "{}; try {}",
+                    report::outcome(self.model(), event),
+                    advice::in_a_line(self.model(), &frame.state, failure)
+                ),
+                _ => report::outcome(self.model(), event),
+            },
         }
     }
 }

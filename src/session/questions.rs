@@ -1,14 +1,16 @@
 //! What is asked beside the run, and answered in the background.
 
-use super::background::{Background, Export};
+use super::background::{Background, Export, NotWritten, Seen};
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
 use crate::explain::influence::Way;
 use crate::explain::report;
+use crate::history::frame::Frame;
 use crate::history::strip::{PointKind, Strip};
 use crate::outside::files;
 use crate::record::command::Exported;
-use crate::record::export::Origin;
+use crate::record::export::shown::COLUMNS;
+use crate::record::export::{self, MadeOf, Origin};
 use crate::step::state::Status;
 use std::path::PathBuf;
 
@@ -89,8 +91,7 @@ impl Session {
         Reply("the diagnosis (d) tells what is found".into())
     }
 
-    /// Has the core or the whole interface problem of the shown state written; what came of it comes with
-    /// [`Session::exported`].
+    /// Has a file made of the shown state; what came of it comes with [`Session::exported`].
     pub(super) fn export(
         &mut self,
         what: Exported,
@@ -99,6 +100,12 @@ impl Session {
     ) -> Result<Reply, Refusal> {
         // Sooner rather than later; it leaves nothing behind.
         files::regular(&file)?;
+        if what == Exported::Shown {
+            let kind = export::kind(&file).map_err(NotWritten::from)?;
+            if matches!(kind.made_of, MadeOf::Journal) {
+                return Err(NotWritten::OfJournal.into());
+            }
+        }
         drop(files::Output::create(&file, overwrite)?);
         let frame = self.frame();
         let at = match &frame.event {
@@ -113,7 +120,9 @@ impl Session {
         origin.changes.extend(words);
         let told = format!("writing {}", file.display());
         let state = Box::new(frame.state.clone());
+        let shown = (what != Exported::Core).then(|| Box::new(self.seen()));
         self.background.ask_export(Export {
+            shown,
             what,
             file,
             overwrite,
@@ -121,6 +130,32 @@ impl Session {
             state,
         });
         Ok(Reply(told))
+    }
+
+    /// What there is to be seen of the shown state.
+    fn seen(&self) -> Seen {
+        let (frames, strips) = (&self.frames()[..=self.cursor], self.strips());
+        let strips = &strips[..=self.cursor];
+        let begins = |frame: &&Frame| {
+            let state = &frame.state;
+            frame.is_whole() && state.next.minor == 1 && state.status == Status::Running
+        };
+        let last_major = frames.iter().rev().find(begins);
+        // One that was thinned has another one's major iteration before it.
+        let ended = frames.last().and_then(|frame| frame.event.as_ref());
+        let of_it = |frame: &&Frame| {
+            let next = frame.state.next;
+            ended.is_some_and(|event| {
+                let at = event.position;
+                (at.increment, at.attempt, at.major) == (next.increment, next.attempt, next.major)
+            })
+        };
+        Seen {
+            scene: self.scene.clone(),
+            event: ended.cloned(),
+            strips: strips[strips.len().saturating_sub(2 * COLUMNS)..].to_vec(),
+            last_major: last_major.filter(of_it).map(|frame| frame.state.clone()),
+        }
     }
 
     /// What came of the last file that [`Command::Export`](crate::record::command::Command::Export) wrote; once.

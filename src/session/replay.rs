@@ -82,8 +82,20 @@ impl Record {
     /// # Errors
     /// If the scene is unsound, or at the first entry that leads elsewhere.
     pub fn replay(&self) -> Result<Session, JournalError> {
+        self.replay_seen(&mut |_, _| {})
+    }
+
+    /// The same, with a look at the session at its start, and after each entry.
+    ///
+    /// # Errors
+    /// As [`Record::replay`].
+    pub fn replay_seen(
+        &self,
+        see: &mut dyn FnMut(&Session, Option<&Entry>),
+    ) -> Result<Session, JournalError> {
         let mut session = Session::new(self.scene()?);
         session.diary.keep_in_memory();
+        see(&session, None);
         for (line, entry) in &self.entries {
             session.replay(entry).map_err(|departure| {
                 let other = match self.header.version.as_str() {
@@ -96,6 +108,7 @@ impl Record {
                     message: departure.to_string() + &other,
                 }
             })?;
+            see(&session, Some(entry));
         }
         Ok(session)
     }

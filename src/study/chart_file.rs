@@ -31,6 +31,8 @@ pub struct Chart {
     pub set: Vec<(String, String)>,
     /// Monitors whose error counts; none: all displacements.
     pub monitors: Vec<String>,
+    /// Monitors that are asked for instead, by name: the reference must have them.
+    pub by: Vec<String>,
     /// What errors are measured against.
     pub truth: Truth,
     /// The curves, in the order of the file.
@@ -136,6 +138,7 @@ impl Chart {
                 scene: name.to_owned(),
                 set: Vec::new(),
                 monitors: Vec::new(),
+                by: Vec::new(),
                 truth: truth(&scene.name),
                 series: any(),
             },
@@ -174,6 +177,7 @@ impl Chart {
             scene: file.scene,
             set: pairs(file.set),
             monitors: file.monitors,
+            by: Vec::new(),
             series: file.series.into_iter().map(series).collect(),
         })
     }

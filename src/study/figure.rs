@@ -1,6 +1,8 @@
 //! The results of a study as curves: the form of the paper's figures.
 
-use super::plan::Plan;
+use super::monitor_kind::{MonitorKind, kind};
+use super::origin;
+use super::plan::{Case, Plan};
 use super::plot::{Axis, Chart, Curve, CurveEnd};
 use super::read::AxisQuantity;
 use super::result::{CaseEnd, Run};
@@ -31,8 +33,8 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
         .collect();
     Chart {
         title: plan.title.clone(),
-        x: axis(&plan.x),
-        y: axis(&plan.y),
+        x: axis(plan, &plan.x),
+        y: axis(plan, &plan.y),
         curves,
         footer: footer(plan, runs),
     }
@@ -59,19 +61,35 @@ pub fn short_names(paths: &[String]) -> Vec<String> {
     }
 }
 
-fn axis(quantity: &AxisQuantity) -> Axis {
+fn axis(plan: &Plan, quantity: &AxisQuantity) -> Axis {
     let name = match quantity {
-        AxisQuantity::Load => "load factor",
-        AxisQuantity::Majors => "major iterations of the increment",
-        AxisQuantity::Minors => "minor iterations of the increment",
-        other => other.name(),
+        AxisQuantity::Load => "load factor".to_owned(),
+        AxisQuantity::Majors => "major iterations of the increment".to_owned(),
+        AxisQuantity::Minors => "minor iterations of the increment".to_owned(),
+        AxisQuantity::Increment => "increment".to_owned(),
+        AxisQuantity::Monitor(name) => format!("{name}{}", unit(plan, name)),
     };
     Axis {
-        name: name.to_owned(),
+        name,
         counts: matches!(
             quantity,
             AxisQuantity::Increment | AxisQuantity::Majors | AxisQuantity::Minors
         ),
+    }
+}
+
+/// What a monitor is measured in: of lengths and forces the scene's own units.
+fn unit(plan: &Plan, monitor: &str) -> &'static str {
+    let of = |case: &Case| {
+        let model = case.open().ok()?.model;
+        let found = model.monitors.iter().find(|own| own.name == monitor)?;
+        Some(kind(&model, &found.of))
+    };
+    match plan.cases.iter().find_map(of) {
+        Some(MonitorKind::Length | MonitorKind::Drift) => " (length)",
+        Some(MonitorKind::Rotation) => " (rad)",
+        Some(MonitorKind::Force) => " (force)",
+        None => "",
     }
 }
 
@@ -101,13 +119,11 @@ fn footer(plan: &Plan, runs: &[Run]) -> Vec<String> {
         made += &format!("; {} over {}", vary.path, vary.values.join(", "));
     }
     let failed = runs.iter().filter(|run| run.failed().is_some()).count();
-    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let by = format!(
-        "{} runs, {failed} of them failed. stickslip {} on {}/{}, {cores} cores",
+        "{} runs, {failed} of them failed. {} on {}",
         runs.len(),
-        env!("CARGO_PKG_VERSION"),
-        std::env::consts::OS,
-        std::env::consts::ARCH,
+        origin::program(),
+        origin::machine()
     );
     vec![made, by]
 }

@@ -4,6 +4,7 @@
 //! and a result as RON; the key is a hash of all that the result depends on, so that whatever is asked for next time, what
 //! is there already is not computed again. A line that a kill has cut off has no end, and is taken away.
 
+use crate::format::kind::{FileKind, mistaken};
 use crate::format::read::plainly;
 use crate::outside::input::{self, Unreadable};
 use rustix::fs::{FlockOperation, flock};
@@ -38,12 +39,14 @@ pub enum LogError {
     #[error("{}: another run writes to it at present", .0.display())]
     Busy(PathBuf),
     /// The file is of something else.
-    #[error("{}:1:1: this is no file of kept results (it would begin with {ours:?}); it is left alone", path.display())]
+    #[error("{}:1:1: {}; it is left alone", path.display(), told.clone().unwrap_or_else(|| format!("this is no file of kept results (it would begin with {ours:?})")))]
     Foreign {
         /// The file.
         path: PathBuf,
         /// How a file of results begins.
         ours: String,
+        /// What it is, and what reads it, where it is of the program.
+        told: Option<String>,
     },
     /// A line of it cannot be read.
     #[error("{}:{line}:{column}: this result cannot be read: {message}", path.display())]
@@ -93,9 +96,11 @@ struct Lines<'a> {
 impl Lines<'_> {
     /// Reads the first line; false where there is none yet, or only a part of ours.
     fn head(&mut self) -> Result<bool, LogError> {
+        let path = self.path;
         let foreign = || LogError::Foreign {
-            path: self.path.to_owned(),
+            path: path.to_owned(),
             ours: head(),
+            told: told(path),
         };
         // Were it longer, it would not be ours.
         let bytes = self.bytes(head().len() + 8)?;
@@ -147,6 +152,15 @@ impl Lines<'_> {
             source,
         })
     }
+}
+
+/// What a file is, where it is another one of the program.
+fn told(path: &Path) -> Option<String> {
+    /// Bytes that tell one from another.
+    const READ_TO_TELL: u64 = 1 << 16;
+    let start = input::start(path, READ_TO_TELL).ok()?;
+    let name = path.display().to_string();
+    mistaken(&name, &String::from_utf8_lossy(&start), FileKind::Results)
 }
 
 /// A line's key and its result; the column where that is no such line, and why.

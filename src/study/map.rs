@@ -8,12 +8,13 @@
 
 use super::figure::{label, short_names};
 use super::log::{Log, key};
+use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
 use super::result::{CaseEnd, Run};
 use super::run::{RunError, Watch, one, pool};
 use super::verdict::RunVerdict;
-use crate::model::{Model, Watched};
+use crate::model::Model;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -59,20 +60,6 @@ pub struct Seen {
     pub end: f64,
     /// The largest magnitude that it ever had.
     pub largest: f64,
-}
-
-/// What a monitor is: those of one kind have one scale.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename = "Kind")]
-pub enum MonitorKind {
-    /// A displacement or gap.
-    Length,
-    /// An angle, radians.
-    Rotation,
-    /// A force.
-    Force,
-    /// A length that is a measure of error, and is not compared.
-    Drift,
 }
 
 /// A cell of a map.
@@ -169,22 +156,6 @@ impl Ended {
                 }
             });
         differences.fold(0.0, f64::max)
-    }
-}
-
-/// What a monitor is.
-pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
-    match watched {
-        Watched::Displacement { dof } => {
-            // The rotation is the third of a node.
-            let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
-            match (0..model.nodes.len()).any(turns) {
-                true => MonitorKind::Rotation,
-                false => MonitorKind::Length,
-            }
-        }
-        Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
-        Watched::Drift { .. } => MonitorKind::Drift,
     }
 }
 

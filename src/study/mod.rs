@@ -2,8 +2,10 @@
 //!
 //! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
 //! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
-//! - [`run`](mod@run): the cases side by side, each on one thread; [`result`]: what one of them came to.
-//! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG.
+//! - [`run`](mod@run): the cases side by side, each on one thread; [`result`]: what one of them came to;
+//!   [`monitor_kind`]: what its numbers are measured in.
+//! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG;
+//!   [`bitmap`]: the letters of the latter; [`placing`]: places for labels; [`log_axis`]: an axis in powers of ten.
 //!
 //! Stability maps:
 //!
@@ -19,14 +21,18 @@
 //!
 //! Nothing here knows a command line.
 
+pub mod bitmap;
 pub mod builtin;
 pub mod chart_file;
 pub mod csv;
 pub mod figure;
 pub mod log;
+pub mod log_axis;
 pub mod map;
 pub mod measuring;
+pub mod monitor_kind;
 pub mod origin;
+pub mod placing;
 pub mod plan;
 pub mod plot;
 pub mod precision;

@@ -2,6 +2,7 @@
 //!
 //! A chart is wider the longer its legend, and higher the more of it there is, so that nothing is cut off.
 
+use super::bitmap::Bitmap;
 use crate::explain::number::six;
 use crate::outside::shown;
 use plotters::coord::Shift;
@@ -126,10 +127,15 @@ pub fn png(chart: &Chart) -> Result<Vec<u8>, PlotError> {
     let layout = Layout::of(chart, PNG_SCALE)?;
     let (width, height) = layout.size;
     let mut pixels = paper(width, height)?;
-    let root = BitMapBackend::with_buffer(&mut pixels, layout.size).into_drawing_area();
+    let root = bitmap(&mut pixels, layout.size)?.into_drawing_area();
     draw(&root, chart, &layout).map_err(|e| PlotError(e.to_string()))?;
     drop(root);
     encode(&pixels, width, height).map_err(|e| PlotError(e.to_string()))
+}
+
+/// Pixels to be drawn on.
+pub(super) fn bitmap(pixels: &mut [u8], size: (u32, u32)) -> Result<Bitmap<'_>, PlotError> {
+    Bitmap::new(pixels, size).ok_or_else(|| PlotError("its font cannot be read".to_owned()))
 }
 
 /// White pixels.

@@ -5,12 +5,12 @@
 //! and every run that went to its end have in common; a run that failed has none. Its **cost** is the processor time of its
 //! thread, from the made scene to the end of the history (the median of some repetitions), its factorizations (as the
 //! stepper makes them: one a major iteration where it condenses, else one a minor), and its minor iterations. Of the runs
-//! that went to the end, those that no other one beats in both are the **front**.
+//! that went to the end, those that no other one beats in both are the **front**; errors at round-off ([`ROUND_OFF`]) are equal there.
 
 use super::chart_file::{Chart, Truth};
 use super::csv::TableError;
 use super::figure::{label, short_names};
-use super::map::{MonitorKind, kind};
+use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
 use super::read::Study;
@@ -22,6 +22,9 @@ use crate::linear::estimate::Estimate;
 use crate::model::Model;
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
+
+/// Errors below this are round-off: a few thousand operations with the numbers' own.
+pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
 
 /// Runs that take this long altogether (seconds) are not repeated any more.
 const LONG: f64 = 20.0;
@@ -82,6 +85,13 @@ pub struct Point {
     pub reference: bool,
     /// No other run is both cheaper and nearer.
     pub front: bool,
+}
+
+impl Point {
+    /// Whether its error is round-off: such runs are equally near.
+    pub fn is_round_off(&self) -> bool {
+        self.error.is_some_and(|error| error < ROUND_OFF)
+    }
 }
 
 /// What is counted as cost.
@@ -220,7 +230,13 @@ pub fn run(
     if let Some(own) = own {
         all[own].point.reference = true;
     }
-    let loads = compare(&mut precision, &mut all, &reference, &chart.monitors)?;
+    let wanted = match chart.by.is_empty() {
+        true => &chart.monitors,
+        false => &chart.by,
+    };
+    measurable(&reference, &chart.by)?;
+    let loads = compare(&mut precision, &mut all, &reference, wanted)?;
+
     precision.points = all.into_iter().map(|measured| measured.point).collect();
     precision.about = origin(chart, &precision, loads, &reference);
     mark_front(&mut precision.points, measure.cost);
@@ -441,11 +457,32 @@ fn compare(
     Ok(rows.len())
 }
 
+/// Refuses monitors that are asked for by name where the reference does not have them, or they are zero all along.
+fn measurable(reference: &Reference, by: &[String]) -> Result<(), PrecisionError> {
+    for name in by {
+        let place = reference.monitors.iter().position(|own| own == name);
+        let Some(place) = place else {
+            return Err(PrecisionError::Reference(format!(
+                "{} has no {name}; it has {} (--reference finest takes a run of the set, which has all monitors of the scene)",
+                reference.source,
+                reference.monitors.join(", ")
+            )));
+        };
+        let values = reference.rows.iter().map(|row| row.values[place].abs());
+        if values.fold(0.0, f64::max) == 0.0 {
+            return Err(PrecisionError::Reference(format!(
+                "{name} is zero all along in the reference, so that no error is a part of it"
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Marks the runs that none beats in cost and error.
 pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
     let measured: Vec<Option<(f64, f64)>> = points
         .iter()
-        .map(|point| Some((cost.of(point), point.error?)))
+        .map(|point| Some((cost.of(point), point.error?.max(ROUND_OFF))))
         .collect();
     let beaten = |(x, y): (f64, f64)| {
         let better = |&(a, b): &(f64, f64)| a <= x && b <= y && (a < x || b < y);
@@ -555,6 +592,21 @@ mod tests {
         mark_front(&mut points, Cost::Time);
         let front: Vec<bool> = points.iter().map(|p| p.front).collect();
         assert_eq!(front, [true, true, false, true, false, true]);
+    }
+
+    #[test]
+    fn errors_at_round_off_tie_so_that_the_cheapest_of_them_stays() {
+        let mut points = vec![
+            point(1.0, Some(3e-14)),
+            point(2.0, Some(1e-16)),
+            point(0.5, Some(1e-11)),
+            point(3.0, Some(0.0)),
+        ];
+        mark_front(&mut points, Cost::Time);
+        let front: Vec<bool> = points.iter().map(|p| p.front).collect();
+        assert_eq!(front, [true, false, true, false]);
+        let equal: Vec<bool> = points.iter().map(Point::is_round_off).collect();
+        assert_eq!(equal, [true, true, false, true]);
     }
 
     #[test]

@@ -1,9 +1,12 @@
 //! Work-precision charts as pictures: error over cost, both in decades.
 //!
-//! Runs that failed stand on a rail above the plot, at what they cost until then, and are named below it.
+//! Runs that failed stand on a rail above the plot, at what they cost until then, and are named below it. A run has its
+//! values beside it, or where there is no room a number, which is told below. Errors at round-off stand on one line.
 
+use super::log_axis::{LogAxis, written};
+use super::placing::{Patch, Placing};
 use super::plot::PlotError;
-use super::precision::{Point, Precision};
+use super::precision::{Point, Precision, ROUND_OFF};
 use super::sheet::{
     Anchor, BLACK, COLOURS, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
 };
@@ -18,42 +21,6 @@ const LEFT: f64 = 84.0;
 const CROSS: Colour = (192, 0, 0);
 /// Runs that failed and are named below the plot.
 const MOST_FAILED: usize = 40;
-/// Errors below this are drawn here: they are none.
-pub const NOTHING: f64 = 1e-16;
-
-/// An axis in decades.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Decades {
-    /// Exponent of ten at its beginning.
-    pub low: i32,
-    /// Exponent of ten at its end.
-    pub high: i32,
-}
-
-impl Decades {
-    /// The decades that hold some numbers above zero; one at least.
-    pub fn of(values: impl Iterator<Item = f64>) -> Decades {
-        let mut all = values.filter(|v| v.is_finite() && *v > 0.0).peekable();
-        if all.peek().is_none() {
-            return Decades { low: 0, high: 1 };
-        }
-        let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), v| {
-            (low.min(v), high.max(v))
-        });
-        let low = low.log10().floor() as i32;
-        Decades {
-            low,
-            high: (high.log10().ceil() as i32).max(low + 1),
-        }
-    }
-
-    /// Where a number lies, from 0 to 1.
-    pub fn part(self, value: f64) -> f64 {
-        let value = value.max(f64::MIN_POSITIVE).log10();
-        ((value - f64::from(self.low)) / f64::from(self.high - self.low)).clamp(0.0, 1.0)
-    }
-}
-
 /// Some charts, one below the other.
 ///
 /// # Errors
@@ -76,38 +43,63 @@ pub fn sheet(charts: &[Precision]) -> Result<Sheet, PlotError> {
     Ok(sheet)
 }
 
+/// Where costs and errors stand on the sheet.
+struct Frame {
+    x: LogAxis,
+    y: LogAxis,
+    /// Height of the plot's upper end.
+    top: f64,
+}
+
+impl Frame {
+    fn at(&self, cost: f64, error: f64) -> (f64, f64) {
+        (
+            LEFT + PLOT.0 * self.x.part(cost),
+            self.top + PLOT.1 * (1.0 - self.y.part(error.max(ROUND_OFF))),
+        )
+    }
+
+    /// Where a run stands: in the plot, on the rail, or (the reference itself) on the ground.
+    fn place(&self, chart: &Precision, point: &Point) -> (f64, f64) {
+        let (x, bottom) = (self.at(chart.cost.of(point), 1.0).0, self.top + PLOT.1);
+        match (point.error, &point.failed) {
+            (Some(error), _) => self.at(chart.cost.of(point), error),
+            (None, Some(_)) => (x, self.top - 0.5 * RAIL - 3.0),
+            (None, None) => (x, bottom),
+        }
+    }
+}
+
 fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     let top = sheet.height + RAIL;
-    let wanted = chart.target;
-    let x = Decades::of(chart.points.iter().map(|p| chart.cost.of(p)));
     let errors = chart.points.iter().filter_map(|p| p.error);
-    let y = Decades::of(errors.map(|e| e.max(NOTHING)).chain(wanted));
-    let at = |cost: f64, error: f64| {
-        (
-            LEFT + PLOT.0 * x.part(cost),
-            top + PLOT.1 * (1.0 - y.part(error.max(NOTHING))),
-        )
+    let frame = Frame {
+        x: LogAxis::of(chart.points.iter().map(|p| chart.cost.of(p))),
+        y: LogAxis::of(errors.map(|e| e.max(ROUND_OFF)).chain(chart.target)),
+        top,
     };
     rail(sheet);
-    axes(sheet, chart, x, y);
-    if let Some(target) = wanted {
-        let (_, height) = at(1.0, target);
-        sheet.line(&[(LEFT, height), (LEFT + PLOT.0, height)], 1.5, GREY);
-        let words = (LEFT + PLOT.0 - 4.0, height - 9.0);
-        sheet.text(
-            words,
-            &format!("wanted {target:?}"),
-            SMALL,
-            GREY,
-            Anchor::Right,
-        );
+    axes(sheet, chart, &frame);
+    let mut taken = Placing::within(Patch {
+        from: (LEFT + 2.0, top - RAIL),
+        to: (LEFT + PLOT.0 - 2.0, top + PLOT.1 - 2.0),
+    });
+    if let Some(target) = chart.target {
+        let words = format!("wanted {target:?}");
+        level(sheet, &frame, target, &words, &mut taken)?;
     }
-    front(sheet, chart, &at);
+    if chart.points.iter().any(Point::is_round_off) {
+        let words = format!("round-off: below {}, and equal", written(short(ROUND_OFF)));
+        level(sheet, &frame, ROUND_OFF, &words, &mut taken)?;
+    }
+    front(sheet, chart, &|cost, error| frame.at(cost, error));
     for k in 0..chart.series.len() {
-        series(sheet, chart, k, top, &at);
+        series(sheet, chart, k, &frame, &mut taken);
     }
+    let key = labels(sheet, chart, &frame, &mut taken)?;
     legend(sheet, chart, top);
     sheet.height = top + PLOT.1 + 4.2 * LABEL;
+    sheet.paragraph(&key, SMALL, BLACK)?;
     let failed = || chart.points.iter().filter(|p| p.failed.is_some());
     for point in failed().take(MOST_FAILED) {
         let why = point.failed.as_deref().unwrap_or_default();
@@ -122,6 +114,29 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     sheet.paragraph(&chart.about, SMALL, GREY)
 }
 
+/// Two digits of a number.
+fn short(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// A line at an error, with words at its right end.
+fn level(
+    sheet: &mut Sheet,
+    frame: &Frame,
+    error: f64,
+    words: &str,
+    taken: &mut Placing,
+) -> Result<(), PlotError> {
+    let (_, height) = frame.at(1.0, error);
+    sheet.dashed(&[(LEFT, height), (LEFT + PLOT.0, height)], 1.2, GREY);
+    let end = (LEFT + PLOT.0 - 4.0, height - 9.0);
+    sheet.text(end, words, SMALL, GREY, Anchor::Right);
+    let wide = widest([words], SMALL)?;
+    let middle = (end.0 - 0.5 * wide, end.1);
+    taken.take(Patch::about(middle, (wide, 1.2 * SMALL)));
+    Ok(())
+}
+
 /// Where failures stand.
 fn rail(sheet: &mut Sheet) {
     let top = sheet.height;
@@ -130,21 +145,20 @@ fn rail(sheet: &mut Sheet) {
     sheet.text(words, "failed", SMALL, BLACK, Anchor::Right);
 }
 
-fn axes(sheet: &mut Sheet, chart: &Precision, x: Decades, y: Decades) {
-    let top = sheet.height + RAIL;
+fn axes(sheet: &mut Sheet, chart: &Precision, frame: &Frame) {
+    let top = frame.top;
     let (right, bottom) = (LEFT + PLOT.0, top + PLOT.1);
-    for decade in x.low..=x.high {
-        let place = LEFT + PLOT.0 * f64::from(decade - x.low) / f64::from(x.high - x.low);
+    for value in frame.x.ticks(9) {
+        let place = LEFT + PLOT.0 * frame.x.part(value);
         sheet.line(&[(place, top), (place, bottom)], 1.0, PALE);
         let words = (place, bottom + 0.8 * LABEL);
-        sheet.text(words, &power(decade), SMALL, BLACK, Anchor::Middle);
+        sheet.text(words, &written(value), SMALL, BLACK, Anchor::Middle);
     }
-    let every = 1 + (y.high - y.low) / 12;
-    for decade in (y.low..=y.high).filter(|d| (d - y.low) % every == 0) {
-        let place = bottom - PLOT.1 * f64::from(decade - y.low) / f64::from(y.high - y.low);
+    for value in frame.y.ticks(12) {
+        let place = bottom - PLOT.1 * frame.y.part(value);
         sheet.line(&[(LEFT, place), (right, place)], 1.0, PALE);
         let words = (LEFT - 6.0, place);
-        sheet.text(words, &power(decade), SMALL, BLACK, Anchor::Right);
+        sheet.text(words, &written(value), SMALL, BLACK, Anchor::Right);
     }
     let corners = [
         (LEFT, top),
@@ -156,15 +170,11 @@ fn axes(sheet: &mut Sheet, chart: &Precision, x: Decades, y: Decades) {
     sheet.line(&corners, 1.0, BLACK);
     let below = (0.5 * (LEFT + right), bottom + 2.4 * LABEL);
     sheet.text(below, chart.cost.axis(), LABEL, BLACK, Anchor::Middle);
-    sheet.upright((MARGIN, 0.5 * (top + bottom)), "error", LABEL);
-}
-
-/// A power of ten for a person.
-pub fn power(decade: i32) -> String {
-    match decade {
-        -2..=3 => format!("{}", 10f64.powi(decade)),
-        _ => format!("1e{decade}"),
-    }
+    let error = match chart.monitors.as_slice() {
+        [] => "error".to_owned(),
+        some => format!("error of {} (part of the largest)", some.join(", ")),
+    };
+    sheet.upright((MARGIN, 0.5 * (top + bottom)), &error, LABEL);
 }
 
 /// Steps through the runs that none beats.
@@ -193,41 +203,77 @@ fn front(sheet: &mut Sheet, chart: &Precision, at: &dyn Fn(f64, f64) -> (f64, f6
     }
 }
 
-fn series(
-    sheet: &mut Sheet,
-    chart: &Precision,
-    k: usize,
-    top: f64,
-    at: &dyn Fn(f64, f64) -> (f64, f64),
-) {
+fn series(sheet: &mut Sheet, chart: &Precision, k: usize, frame: &Frame, taken: &mut Placing) {
     let colour = COLOURS[k % COLOURS.len()];
     let own: Vec<&Point> = chart.points.iter().filter(|p| p.series == k).collect();
     let whole: Vec<(f64, f64)> = own
         .iter()
-        .filter_map(|p| Some(at(chart.cost.of(p), p.error?)))
+        .filter_map(|p| Some(frame.at(chart.cost.of(p), p.error?)))
         .collect();
-    if whole.len() > 1 {
-        sheet.line(&whole, 1.5, colour);
+    stroke(sheet, &whole, k);
+    for pair in whole.windows(2) {
+        taken.take_line(pair[0], pair[1]);
     }
     for point in own {
-        let words = values(&point.name);
-        let (x, bottom) = at(chart.cost.of(point), 0.0);
-        let place = match (point.error, &point.failed) {
-            (Some(error), _) => at(chart.cost.of(point), error),
-            (None, Some(_)) => (x, top - 0.5 * RAIL - 3.0),
-            // The reference itself lies on the ground.
-            (None, None) => (x, bottom),
-        };
+        let place = frame.place(chart, point);
         match point.failed.is_some() {
             true => sheet.cross(place, 5.0, CROSS),
             false => sheet.marker(place, k, 4.0, colour),
         }
-        let words = match point.reference {
-            true => format!("{words} reference"),
-            false => words,
-        };
-        let beside = (place.0 + 9.0, place.1 - 9.0);
-        sheet.text(beside, &words, 11.0, colour, Anchor::Left);
+        taken.take(Patch::about(place, (14.0, 14.0)));
+    }
+}
+
+/// A series' line; every other one is dashed.
+fn stroke(sheet: &mut Sheet, points: &[(f64, f64)], k: usize) {
+    let colour = COLOURS[k % COLOURS.len()];
+    match (points.len() > 1, k % 2) {
+        (false, _) => {}
+        (true, 0) => sheet.line(points, 1.5, colour),
+        (true, _) => sheet.dashed(points, 1.5, colour),
+    }
+}
+
+/// The values of runs beside them; where there is no room a number, whose meaning is returned.
+fn labels(
+    sheet: &mut Sheet,
+    chart: &Precision,
+    frame: &Frame,
+    taken: &mut Placing,
+) -> Result<Vec<String>, PlotError> {
+    /// How far from its run a label stands at most, and a number.
+    const REACH: (f64, f64) = (30.0, 160.0);
+    const SIZE: f64 = 11.5;
+    let mut key: Vec<String> = Vec::new();
+    for point in &chart.points {
+        let at = frame.place(chart, point);
+        let mut words = values(&point.name);
+        if point.reference {
+            words += " reference";
+        }
+        let number = format!("({})", key.len() + 1);
+        for (text, reach) in [(&words, REACH.0), (&number, REACH.1)] {
+            let size = (widest([text.as_str()], SIZE)? + 3.0, 1.15 * SIZE);
+            let Some(patch) = taken.place(at, size, reach) else {
+                continue;
+            };
+            let near = (
+                at.0.clamp(patch.from.0, patch.to.0),
+                at.1.clamp(patch.from.1, patch.to.1),
+            );
+            if (near.0 - at.0).hypot(near.1 - at.1) > 16.0 {
+                sheet.line(&[at, near], 0.6, GREY);
+            }
+            sheet.text(patch.middle(), text, SIZE, BLACK, Anchor::Middle);
+            if *text == number {
+                key.push(format!("{number} {}, {words}", chart.series[point.series]));
+            }
+            break;
+        }
+    }
+    match key.is_empty() {
+        true => Ok(key),
+        false => Ok(vec![key.join(";  ")]),
     }
 }
 
@@ -242,7 +288,7 @@ fn legend(sheet: &mut Sheet, chart: &Precision, top: f64) {
     for (k, name) in chart.series.iter().enumerate() {
         let y = top + 14.0 + 22.0 * k as f64;
         let colour = COLOURS[k % COLOURS.len()];
-        sheet.line(&[(left, y), (left + 28.0, y)], 1.5, colour);
+        stroke(sheet, &[(left, y), (left + 28.0, y)], k);
         sheet.marker((left + 14.0, y), k, 4.0, colour);
         sheet.text((left + 36.0, y), name, LABEL, BLACK, Anchor::Left);
     }
@@ -261,16 +307,6 @@ fn legend(sheet: &mut Sheet, chart: &Precision, top: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn decades_hold_what_they_are_made_of() {
-        let x = Decades::of([3e-3, 0.2, f64::INFINITY, 0.0].into_iter());
-        assert_eq!(x, Decades { low: -3, high: 0 });
-        assert_eq!(Decades::of([1.0].into_iter()), Decades { low: 0, high: 1 });
-        assert_eq!(Decades::of([].into_iter()), Decades { low: 0, high: 1 });
-        assert!((x.part(1e-3), x.part(1.0)) == (0.0, 1.0));
-        assert!((x.part(1e-2) - 1.0 / 3.0).abs() < 1e-15);
-    }
 
     #[test]
     fn a_point_is_labelled_by_its_values() {

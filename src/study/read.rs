@@ -16,9 +16,10 @@
 
 use super::builtin;
 use crate::format::error::{Path, SceneError, Step, did_you_mean, quoted};
+use crate::format::kind::FileKind;
 use crate::format::locate::{locate, too_deep};
 use crate::format::notation::options;
-use crate::format::read::{plain, plainly, shallow, text};
+use crate::format::read::{or_mistaken, plain, plainly, shallow, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
@@ -195,7 +196,8 @@ impl Study {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
-        let mut file: File = parse(name, text)?;
+        let mut file: File =
+            parse(name, text).map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
         if file.scene.is_some() && !file.scenes.is_empty() {
             let twice = "a study has either scene or scenes";
             return Err(SceneError::whole(name, twice));

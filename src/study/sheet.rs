@@ -2,7 +2,9 @@
 //!
 //! Lengths are those of an SVG; x to the right, y downwards.
 
-use super::plot::{FONT, PNG_SCALE, PlotError, broken, encode, label, load_font, paper, width_of};
+use super::plot::{
+    FONT, PNG_SCALE, PlotError, bitmap, broken, encode, label, load_font, paper, width_of,
+};
 use crate::outside::shown;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -198,6 +200,61 @@ impl Sheet {
         self.fill(&corners, colour);
     }
 
+    /// A marker with a border: dark outside, and so seen on any ground.
+    pub fn ringed(&mut self, at: (f64, f64), kind: usize, r: f64, inside: Colour) {
+        self.marker(at, kind, r + 1.6, BLACK);
+        self.marker(at, kind, r, inside);
+    }
+
+    /// A line in dashes.
+    pub fn dashed(&mut self, points: &[(f64, f64)], width: f64, colour: Colour) {
+        const DASH: f64 = 6.0;
+        let mut walked = 0.0;
+        for pair in points.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let length = (to.0 - from.0).hypot(to.1 - from.1);
+            if !(length > 0.0 && length < 1e5) {
+                continue;
+            }
+            let at = |s: f64| {
+                let part = s / length;
+                (
+                    from.0 + part * (to.0 - from.0),
+                    from.1 + part * (to.1 - from.1),
+                )
+            };
+            let mut s = -(walked % (2.0 * DASH));
+            while s < length {
+                let (begin, end) = (s.max(0.0), (s + DASH).min(length));
+                if begin < end {
+                    self.line(&[at(begin), at(end)], width, colour);
+                }
+                s += 2.0 * DASH;
+            }
+            walked += length;
+        }
+    }
+
+    /// An arrow; a short one is all head.
+    pub fn arrow(&mut self, from: (f64, f64), to: (f64, f64), width: f64, colour: Colour) {
+        let (x, y) = (to.0 - from.0, to.1 - from.1);
+        let length = x.hypot(y);
+        if !(length > 0.0 && length.is_finite()) {
+            return;
+        }
+        let (x, y) = (x / length, y / length);
+        let head = (4.0 * width).min(length);
+        let neck = (to.0 - head * x, to.1 - head * y);
+        self.line(&[from, neck], width, colour);
+        let side = 0.42 * head;
+        let corners = [
+            to,
+            (neck.0 - side * y, neck.1 + side * x),
+            (neck.0 + side * y, neck.1 - side * x),
+        ];
+        self.fill(&corners, colour);
+    }
+
     /// The mark of a failure.
     pub fn cross(&mut self, (x, y): (f64, f64), r: f64, colour: Colour) {
         self.line(&[(x - r, y - r), (x + r, y + r)], 2.5, colour);
@@ -226,7 +283,7 @@ impl Sheet {
         load_font()?;
         let (width, height) = self.size(PNG_SCALE);
         let mut pixels = paper(width, height)?;
-        let root = BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area();
+        let root = bitmap(&mut pixels, (width, height))?.into_drawing_area();
         self.draw(&root, PNG_SCALE)
             .map_err(|e| PlotError(e.to_string()))?;
         drop(root);

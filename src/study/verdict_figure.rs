@@ -66,11 +66,17 @@ fn legend(sheet: &mut Sheet) -> Result<(), PlotError> {
     Ok(())
 }
 
+/// What letters are written with on a ground, so that they are read in grey, too.
+fn ink((r, g, b): Colour) -> Colour {
+    let light = 0.3 * f64::from(r) + 0.6 * f64::from(g) + 0.1 * f64::from(b);
+    if light > 115.0 { BLACK } else { WHITE }
+}
+
 /// A coloured rectangle with letters in it.
 fn letter(sheet: &mut Sheet, at: (f64, f64), size: (f64, f64), verdict: RunVerdict, text: &str) {
     sheet.bar(at, size, colour(verdict));
     let middle = (at.0 + 0.5 * size.0, at.1 + 0.5 * size.1);
-    sheet.text(middle, text, LABEL, WHITE, Anchor::Middle);
+    sheet.text(middle, text, LABEL, ink(colour(verdict)), Anchor::Middle);
 }
 
 /// Random problems: for each strategy what became of 1,000 that have an answer, and of those that have none.

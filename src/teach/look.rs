@@ -1,10 +1,13 @@
 //! What the solver says about a state: now, some minor iterations on, or at the end of the increment.
 
 use super::refusal::Unknown;
+use super::runs::Runs;
+use crate::contact::laws::Verdict;
 use crate::contact::record::ContactRecord;
 use crate::history::frame::Frame;
 use crate::interface::census::census;
 use crate::interface::minor_history::Cycle;
+use crate::linear::norms::Norms;
 use crate::model::{Mode, Model};
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Failure, Outcome};
@@ -23,6 +26,8 @@ pub struct Look {
     pub model: Arc<Model>,
     /// The iteration that is looked at.
     pub frame: Frame,
+    /// The runs of the lesson's chart, where it has one.
+    pub runs: Option<Arc<Runs>>,
 }
 
 /// How an increment ends.
@@ -34,6 +39,30 @@ pub struct IncrementEnd {
     pub accepted: bool,
     /// The cycle that ends it, if one does.
     pub cycle: Option<Cycle>,
+    /// Its major iterations, also those before here.
+    pub majors: u32,
+    /// Relative residuals: the one that is known here, and those at the ends of the major iterations from here on.
+    pub residuals: Vec<f64>,
+}
+
+/// Residuals in which a rate of convergence is looked for: larger ones are far from the solution, smaller ones near the
+/// round-off.
+const NEAR: f64 = 1e-2;
+const FAR: f64 = 1e-7;
+/// A major iteration that leaves less than this power of the residual counts as one that doubles the digits.
+const DOUBLING: f64 = 1.5;
+
+impl IncrementEnd {
+    /// Whether the residuals near the solution fall ever faster; else by a factor that stays.
+    ///
+    /// # Errors
+    /// Where none is near.
+    pub fn is_quadratic(&self) -> Result<bool, Unknown> {
+        let near = |pair: &&[f64]| (FAR..NEAR).contains(&pair[0]);
+        let mut pairs = self.residuals.windows(2).filter(near).peekable();
+        pairs.peek().ok_or(Unknown::NoRate)?;
+        Ok(pairs.any(|pair| pair[1] < pair[0].powf(DOUBLING)))
+    }
 }
 
 impl Look {
@@ -65,8 +94,12 @@ impl Look {
     pub fn end(&self) -> Result<IncrementEnd, Unknown> {
         let mut stepper = self.stepper();
         let mut minors = 0;
+        let (mut majors, mut residuals) = (0, Vec::new());
+        residuals.extend(self.residual().ok());
         let end = stepper.drive(Until::end().minors(ENDLESS.into()), |stepper| {
             minors += 1;
+            majors = stepper.event().position.major;
+            residuals.extend(after(&stepper.event().outcome).map(|after| after.relative));
             match stepper.event().outcome {
                 Outcome::Increment { .. } => ControlFlow::Break(()),
                 _ => ControlFlow::Continue(()),
@@ -83,7 +116,57 @@ impl Look {
             minors,
             accepted,
             cycle,
+            majors,
+            residuals,
         })
+    }
+
+    /// What the judge found in the increment that was accepted last.
+    ///
+    /// # Errors
+    /// Where none was yet.
+    pub fn verdict(&self) -> Result<&Verdict, Unknown> {
+        self.frame
+            .state
+            .start
+            .verdict
+            .as_ref()
+            .ok_or(Unknown::NotJudged)
+    }
+
+    /// The relative residual that is known last: at the end of the major iteration where it ends here, else at its start.
+    ///
+    /// # Errors
+    /// Where nothing is solved yet.
+    pub fn residual(&self) -> Result<f64, Unknown> {
+        let event = self.event()?;
+        Ok(after(&event.outcome).unwrap_or(&event.before).relative)
+    }
+
+    /// By which factor a sliding node's T_max comes nearer to what its pressure gives, or goes away from it, in the next solve.
+    ///
+    /// # Errors
+    /// Where it does not slide with a lagging T_max now and after the next solve.
+    pub fn lag(&self, slave: usize) -> Result<f64, Unknown> {
+        let off = |look: &Look| -> Result<f64, Unknown> {
+            let record = look.record(slave)?;
+            let slides = record.decision.before == Mode::Sliding;
+            slides
+                .then_some(record.t_max - record.t_max_used)
+                .ok_or(Unknown::NoLag)
+        };
+        let lag = off(&self.ahead(1)?)? / off(self)?;
+        Some(lag)
+            .filter(|lag| lag.is_finite())
+            .ok_or(Unknown::NoLag)
+    }
+
+    /// The runs of the lesson's chart.
+    ///
+    /// # Errors
+    /// Where it has none.
+    pub fn runs(&self) -> Result<&Runs, Unknown> {
+        self.runs.as_deref().ok_or(Unknown::NoRuns)
     }
 
     /// Consistent states of the frozen problem of this major iteration.
@@ -129,5 +212,15 @@ impl Look {
     /// The mode that it takes next.
     pub fn next(&self, slave: usize) -> Mode {
         self.frame.state.nodes[slave].mode
+    }
+}
+
+/// Norms at the end of a major iteration, where an outcome is that.
+fn after(outcome: &Outcome) -> Option<&Norms> {
+    match outcome {
+        Outcome::Major { after, .. }
+        | Outcome::Refused { after, .. }
+        | Outcome::Increment { after, .. } => Some(after),
+        _ => None,
     }
 }

@@ -1,28 +1,33 @@
 //! What the solver can be asked for by name: in a lesson's questions, and between braces in its texts.
 //!
-//! Of a slave node, `NAME NODE`: `gap`, `F_n`, `F_t`, `T_max`, `slip` (numbers of the minor iteration), `mode` (the one
+//! Of a slave node, `NAME NODE`: `gap`, `F_n`, `F_t`, `T_max`, `slip` (numbers of the minor iteration), `lag` (the factor by
+//! which a lagging T_max comes nearer or goes away in the next one), `mode` (the one
 //! that it had), `next` (the one that it takes next), `reason` (why, in a sentence). Of the solve: `load`, `increment`
 //! (its size), `angle`, `tan` and `cohesion` (of the first slave node), `answers` (consistent states that the census
-//! finds), `minors` (minor iterations to the end of this increment) and `period` (of the cycle in which it ends).
-//! Besides, `right` is the right answer of the question before, and `key ACTION` the key that does an action.
+//! finds), `minors` (minor iterations to the end of this increment), `majors` (all its major ones), `residual` (relative, known
+//! last) and `period` (of the cycle in which it ends), `verdict` (what the judge found in the last accepted increment, in a
+//! sentence). Of a run of the lesson's chart, `NAME PATH=VALUE …`: `error` (relative) and `factorizations`. Besides, `right` is the right answer of the question before, and `key ACTION` the key that does an action.
 
 use super::look::Look;
 use super::refusal::Unknown;
 use crate::action::{self, Context};
+use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::number::four;
 use crate::explain::report;
-
-/// Numbers smaller than this, relative to the scene's force or length, are rounding.
-const ROUNDING: f64 = 1e-13;
+use crate::explain::round_off::RoundOff;
 
 /// Something that the solver can tell.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum LessonQuantity {
     /// Of a slave node, by slave number.
     Of(Nodal, usize),
     /// Of the solve.
     Solve(Whole),
+    /// Of the run of the lesson's chart with these settings.
+    Run(OfRun, Vec<(String, String)>),
+    /// A number that is written out.
+    Written(f64),
     /// The right answer of the question.
     Right,
     /// A key.
@@ -42,6 +47,8 @@ pub enum Nodal {
     TMax,
     /// Slip, length.
     Slip,
+    /// By which factor the lag of T_max changes in the next solve.
+    Lag,
     /// Mode of the shown iteration.
     Mode,
     /// Mode of the next iteration.
@@ -69,20 +76,41 @@ pub enum Whole {
     Minors,
     /// Iterations of one period of the cycle.
     Period,
+    /// Major iterations of this increment.
+    Majors,
+    /// The residual that is known last, relative.
+    Residual,
+    /// What the judge found, in a sentence.
+    Verdict,
 }
 
-const NODAL: [(&str, Nodal); 8] = [
+/// What a run of a chart has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OfRun {
+    /// How far it is from the truth, relative.
+    Error,
+    /// What it costs.
+    Factorizations,
+}
+
+const NODAL: [(&str, Nodal); 9] = [
     ("gap", Nodal::Gap),
     ("F_n", Nodal::Fn),
     ("F_t", Nodal::Ft),
     ("T_max", Nodal::TMax),
     ("slip", Nodal::Slip),
+    ("lag", Nodal::Lag),
     ("mode", Nodal::Mode),
     ("next", Nodal::Next),
     ("reason", Nodal::Reason),
 ];
 
-const WHOLE: [(&str, Whole); 8] = [
+const RUN: [(&str, OfRun); 2] = [
+    ("error", OfRun::Error),
+    ("factorizations", OfRun::Factorizations),
+];
+
+const WHOLE: [(&str, Whole); 11] = [
     ("load", Whole::Load),
     ("increment", Whole::Increment),
     ("angle", Whole::Angle),
@@ -91,6 +119,9 @@ const WHOLE: [(&str, Whole); 8] = [
     ("answers", Whole::Answers),
     ("minors", Whole::Minors),
     ("period", Whole::Period),
+    ("majors", Whole::Majors),
+    ("residual", Whole::Residual),
+    ("verdict", Whole::Verdict),
 ];
 
 impl LessonQuantity {
@@ -106,6 +137,9 @@ impl LessonQuantity {
                 "" => Err(Unknown::WhichNode(word.into())),
                 node => Ok(LessonQuantity::Of(*nodal, action::exact(node, context)?)),
             };
+        }
+        if let Some((_, of)) = RUN.iter().find(|(name, _)| *name == word) {
+            return Ok(LessonQuantity::Run(*of, settings(rest)?));
         }
         let whole = WHOLE.iter().find(|(name, _)| *name == word);
         match (word, whole, rest) {
@@ -130,16 +164,26 @@ impl LessonQuantity {
         match self {
             LessonQuantity::Of(nodal, slave) => {
                 let record = look.record(*slave)?;
+                let round_off = RoundOff::of(&look.model, &look.event()?.before);
                 match nodal {
-                    Nodal::Gap => Ok(record.gap),
-                    Nodal::Fn => Ok(record.f_n),
-                    Nodal::Ft => Ok(record.f_t),
-                    Nodal::TMax => Ok(record.t_max),
-                    Nodal::Slip => Ok(record.slip),
+                    Nodal::Gap => Ok(round_off.length(record.gap)),
+                    Nodal::Fn => Ok(round_off.force(record.f_n)),
+                    Nodal::Ft => Ok(round_off.force(record.f_t)),
+                    Nodal::TMax => Ok(round_off.force(record.t_max)),
+                    Nodal::Slip => Ok(round_off.length(record.slip)),
+                    Nodal::Lag => look.lag(*slave),
                     Nodal::Mode | Nodal::Next | Nodal::Reason => Err(Unknown::NoNumber),
                 }
             }
             LessonQuantity::Solve(whole) => whole_number(*whole, look),
+            LessonQuantity::Run(of, settings) => {
+                let run = look.runs()?.of(settings)?;
+                match of {
+                    OfRun::Error => run.error.ok_or(Unknown::NoError),
+                    OfRun::Factorizations => Ok(run.factorizations as f64),
+                }
+            }
+            LessonQuantity::Written(number) => Ok(*number),
             LessonQuantity::Right | LessonQuantity::Key(_) => Err(Unknown::NoNumber),
         }
     }
@@ -150,7 +194,8 @@ impl LessonQuantity {
             LessonQuantity::Of(nodal, _) => {
                 !matches!(nodal, Nodal::Mode | Nodal::Next | Nodal::Reason)
             }
-            LessonQuantity::Solve(_) => true,
+            LessonQuantity::Solve(whole) => *whole != Whole::Verdict,
+            LessonQuantity::Run(..) | LessonQuantity::Written(_) => true,
             LessonQuantity::Right | LessonQuantity::Key(_) => false,
         }
     }
@@ -166,17 +211,20 @@ impl LessonQuantity {
                 let record = look.record(*slave)?;
                 Ok(report::reason(&record.decision, record.t_max != 0.0))
             }
-            LessonQuantity::Of(nodal, _) => {
-                let size = match nodal {
-                    Nodal::Gap | Nodal::Slip => look.model.length,
-                    _ => look.event()?.before.scale,
-                };
-                let value = self.number(look)?;
-                // What only rounding keeps from zero would puzzle a reader.
-                let zero = value.abs() <= ROUNDING * size;
-                Ok(four(if zero { 0.0 } else { value }))
+            LessonQuantity::Of(..) => self.number(look).map(four),
+            LessonQuantity::Solve(Whole::Verdict) => {
+                let worst = look
+                    .verdict()?
+                    .broken()
+                    .max_by(|a, b| a.amount.total_cmp(&b.amount));
+                Ok(match worst {
+                    Some(finding) => judged::finding(&look.model, finding),
+                    None => "every law holds".into(),
+                })
             }
-            LessonQuantity::Solve(_) => self.number(look).map(four),
+            LessonQuantity::Solve(_) | LessonQuantity::Run(..) | LessonQuantity::Written(_) => {
+                self.number(look).map(four)
+            }
         }
     }
 }
@@ -199,15 +247,53 @@ fn whole_number(whole: Whole, look: &Look) -> Result<f64, Unknown> {
             Some(cycle) => f64::from(cycle.period),
             None => return Err(Unknown::NoCycle),
         },
+        Whole::Majors => f64::from(look.end()?.majors),
+        Whole::Residual => look.residual()?,
+        Whole::Verdict => return Err(Unknown::NoNumber),
     })
+}
+
+/// A quantity, or a number as it is written.
+///
+/// # Errors
+/// As [`LessonQuantity::read`], and if the quantity is no number.
+pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
+    match text.trim().parse() {
+        Ok(number) => Ok(LessonQuantity::Written(number)),
+        Err(_) => match LessonQuantity::read(text.trim(), context)? {
+            quantity if quantity.is_number() => Ok(quantity),
+            _ => Err(Unknown::NoNumber),
+        },
+    }
+}
+
+/// The settings of a run: `PATH=VALUE PATH=VALUE`.
+///
+/// # Errors
+/// If they are none.
+pub fn settings(text: &str) -> Result<Vec<(String, String)>, Unknown> {
+    let setting = |word: &str| {
+        let (path, value) = word.split_once('=')?;
+        Some((path.to_owned(), value.to_owned()))
+    };
+    let settings: Option<Vec<_>> = text.split_whitespace().map(setting).collect();
+    let none = || Unknown::NoRun(text.to_owned());
+    settings
+        .filter(|settings| !settings.is_empty())
+        .ok_or_else(none)
 }
 
 fn unknown(word: &str) -> Unknown {
     let nodal = NODAL.iter().map(|(name, _)| *name);
     let whole = WHOLE.iter().map(|(name, _)| *name);
+    let run = RUN.iter().map(|(name, _)| *name);
     Unknown::NoQuantity {
         word: word.into(),
-        known: nodal.chain(whole).chain(["right", "key"]).collect(),
+        known: nodal
+            .chain(whole)
+            .chain(run)
+            .chain(["right", "key"])
+            .collect(),
     }
 }
 

@@ -10,6 +10,9 @@ pub enum NotNow {
     /// What is to be done next.
     #[error("the lesson waits: {0}")]
     Waits(String),
+    /// It says more than the screen has shown.
+    #[error("the lesson says more than was shown; Space turns its page")]
+    Unread,
     /// There is nothing more to do.
     #[error("the lesson is over; q leaves, :lesson begins another")]
     Over,
@@ -63,6 +66,27 @@ pub enum Unknown {
     /// No cycle ends the increment.
     #[error("the increment does not end in a cycle")]
     NoCycle,
+    /// The lesson has no chart to ask about.
+    #[error("this lesson has no chart: [\"PATH=A,B\"]")]
+    NoRuns,
+    /// Why its chart cannot be measured.
+    #[error("the lesson's chart cannot be measured: {0}")]
+    NoChart(String),
+    /// Settings that are not those of one run.
+    #[error("no run of the lesson's chart, or more than one, is {0}")]
+    NoRun(String),
+    /// The run has no error: it failed, or it is the reference.
+    #[error("this run has no error")]
+    NoError,
+    /// No increment was accepted yet.
+    #[error("nothing is accepted yet that could be judged")]
+    NotJudged,
+    /// The node does not slide, or T_max does not lag.
+    #[error("no T_max lags here")]
+    NoLag,
+    /// Too few major iterations, or none that is near the solution.
+    #[error("the increment's residuals show no rate of convergence")]
+    NoRate,
     /// There is no slave node to ask about.
     #[error("this scene has no slave nodes")]
     NoSlaves,

@@ -36,6 +36,9 @@ pub struct LessonSpec {
     /// What is changed in the scene: path and value.
     #[serde(default)]
     pub set: Vec<(String, String)>,
+    /// Settings whose product is a work-precision chart, as `:chart` takes them; for questions about `error RUN` and the like.
+    #[serde(default)]
+    pub chart: Vec<String>,
     /// What is told, asked and done, one after the other.
     pub steps: Vec<StepSpec>,
 }
@@ -128,6 +131,25 @@ pub enum When {
         node: String,
         /// The mode that it takes.
         mode: Mode,
+    },
+    /// The residuals of the increment, run on from here, end with a factor that stays.
+    Linear,
+    /// They end with ever smaller factors, the digits doubling.
+    Quadratic,
+    /// The judge found every law obeyed in the increment that was accepted last.
+    Obeys,
+    /// The judge found this law broken there: penetration, gap, tension, cone, slip, touch, balance or moments.
+    Breaks(String),
+    /// The first number (a quantity, or written out) is less than the second by a twentieth at least.
+    Less(String, String),
+    /// The numbers differ by a twentieth at most.
+    Close(String, String),
+    /// Of the chart's runs whose error is at most this, that with these settings has the fewest factorizations.
+    Cheapest {
+        /// Settings, as `PATH=A PATH=B`.
+        run: String,
+        /// The error that is wanted, relative.
+        error: f64,
     },
     /// What no solver can tell.
     Right,

@@ -23,6 +23,9 @@ use std::sync::Arc;
 /// Wrong answers after which the right one is told.
 const TRIES: u32 = 2;
 
+/// Numbers that differ by less than this, relatively, are about the same.
+const CLOSE: f64 = 0.05;
+
 /// A lesson being taken.
 #[derive(Debug, Clone)]
 pub struct Tutor {
@@ -32,6 +35,8 @@ pub struct Tutor {
     text: String,
     question: Option<Question>,
     remark: Option<Remark>,
+    /// Answers and predictions given in this step.
+    given: u32,
     /// Whether the step is done and only waits for a word to go on.
     done: bool,
     /// Whether the action that was wanted is being carried out.
@@ -108,6 +113,7 @@ impl Tutor {
             text: String::new(),
             question: None,
             remark: None,
+            given: 0,
             done: false,
             pending: false,
             fault: None,
@@ -157,6 +163,7 @@ impl Tutor {
     fn enter(&mut self, cursor: usize, frame: &Frame) {
         self.question = None;
         self.remark = None;
+        self.given = 0;
         self.guess = None;
         self.fault = None;
         self.done = false;
@@ -164,6 +171,7 @@ impl Tutor {
         let look = Look {
             model: lesson.model.clone(),
             frame: frame.clone(),
+            runs: lesson.runs.clone(),
         };
         let (text, question) = match lesson.steps.get(self.at) {
             None => return self.text = self.farewell(),
@@ -294,6 +302,7 @@ impl Tutor {
             let count = format!("({} of {wanted})", guess.right);
             let text = format!("{} {count}", capital(&text));
             self.remark = Some(Remark { text, good });
+            self.given += 1;
             return Ok(());
         }
         if self.done {
@@ -311,7 +320,18 @@ impl Tutor {
             (false, false) => format!("No. {}", question.help()),
         };
         self.remark = Some(Remark { text, good });
+        self.given += 1;
         Ok(())
+    }
+
+    /// Whether this is what the step waits for.
+    pub fn wants(&self, action: &Action) -> bool {
+        matches!(self.step(), Some(Step::Press { action: wanted, .. }) if action == wanted)
+    }
+
+    /// Which page of the lesson is open: the step, and how many answers were given in it. Another one says something else.
+    pub fn edition(&self) -> (usize, u32) {
+        (self.at, self.given)
     }
 
     /// Whether decisions must not be seen yet, at any node: a question about them is asked, or comes before the next
@@ -555,6 +575,15 @@ fn chosen(choices: &[(Template, Truth)], look: &Look) -> Result<usize, Unknown> 
             Truth::Accepted => look.end()?.accepted,
             Truth::Answers(count) => look.answers()? == *count,
             Truth::Becomes(slave, mode) => look.record(*slave)?.decision.next == *mode,
+            Truth::Quadratic(wanted) => look.end()?.is_quadratic()? == *wanted,
+            Truth::Obeys => look.verdict()?.broken().next().is_none(),
+            Truth::Breaks(law) => look.verdict()?.broken().any(|found| found.law == *law),
+            Truth::Less(a, b) => a.number(look)? < (1.0 - CLOSE) * b.number(look)?,
+            Truth::Close(a, b) => {
+                let (a, b) = (a.number(look)?, b.number(look)?);
+                (a - b).abs() <= CLOSE * a.abs().max(b.abs())
+            }
+            Truth::Cheapest(settings, error) => look.runs()?.is_cheapest(settings, *error)?,
         };
         right.extend(holds.then_some(index));
     }

@@ -1,19 +1,23 @@
 //! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
 //! app and yields at most one [`Effect`], which the event loop carries out.
 
-use crate::action::{self, Action, ChartOf, Filter, Misread, Sort, Ui};
+use crate::action::{Action, ChartOf, Colours, Context, Filter, Keymap, Misread, Sort, Ui};
 use crate::outside::shown;
 use crate::record::command::Command;
 use crate::teach::{Guess, Tutor};
+use crate::tui::ahead::{Ahead, Typed};
 use crate::tui::camera::Camera;
 use crate::tui::chartpage::ChartPage;
+use crate::tui::choosing::{Chooser, Offer, Preview};
 use crate::tui::commandline::{CommandLine, Purpose};
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
+use crate::tui::panes::help::{Help, Listing};
 use crate::tui::panes::manual;
-use crate::tui::theme::Theme;
+use crate::tui::theme::{self, Theme};
 use crate::tui::view::{View, context};
 use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
 use std::fmt;
 
 /// Nodes that a page key goes past.
@@ -32,6 +36,10 @@ pub enum Effect {
     Lesson(String),
     /// Show a work-precision chart.
     Chart(ChartOf),
+    /// Copy a text to the terminal's clipboard.
+    Copy(String),
+    /// Heed the mouse from now on, or leave it to the terminal.
+    Mouse(bool),
     /// Go back to the shell for a while.
     Suspend,
     /// Draw the whole screen anew.
@@ -45,18 +53,12 @@ pub enum Effect {
 pub enum Overlay {
     /// Nothing lies over the panes.
     None,
-    /// The list of actions, from this line on.
-    Help {
-        /// The first line that is shown, from 0.
-        top: usize,
-    },
+    /// The list of actions, or of keys.
+    Help(Help),
     /// A page of the manual.
     Manual(manual::Reader),
-    /// The list of scenes, with one of them selected.
-    Chooser {
-        /// The scene that is chosen, from 0.
-        at: usize,
-    },
+    /// The list of what can be opened.
+    Chooser(Chooser),
     /// A work-precision chart.
     Chart(Box<ChartPage>),
     /// A line being typed.
@@ -85,13 +87,24 @@ pub struct Message {
     pub tone: Tone,
 }
 
-/// A scene that the chooser offers.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Offer {
-    /// The name by which it is opened.
-    pub name: String,
-    /// Its title.
-    pub title: String,
+/// What comes on the screen once a file is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Opens {
+    /// Another scene, with a lesson or without.
+    Scene,
+    /// A page over the panes.
+    Page,
+}
+
+/// What of a lesson's words was read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// The page that this is about ([`Tutor::edition`]).
+    pub edition: (usize, u32),
+    /// The first line that is shown, from 0.
+    pub top: usize,
+    /// Lines from the first one on that were shown.
+    pub seen: usize,
 }
 
 /// Everything on the screen that is not in the session.
@@ -99,6 +112,14 @@ pub struct Offer {
 pub struct App {
     /// Colours and weights.
     pub theme: Theme,
+    /// Which key does what.
+    pub keymap: Keymap,
+    /// The colours that were chosen, which the environment may overrule.
+    pub colours: Colours,
+    /// Whether the mouse is heeded.
+    pub mouse: bool,
+    /// The screen as it was drawn last.
+    pub area: Rect,
     /// What lies over the panes.
     pub overlay: Overlay,
     /// Pane with the focus.
@@ -133,16 +154,22 @@ pub struct App {
     pub scroll: usize,
     /// Which of the panes that take turns is shown where there is room for one.
     pub chart: Pane,
-    /// Scenes to choose from.
+    /// What there is to choose from.
     pub offers: Vec<Offer>,
+    /// What is known of what is selected there.
+    pub preview: Option<Preview>,
     /// The lesson that is being taken.
     pub lesson: Option<Tutor>,
+    /// What of its words was read.
+    pub reading: Reading,
     /// Free mode, outside lessons.
     pub guess: Option<Guess>,
     /// Increments done of a chart that is being measured, and all of them.
     pub measuring: Option<(u64, u64)>,
-    /// Whether a file is being read.
-    pub loading: bool,
+    /// What a file that is being read is shown as.
+    pub loading: Option<Opens>,
+    /// What is typed and not done yet.
+    pub ahead: Ahead,
     /// Whether the journal was lost.
     pub unkept: bool,
     /// Turns of the spinner.
@@ -151,6 +178,8 @@ pub struct App {
     pub(super) last: Option<Command>,
     /// Lines typed at `:`, oldest first.
     pub(super) history: Vec<String>,
+    /// What `/` looked for last.
+    pub(super) sought: String,
 }
 
 /// Largest count that digits can make.
@@ -161,6 +190,10 @@ impl App {
     pub fn new(theme: Theme, offers: Vec<Offer>) -> Self {
         App {
             theme,
+            keymap: Keymap::default(),
+            colours: Colours::default(),
+            mouse: true,
+            area: Rect::new(0, 0, 80, 24),
             overlay: Overlay::None,
             focus: Pane::Nodes,
             page: Pane::Decision,
@@ -182,14 +215,18 @@ impl App {
             scroll: 0,
             chart: Pane::Residual,
             offers,
+            preview: None,
             lesson: None,
+            reading: Reading::default(),
             guess: None,
             measuring: None,
-            loading: false,
+            loading: None,
+            ahead: Ahead::default(),
             unkept: false,
             tick: 0,
             last: None,
             history: Vec::new(),
+            sought: String::new(),
         }
     }
 
@@ -221,71 +258,129 @@ impl App {
         self.guess = None;
     }
 
-    /// Offers the scenes.
+    /// Whether nothing lies over the panes but the list of scenes, so that what is read or measured can be shown.
+    pub fn is_open_to_pages(&self) -> bool {
+        matches!(self.overlay, Overlay::None | Overlay::Chooser(_))
+    }
+
+    /// Offers scenes and lessons.
     pub fn choose(&mut self) {
-        self.overlay = Overlay::Chooser { at: 0 };
+        self.overlay = Overlay::Chooser(Chooser::default());
     }
 
     /// The user's part in the arrangement of the screen.
-    pub fn choice(&self, slaves: usize, outcome: u16, message: u16, lesson: u16) -> Choice {
+    pub fn choice(&self, slaves: usize, lesson: u16) -> Choice {
         Choice {
             focus: self.focus,
             page: self.page,
             chart: self.chart,
             zoomed: self.zoomed,
             slaves,
-            outcome,
-            message,
             lesson,
         }
     }
 
-    /// What a key does.
+    /// What a key does; one that must wait does it later ([`App::resume`]).
     pub fn key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
+        let awaited = self.awaits_all();
+        match keys::name(key)?.as_str() {
+            "Ctrl-z" => Some(Effect::Suspend),
+            "Ctrl-l" => Some(Effect::Redraw),
+            "Ctrl-c" => self.interrupt(view),
+            _ if awaited.is_some() || self.ahead.is_any() => {
+                self.ahead.push(Typed::Key(*key), awaited);
+                None
+            }
+            _ => self.take_key(key, view),
+        }
+    }
+
+    /// Does what a key means now. What was said before is over then.
+    pub(super) fn take_key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
         let name = keys::name(key)?;
-        match (&mut self.overlay, name.as_str()) {
-            (_, "Ctrl-z") => Some(Effect::Suspend),
-            (_, "Ctrl-l") => Some(Effect::Redraw),
-            (_, "Ctrl-c") => self.interrupt(view),
-            (Overlay::None, _) => self.pane_key(&name, view),
-            (Overlay::Help { .. }, _) => self.help_key(&name),
-            (Overlay::Manual(reader), _) => {
+        self.note_reading(view);
+        self.say("");
+        match &mut self.overlay {
+            Overlay::None => self.pane_key(&name, view),
+            Overlay::Help(_) => self.help_key(&name, view),
+            Overlay::Manual(reader) => {
                 if !reader.key(&name) {
                     self.close(view);
                 }
                 None
             }
-            (Overlay::Chooser { .. }, _) => self.chooser_key(&name, view),
-            (Overlay::Chart(_), _) => self.chart_key(&name, view),
-            (Overlay::Line(_), _) => self.line_key(key, &name, view),
-            (Overlay::Mode, _) => self.mode_key(&name, view),
-            (Overlay::Answer, _) => self.answer_key(&name, view),
+            Overlay::Chooser(_) => self.chooser_key(&name, view),
+            Overlay::Chart(_) => self.chart_key(&name, view),
+            Overlay::Line(_) => self.line_key(key, &name, view),
+            Overlay::Mode => self.mode_key(&name, view),
+            Overlay::Answer => self.answer_key(&name, view),
         }
     }
 
     /// Text pasted from the terminal goes into a line that is being typed, and nowhere else: keys do things.
     pub fn paste(&mut self, text: &str) {
-        if let Overlay::Line(line) = &mut self.overlay {
-            line.insert(text);
+        match self.ahead.is_any() {
+            true => self.ahead.push(Typed::Paste(text.into()), None),
+            false => self.take_paste(text),
         }
     }
 
+    pub(super) fn take_paste(&mut self, text: &str) {
+        match &mut self.overlay {
+            Overlay::Line(line) => line.insert(text),
+            Overlay::Chooser(chooser) => chooser.type_text(&shown::line(text.trim())),
+            _ => {}
+        }
+    }
+
+    /// What actions need to know to read their arguments.
+    pub(super) fn context<'a>(
+        &'a self,
+        view: Option<&View<'a>>,
+        scenes: &'a [String],
+    ) -> Context<'a> {
+        Context {
+            keymap: Some(&self.keymap),
+            ..context(view, self.selected, scenes)
+        }
+    }
+
+    /// Other colours, unless the environment wants none.
+    fn colour(&mut self, colours: Option<Colours>) {
+        let overruled = theme::wants_no_colour();
+        if let Some(colours) = colours {
+            self.colours = colours;
+            self.theme = Theme::chosen(colours);
+        }
+        match overruled && self.colours != Colours::None {
+            true => self.complain("NO_COLOR is set in the environment, and wins: no colours"),
+            false => self.say(format!("colours: {}", self.colours.word())),
+        }
+    }
+
+    /// Names of the built-in scenes.
     pub(super) fn scenes(&self) -> Vec<String> {
-        self.offers.iter().map(|offer| offer.name.clone()).collect()
+        let own = self.offers.iter().filter(|offer| offer.is_scene());
+        own.map(|offer| offer.name.clone()).collect()
     }
 
     /// Ctrl-C: closes what is open and stops a run; never the program.
     fn interrupt(&mut self, view: Option<&View>) -> Option<Effect> {
         self.close(view);
+        let waited = self.ahead.is_any();
+        self.ahead.forget();
         let trying = |view: &View| {
             view.background
-                .is_some_and(|background| background.is_trying())
+                .is_some_and(|background| background.is_trying() || background.is_examining())
         };
         let works = view.is_some_and(|view| view.running || trying(view));
-        if works || self.measuring.is_some() || self.loading {
+        if works || self.measuring.is_some() || self.loading.is_some() {
             return Some(Effect::Interrupt);
         }
-        self.say("nothing is running; q quits");
+        self.say(match waited {
+            true => "what was typed ahead is forgotten",
+            false => "nothing is running; q quits",
+        });
         None
     }
 
@@ -313,17 +408,18 @@ impl App {
             return None;
         }
         let count = self.count.take();
-        let Some(entry) = action::by_key(name) else {
+        let Some(entry) = self.keymap.by_key(name) else {
             self.complain(format!("{name} does nothing here; ? lists the keys"));
             return None;
         };
         let rest = count
             .filter(|_| entry.takes_count())
             .map(|count| count.to_string());
-        let action = entry.act(
-            &rest.unwrap_or_default(),
-            &context(view, self.selected, &[]),
-        );
+        let action = entry.act(&rest.unwrap_or_default(), &self.context(view, &[]));
+        if let Some(awaited) = action.as_ref().ok().and_then(|a| self.awaits(a, view)) {
+            self.put_off_key(name, count, awaited);
+            return None;
+        }
         self.attempt(action, count, view)
     }
 
@@ -347,6 +443,10 @@ impl App {
                 let effect = self.ui(ui, count, view);
                 if let (true, Some(tutor), Some(view)) = (wanted, &mut self.lesson, view) {
                     tutor.settled(view.cursor, view.frame());
+                    // What the lesson waited for is no error any more.
+                    if self.message.tone == Tone::Error {
+                        self.say("");
+                    }
                 }
                 effect
             }
@@ -380,10 +480,8 @@ impl App {
             Ui::Open(scene) => return Some(Effect::Open(scene)),
             Ui::Repeat if self.lesson.as_ref().is_some_and(Tutor::is_read) => self.go_on(view),
             Ui::Repeat if self.focus == Pane::Branches => return self.go_to_branch(view),
-            Ui::Repeat if self.focus == Pane::Remedies => return self.apply(self.remedy, view),
-            Ui::Repeat if self.focus == Pane::Diagnosis => {
-                return self.start_from(self.answer, view);
-            }
+            Ui::Repeat if self.focus == Pane::Remedies => return self.take_remedy(view),
+            Ui::Repeat if self.focus == Pane::Diagnosis => return self.take_answer(view),
             Ui::Repeat => match self.last.clone() {
                 Some(command) => return self.attempt(Ok(Action::Session(command)), None, view),
                 None => self.complain("there is no motion to repeat yet; s is one minor iteration"),
@@ -407,11 +505,23 @@ impl App {
             Ui::Chart(of) => return Some(Effect::Chart(of)),
             Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
             Ui::On => self.go_on(view),
+            Ui::Reread => self.reread(),
             Ui::Answer(word) => self.answer(&word, view),
             Ui::Predict(whose) => self.predict(whose, view),
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
-            Ui::Help => self.overlay = Overlay::Help { top: 0 },
+            Ui::Help => self.overlay = Overlay::Help(Help::new(Listing::Actions)),
+            Ui::Keys => self.overlay = Overlay::Help(Help::new(Listing::Keys)),
+            Ui::Copy(what) => return self.copy(what, view),
+            Ui::Colours(colours) => self.colour(colours),
+            Ui::Mouse(on) => {
+                self.mouse = on.unwrap_or(!self.mouse);
+                self.say(match self.mouse {
+                    true => "the mouse selects and scrolls; :mouse off leaves it to the terminal",
+                    false => "the mouse is the terminal's; :mouse on takes it back",
+                });
+                return Some(Effect::Mouse(self.mouse));
+            }
             Ui::Manual(page) => self.overlay = Overlay::Manual(manual::Reader::new(page)),
             Ui::Cancel => {
                 self.zoomed = false;

@@ -3,6 +3,7 @@
 //! The library's own canvas knows colours only; this one carries whole styles, so that what is faint stays faint
 //! without colour too. The last to draw in a cell gives it its style.
 
+use crate::explain::outline::{clip, mix};
 use ratatui::{buffer::Buffer, layout::Rect, style::Style};
 
 /// Dots in a rectangle of cells. The dot (0, 0) is the upper left one.
@@ -31,7 +32,7 @@ impl Canvas {
 
     /// A straight line; what lies outside is cut off.
     pub fn line(&mut self, from: Dot, to: Dot, style: Style) {
-        let Some((from, to)) = clip(from, to, self.size()) else {
+        let Some((from, to)) = clip(from, to, [0.0; 2], self.size()) else {
             return;
         };
         let steps = (to[0] - from[0])
@@ -101,34 +102,6 @@ impl Canvas {
 
 /// Unicode's numbering of the braille dots, by row and column.
 const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
-
-fn mix(from: Dot, to: Dot, part: f64) -> Dot {
-    [
-        from[0] + (to[0] - from[0]) * part,
-        from[1] + (to[1] - from[1]) * part,
-    ]
-}
-
-/// The part of a line inside the rectangle from (0, 0) to `size` (Liang and Barsky). `None` if there is none, or if
-/// an end is not a number.
-fn clip(from: Dot, to: Dot, size: [f64; 2]) -> Option<(Dot, Dot)> {
-    if !from.iter().chain(&to).all(|x| x.is_finite()) {
-        return None;
-    }
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for axis in 0..2 {
-        let run = to[axis] - from[axis];
-        for (p, q) in [(-run, from[axis]), (run, size[axis] - from[axis])] {
-            match p {
-                0.0 if q < 0.0 => return None,
-                0.0 => {}
-                _ if p < 0.0 => enter = enter.max(q / p),
-                _ => leave = leave.min(q / p),
-            }
-        }
-    }
-    (enter <= leave).then(|| (mix(from, to, enter), mix(from, to, leave)))
-}
 
 #[cfg(test)]
 mod tests {

@@ -1,12 +1,14 @@
 //! A line being typed at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
 
-use crate::action::{self, Context};
+use crate::action::{self, Context, Entry};
 use crate::outside::shown;
+use crate::tui::paint;
 use crate::tui::theme::Theme;
 use crossterm::event::{Event, KeyEvent};
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use tui_input::{Input, InputRequest, backend::crossterm::EventHandler};
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// What the line is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,10 +81,16 @@ impl CommandLine {
         self.input = Input::new(text.clone());
         // A single completion is done with: the next Tab completes the next word.
         match candidates.len() {
-            1 if self.purpose == Purpose::Command => self.insert_blank(),
+            1 if self.purpose == Purpose::Command && !self.goes_on() => self.insert_blank(),
             1 => {}
             _ => self.completions = Some((candidates, at)),
         }
+    }
+
+    /// Whether what was completed is a path, after which no word comes: a folder goes on with what is in it.
+    fn goes_on(&self) -> bool {
+        let mut words = self.text().split_whitespace();
+        words.next().is_some_and(action::takes_path) && words.next().is_some()
     }
 
     fn insert_blank(&mut self) {
@@ -114,61 +122,125 @@ impl CommandLine {
         self.input = Input::new(text.into());
     }
 
-    /// The line as it is shown after a prompt, its cursor a reversed cell.
-    pub fn line(&self, prompt: &str, width: usize, theme: &Theme) -> Line<'static> {
-        let room = width.saturating_sub(prompt.chars().count() + 1);
-        let skipped = self.input.visual_scroll(room);
-        let text: Vec<char> = self.text().chars().collect();
+    /// The line as it is shown after a prompt, its cursor a reversed cell, in as many rows as it needs.
+    pub fn lines(&self, prompt: &str, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+        let cursor = theme.text.add_modifier(Modifier::REVERSED);
         let at = self.input.cursor();
-        // Columns and characters are the same for what is typed here; a wide character only scrolls early.
-        let start = skipped.min(at);
-        let part = |from: usize, to: usize| {
-            text[from.min(text.len())..to.min(text.len())]
-                .iter()
-                .collect::<String>()
-        };
-        let under = text.get(at).map_or(" ".into(), char::to_string);
-        Line::from(vec![
-            Span::styled(prompt.to_string(), theme.key),
-            Span::styled(part(start, at), theme.text),
-            Span::styled(under, theme.text.add_modifier(Modifier::REVERSED)),
-            Span::styled(part(at + 1, text.len()), theme.text),
-        ])
+        let typed = self.text().chars().chain([' ']).enumerate();
+        let typed = typed.map(|(place, letter)| match place == at {
+            true => (letter, cursor),
+            false => (letter, theme.text),
+        });
+        let mut rows: Vec<Vec<Span>> = vec![Vec::new()];
+        let mut used = 0;
+        for (letter, style) in prompt.chars().map(|c| (c, theme.key)).chain(typed) {
+            let wide = letter.width().unwrap_or(0);
+            if used + wide > width.max(2) {
+                rows.push(Vec::new());
+                used = 0;
+            }
+            used += wide;
+            if let Some(row) = rows.last_mut() {
+                row.push(Span::styled(letter.to_string(), style));
+            }
+        }
+        rows.into_iter().map(Line::from).collect()
     }
 
     /// What the footer says while the line is open: the completions, or what the action takes.
-    pub fn hint(&self, context: &Context, theme: &Theme) -> Line<'static> {
+    pub fn hint(&self, context: &Context, width: usize, theme: &Theme) -> Vec<Line<'static>> {
         if let Some((candidates, at)) = &self.completions {
-            let spans = candidates
-                .iter()
-                .enumerate()
-                .flat_map(|(index, candidate)| {
-                    let style = if index == *at {
-                        theme.selected
-                    } else {
-                        theme.faint
-                    };
-                    let word = candidate.rsplit(' ').next().unwrap_or(candidate);
-                    [Span::raw(" "), Span::styled(word.to_string(), style)]
-                });
-            return Line::from(spans.collect::<Vec<_>>());
+            let words = candidates.iter().map(|candidate| self.told(candidate));
+            return completions(words, *at, width, theme);
         }
         let name = self.text().split_whitespace().next();
-        let hint = match (self.purpose, name.map(action::by_name)) {
+        let hint = match (self.purpose, name.map(|name| context.entry(name))) {
             (Purpose::Increment, _) => {
                 "Enter: this increment starts again with it   Esc: leave it".into()
             }
             (Purpose::Answer, _) => "a number; Enter answers   Esc: look again first".into(),
-            (Purpose::Node, _) => "a name or a part of it; Enter goes to the next such node".into(),
+            (Purpose::Node, _) => {
+                "a name or a part of it; Enter goes to the next, Enter alone to the next of before"
+                    .into()
+            }
             (Purpose::Command, Some(Ok(entry))) => {
-                format!("{} {}   {}", entry.name, entry.arguments, entry.help)
+                let keys = keys(entry, context);
+                format!("{} {}   {keys}{}", entry.name, entry.arguments, entry.help)
             }
             (Purpose::Command, Some(Err(_))) => choices(self.text(), context),
             (Purpose::Command, None) => {
                 "an action's name; Tab completes, Up recalls, Esc leaves".into()
             }
         };
-        Line::styled(format!(" {hint}"), theme.faint)
+        let lines = paint::wrap(&hint, width.saturating_sub(2)).into_iter();
+        let line = |line| Line::styled(format!(" {line}"), theme.faint);
+        lines.map(line).collect()
+    }
+
+    /// What of a completion is shown: the word that it completes, of a path the last part.
+    fn told<'a>(&self, candidate: &'a str) -> &'a str {
+        let name = candidate.split_whitespace().next();
+        let paths = name.is_some_and(action::takes_path) && self.purpose == Purpose::Command;
+        if !paths {
+            return candidate.rsplit(' ').next().unwrap_or(candidate);
+        }
+        let path = candidate
+            .split_once(' ')
+            .map_or(candidate, |(_, path)| path);
+        let end = path.strip_suffix('/').unwrap_or(path);
+        match end.rfind('/') {
+            Some(slash) => &path[slash + 1..],
+            None => path,
+        }
+    }
+}
+
+/// Most rows that completions take.
+const COMPLETIONS: usize = 6;
+
+/// Completions beside each other, in several rows where one has no room for them; the one that is shown is among them.
+fn completions<'a>(
+    words: impl Iterator<Item = &'a str>,
+    at: usize,
+    width: usize,
+    theme: &Theme,
+) -> Vec<Line<'static>> {
+    let mut rows: Vec<Vec<Span>> = vec![Vec::new()];
+    let (mut used, mut here) = (0, 0);
+    for (index, word) in words.enumerate() {
+        let word = paint::cut(word, width.saturating_sub(1));
+        let wide = 1 + word.width();
+        if used > 0 && used + wide > width {
+            rows.push(Vec::new());
+            used = 0;
+        }
+        used += wide;
+        let style = if index == at {
+            theme.selected
+        } else {
+            theme.faint
+        };
+        if index == at {
+            here = rows.len() - 1;
+        }
+        if let Some(row) = rows.last_mut() {
+            row.extend([Span::raw(" "), Span::styled(word, style)]);
+        }
+    }
+    let first = (here + 1).saturating_sub(COMPLETIONS);
+    let shown = rows.into_iter().skip(first).take(COMPLETIONS);
+    shown.map(Line::from).collect()
+}
+
+/// The present keys of an action, where it has any.
+fn keys(entry: &'static Entry, context: &Context) -> String {
+    let keys = match context.keymap {
+        Some(keymap) => keymap.keys(entry).collect::<Vec<_>>().join(" "),
+        None => entry.keys.join(" "),
+    };
+    match keys.is_empty() {
+        true => keys,
+        false => format!("[{keys}]   "),
     }
 }
 
@@ -236,7 +308,7 @@ mod tests {
     fn any_width_shows_something() {
         let line = typed("set settings.at_minor_limit accept");
         for width in 0..60 {
-            line.line(":", width, &Theme::mono());
+            line.lines(":", width, &Theme::mono());
         }
     }
 }

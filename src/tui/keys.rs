@@ -45,6 +45,20 @@ fn plain(code: KeyCode) -> Option<&'static str> {
     })
 }
 
+/// The keys that one report means: Esc and a letter that come together look like a letter with Alt, and nothing has such keys.
+pub fn apart(key: &KeyEvent) -> impl Iterator<Item = KeyEvent> {
+    let together = key.modifiers.contains(KeyModifiers::ALT);
+    let escape = together && key.kind != KeyEventKind::Release;
+    let alone = KeyEvent {
+        modifiers: key.modifiers.difference(KeyModifiers::ALT),
+        ..*key
+    };
+    escape
+        .then(|| KeyEvent::new(KeyCode::Esc, KeyModifiers::NONE))
+        .into_iter()
+        .chain([alone])
+}
+
 /// The key press of a name: the way back, for tests and scripts that speak in names.
 pub fn press(name: &str) -> Option<KeyEvent> {
     let (modifiers, rest) = match name {
@@ -109,5 +123,15 @@ mod tests {
         assert_eq!(name(&key).as_deref(), Some("Shift-F11"));
         key.kind = KeyEventKind::Release;
         assert_eq!(name(&key), None);
+    }
+
+    #[test]
+    fn escape_and_a_letter_that_come_together_are_two_keys() {
+        let names = |key: KeyEvent| apart(&key).filter_map(|key| name(&key)).collect::<Vec<_>>();
+        let with = |modifiers| KeyEvent::new(KeyCode::Char('c'), modifiers);
+        assert_eq!(names(with(KeyModifiers::ALT)), ["Esc", "c"]);
+        assert_eq!(names(with(KeyModifiers::NONE)), ["c"]);
+        let both = KeyModifiers::ALT | KeyModifiers::CONTROL;
+        assert_eq!(names(with(both)), ["Esc", "Ctrl-c"]);
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Three arrangements. Small (80x24): the table, and under it one more pane, which Tab changes. Medium (120x40):
 //! the table across, the decision over one more pane (whichever Tab or its key came to last) on the left, the shape
-//! on the right. Large (200x60): two columns over the timeline. Whatever the size, the status is on top and message and footer are at the bottom; below 80x24 there is
-//! one pane at a time.
+//! on the right. Large (200x60): two columns over the timeline. Whatever the size, the status is on top and message and footer
+//! are at the bottom; below 80x24 there is one pane at a time. What is said has no part in it, so that no row jumps while one
+//! steps: a long outcome or message is written over the panes' edges.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -70,10 +71,6 @@ pub struct Choice {
     pub zoomed: bool,
     /// Number of slave nodes, hence of the table's rows.
     pub slaves: usize,
-    /// Lines that the last outcome takes in the status, at least one.
-    pub outcome: u16,
-    /// Lines that the message takes, at least one.
-    pub message: u16,
     /// Rows that a lesson wants at the screen's width; 0 without a lesson.
     pub lesson: u16,
 }
@@ -100,6 +97,10 @@ const DECISION: u16 = 12;
 const TALL_DECISION: u16 = 17;
 /// Width of a lesson that has a column of its own.
 const LESSON: u16 = 62;
+/// Width from which on most outcomes fit into a line.
+const WIDE: u16 = 110;
+/// Fewest rows of a lesson, border included.
+const LEAST_LESSON: u16 = 4;
 /// Fewest rows of a page between the table and a lesson.
 const PAGE: u16 = 5;
 /// Rows of the timeline that are no nodes, border included, and most nodes that it shows on a large screen.
@@ -114,14 +115,12 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         0..=5 => 1.min(area.height),
         6..=15 => 2,
         16..=23 => 3,
-        _ => 2 + choice.outcome.max(1),
+        // A narrow screen has room for an outcome of two lines.
+        _ if area.width < WIDE => 4,
+        _ => 3,
     };
     let footer = u16::from(area.height > 6);
-    let message = match area.height {
-        0..=2 => 0,
-        3..=11 => 1,
-        _ => choice.message.max(1),
-    };
+    let message = u16::from(area.height > 2);
     let rows = [
         status,
         area.height - status - footer - message,
@@ -131,7 +130,8 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
     .map(Constraint::Length);
     let [status, body, message, footer] = Layout::vertical(rows).areas(area);
     let panes = match () {
-        _ if choice.zoomed => vec![(choice.focus, body)],
+        _ if choice.zoomed && choice.lesson == 0 => vec![(choice.focus, body)],
+        _ if choice.zoomed => zoomed_with_lesson(body, choice),
         _ if choice.lesson > 0 => with_lesson(body, choice),
         _ if area.width >= 160 && body.height >= 40 => large(body, choice),
         _ if area.width >= 110 && body.height >= 30 => medium(body, choice),
@@ -214,6 +214,22 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     panes
 }
 
+/// The pane with the focus, and the lesson beside it or under it, since it says what to do there.
+fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    if body.width >= 110 + LESSON {
+        let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
+        let [left, right] = Layout::horizontal(columns).areas(body);
+        return vec![(choice.focus, left), (Pane::Lesson, right)];
+    }
+    if body.height < LEAST_LESSON + PAGE {
+        return vec![(choice.focus, body)];
+    }
+    let lesson = choice.lesson.min(body.height / 2).max(LEAST_LESSON);
+    let rows = [Constraint::Min(0), Constraint::Length(lesson)];
+    let [upper, lower] = Layout::vertical(rows).areas(body);
+    vec![(choice.focus, upper), (Pane::Lesson, lower)]
+}
+
 fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let most = body.height - TALL_DECISION - 7;
     let rows = [Constraint::Length(table(choice, most)), Constraint::Min(0)];
@@ -283,8 +299,6 @@ mod tests {
             chart: Pane::Residual,
             zoomed: false,
             slaves,
-            outcome: 1,
-            message: 1,
             lesson: 0,
         };
         places(Rect::new(0, 0, width, height), &choice)

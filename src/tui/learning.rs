@@ -9,6 +9,9 @@ use crate::tui::view::View;
 impl App {
     /// On with the lesson.
     pub(super) fn go_on(&mut self, view: Option<&View>) {
+        if self.turn_page(view) {
+            return self.say("");
+        }
         let (Some(tutor), Some(view)) = (&mut self.lesson, view) else {
             return self.complain("no lesson is being taken; L begins one");
         };
@@ -23,6 +26,9 @@ impl App {
         let Some(view) = view else {
             return self.complain("open a scene first");
         };
+        if let Err(why) = self.must_read(Some(view)) {
+            return self.complain(why);
+        }
         let (cursor, frame, selected) = (view.cursor, view.frame(), self.selected);
         let told = match (&mut self.lesson, &mut self.guess) {
             (_, Some(guess)) => guess
@@ -74,6 +80,10 @@ impl App {
     /// Whether the lesson, or free mode, lets an action be done; true where the lesson wants it.
     pub(super) fn permits(&mut self, action: &Action, view: Option<&View>) -> Result<bool, NotNow> {
         let Some(view) = view else { return Ok(false) };
+        let goes_on = |tutor: &Tutor| tutor.wants(action);
+        if self.guess.is_none() && self.lesson.as_ref().is_some_and(goes_on) {
+            self.must_read(Some(view))?;
+        }
         match (&mut self.lesson, &mut self.guess) {
             (Some(tutor), None) => tutor.permits(action, view.cursor, view.frame()),
             (_, Some(guess)) => {

@@ -5,6 +5,7 @@ use crate::history::verdicts::{self, summaries};
 use crate::record::command::{Command, To};
 use crate::tui::app::{App, Effect, PAGE};
 use crate::tui::layout::Pane;
+use crate::tui::screen;
 use crate::tui::view::View;
 
 impl App {
@@ -40,38 +41,67 @@ impl App {
         self.look_at(pane);
     }
 
-    /// Shows a page of its own key; one that has nothing to show yet asks for it.
+    /// Shows a page of its own key; one that has nothing to show yet asks for it. A page that is asked for stays open when it
+    /// is asked for again.
     pub(super) fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
-        self.show(match page {
-            Page::Timeline => Pane::Timeline,
-            Page::Diagnosis => Pane::Diagnosis,
-            Page::Branches => Pane::Branches,
-            Page::Remedies => Pane::Remedies,
-        });
-        let view = view?;
         match page {
-            Page::Diagnosis if view.examination().is_none() => {
+            Page::Timeline => self.show(Pane::Timeline),
+            Page::Branches => self.show(Pane::Branches),
+            Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
+            Page::Remedies => return self.ask_page(Pane::Remedies, view),
+        }
+        if page == Page::Branches {
+            let all = summaries(view?.tree?);
+            let order = verdicts::order(&all);
+            let current = order.iter().position(|&(branch, _)| all[branch].is_current);
+            self.branch = current.unwrap_or(0);
+        }
+        None
+    }
+
+    fn ask_page(&mut self, pane: Pane, view: Option<&View>) -> Option<Effect> {
+        let again = self.zoomed && self.focus == pane;
+        self.zoomed = true;
+        self.look_at(pane);
+        let view = view?;
+        let found = match pane {
+            Pane::Diagnosis => view.examination().map(|found| found.is_some()),
+            _ => view.tries_here().then(|| !view.is_trying()),
+        };
+        match (found, pane) {
+            (None, Pane::Diagnosis) => {
                 (self.answer, self.scroll) = (0, 0);
-                self.submit(Command::Census(Vec::new()), Some(view))
+                return self.submit(Command::Census(Vec::new()), Some(view));
             }
-            Page::Branches => {
-                let all = summaries(view.tree?);
-                let order = verdicts::order(&all);
-                let current = order.iter().position(|&(branch, _)| all[branch].is_current);
-                self.branch = current.unwrap_or(0);
-                None
-            }
-            Page::Remedies => {
-                let background = view.background?;
-                let here = (view.tree?.current(), view.cursor);
-                let known = background.tried().is_some_and(|tried| tried.place == here);
-                if known || background.is_trying() || !self.zoomed {
-                    return None;
-                }
+            (None, _) => {
                 self.remedy = 0;
-                self.submit(Command::Remedies, Some(view))
+                return self.submit(Command::Remedies, Some(view));
             }
-            _ => None,
+            (Some(false), Pane::Diagnosis) if again => {
+                self.say("it is being found out; Esc closes this page");
+            }
+            (Some(false), _) if again => {
+                self.say("they are being tried; Ctrl-C stops that, Esc closes this page");
+            }
+            (Some(true), _) if again => self.say("this is all of it; Esc closes this page"),
+            _ => {}
+        }
+        None
+    }
+
+    /// Enter in the diagnosis: starts from the selected state, or looks for it where nobody has.
+    pub(super) fn take_answer(&mut self, view: Option<&View>) -> Option<Effect> {
+        match view.and_then(View::examination) {
+            None => self.ask_page(Pane::Diagnosis, view),
+            Some(_) => self.start_from(self.answer, view),
+        }
+    }
+
+    /// Enter in the remedies: takes the selected one, or tries them where nobody has.
+    pub(super) fn take_remedy(&mut self, view: Option<&View>) -> Option<Effect> {
+        match view.is_some_and(View::has_tried) {
+            false => self.ask_page(Pane::Remedies, view),
+            true => self.apply(self.remedy, view),
         }
     }
 
@@ -114,7 +144,7 @@ impl App {
             self.complain(match background.is_trying() {
                 true => "remedies are still being tried; Ctrl-C stops that".into(),
                 false => format!(
-                    "these were tried from step {step} of b{}; go there, or r twice tries them from here",
+                    "these were tried from step {step} of b{}; go there, or r tries them from here",
                     branch + 1
                 ),
             });
@@ -123,6 +153,43 @@ impl App {
         self.zoomed = false;
         let (label, steps) = (trial.label.clone(), trial.steps.clone());
         self.submit(Command::Follow { label, steps }, view)
+    }
+
+    /// Finds a text in the list with the focus: a branch, a remedy, or else a slave node. No text is the one of before.
+    pub(super) fn seek(&mut self, text: String, view: Option<&View>) -> Option<Effect> {
+        if !text.is_empty() {
+            self.sought = text;
+        }
+        let text = self.sought.to_lowercase();
+        let view = view.filter(|_| !text.is_empty())?;
+        let (names, at): (Vec<String>, _) = match self.focus {
+            Pane::Branches if !screen::is_hidden(Pane::Branches, self, view) => {
+                let all = summaries(view.tree?);
+                let order = verdicts::order(&all);
+                let names = order.iter().map(|&(branch, _)| all[branch].name.clone());
+                (names.collect(), &mut self.branch)
+            }
+            Pane::Remedies if !screen::is_hidden(Pane::Remedies, self, view) => {
+                let tried = view.background.and_then(|background| background.tried());
+                let trials = tried.map_or(&[][..], |tried| &tried.trials);
+                let names = trials.iter().map(|trial| trial.label.clone());
+                (names.collect(), &mut self.remedy)
+            }
+            _ => {
+                let line = format!("node {}", self.sought);
+                self.remember(&line);
+                return self.take_line(&line, Some(view));
+            }
+        };
+        let count = names.len();
+        let found = (1..=count)
+            .map(|k| (*at + k) % count)
+            .find(|&row| names[row].to_lowercase().contains(&text));
+        match found {
+            Some(row) => *at = row,
+            None => self.complain(format!("nothing in this list holds '{}'", self.sought)),
+        }
+        None
     }
 
     pub(super) fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {

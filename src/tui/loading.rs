@@ -2,10 +2,12 @@
 //! while.
 
 use crate::format::SceneError;
+use crate::record::journal::{self, Journal, JournalError, Record};
 use crate::scene::Scene;
 use crate::session::Session;
 use crate::teach::Lesson;
 use crate::tui::chartpage::{ChartPage, NoPage};
+use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
@@ -15,6 +17,9 @@ pub enum NotLoaded {
     /// The scene is unsound.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The journal is not one, is in use, or leads elsewhere.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// The thread that read has ended without an answer.
     #[error("reading it broke down")]
     BrokeDown,
@@ -36,10 +41,14 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// A session on a scene, by file or built-in name.
+    /// A session on a scene, by file or built-in name; on the scene of a journal, where that has led.
     pub fn scene(name: &str) -> Loading {
         let name = name.to_owned();
         Loading::of(move || {
+            if journal::is_named_so(Path::new(&name)) {
+                let session = resumed(Path::new(&name));
+                return Loaded::Scene(session.map(Box::new).map_err(NotLoaded::from));
+            }
             let scene = Scene::open(&name, &[]).map_err(NotLoaded::from);
             Loaded::Scene(scene.map(|scene| Box::new(Session::new(scene))))
         })
@@ -51,6 +60,10 @@ impl Loading {
         Loading::of(move || {
             let lesson = Lesson::open(&name).map_err(NotLoaded::from);
             Loaded::Lesson(lesson.map(|lesson| {
+                if let Some(runs) = &lesson.runs {
+                    // Not while keys wait; what is wrong with it is told where it is asked for.
+                    let _ = runs.measure();
+                }
                 let session = Session::new(lesson.scene.clone());
                 Box::new((lesson, session))
             }))
@@ -80,4 +93,15 @@ impl Loading {
             Err(TryRecvError::Disconnected) => Some(Loaded::Scene(Err(NotLoaded::BrokeDown))),
         }
     }
+}
+
+/// The session of a journal, done again to its end, which goes on with it.
+fn resumed(file: &Path) -> Result<Session, JournalError> {
+    // Nobody else may go on with it in the meantime.
+    let mut journal = Journal::open(file)?;
+    let record = Record::read(file)?;
+    let mut session = record.replay()?;
+    journal.cut(record.whole_bytes)?;
+    session.keep(journal);
+    Ok(session)
 }

@@ -6,26 +6,33 @@
 //! [`crate::action`], into a changed app and at most one [`Effect`] on the world. Only [`run`](mod@run)
 //! and [`terminal`] touch the world: the real terminal, signals, and the session.
 
+pub mod ahead;
 pub mod app;
 pub mod camera;
 pub mod canvas;
+pub mod cast;
 pub mod chartframe;
 pub mod chartpage;
+pub mod choosing;
 pub mod commandline;
+mod copying;
 pub mod keys;
 pub mod layout;
 mod learning;
 mod lists;
 pub mod loading;
+mod mouse;
 mod order;
 pub mod paint;
 pub mod panes;
 mod prompts;
+mod reading;
 pub mod run;
 pub mod screen;
 pub mod terminal;
 pub mod theme;
 pub mod view;
+mod waiting;
 
 pub use app::{App, Effect};
 pub use run::{Debugger, Error, resume, run, run_lesson, screen};

@@ -5,7 +5,7 @@ use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
-use ratatui::widgets::{Block, BorderType, Widget};
+use ratatui::widgets::{Block, BorderType, Clear, Widget};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// A pane's border and title; returns what is inside. The focus is a thick border, colour or not.
@@ -51,17 +51,59 @@ pub fn cut(text: &str, width: usize) -> String {
     }
 }
 
-/// Breaks a text into lines at its blanks.
+/// Writes lines over what stands there already.
+pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
+    for (row, line) in area.rows().zip(lines) {
+        Clear.render(row, buffer);
+        line.render(row, buffer);
+    }
+}
+
+/// Breaks a text into lines at its blanks, and a word that is longer than a line where the line ends.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in shown::line(text).split(' ') {
         match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+            Some(line) if line.width() + 1 + word.width() <= width => {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(word.into()),
+            _ => lines.extend(broken(word, width.max(2))),
         }
     }
     lines
+}
+
+/// A word in pieces that are no wider than a line.
+fn broken(word: &str, width: usize) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    let mut used = 0;
+    for letter in word.chars() {
+        let wide = letter.width().unwrap_or(0);
+        if used + wide > width {
+            pieces.push(String::new());
+            used = 0;
+        }
+        used += wide;
+        if let Some(piece) = pieces.last_mut() {
+            piece.push(letter);
+        }
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrapped_text_is_all_there_and_no_line_of_it_is_too_wide() {
+        let text = "a path /that/is/longer/than/any/line and 接触の摩擦角と滑りの長さ to the end";
+        for width in 2..60 {
+            let lines = wrap(text, width);
+            assert!(lines.iter().all(|line| line.width() <= width), "{lines:?}");
+            let letters = |text: &str| text.replace(' ', "");
+            assert_eq!(letters(&lines.concat()), letters(text));
+        }
+    }
 }

@@ -1,16 +1,20 @@
 //! What waits for keys before the panes do: questions, lists, and a line that is typed.
 
-use crate::action::{self, Action, Question};
+use crate::action::{self, Action, Context, Question};
 use crate::explain::number;
 use crate::model::Mode;
 use crate::record::command::Command;
 use crate::teach::Tutor;
 use crate::teach::tutor::AnswerKind;
+use crate::tui::ahead::Typed;
 use crate::tui::app::{App, Effect, Overlay, PAGE};
+use crate::tui::choosing::{Chooser, Group};
 use crate::tui::commandline::{CommandLine, Purpose};
+use crate::tui::screen;
 use crate::tui::theme;
 use crate::tui::view::{View, context};
 use crossterm::event::KeyEvent;
+use ratatui::layout::Margin;
 
 impl App {
     pub(super) fn ask(&mut self, question: Question, view: Option<&View>) {
@@ -35,6 +39,9 @@ impl App {
 
     /// Opens what an answer is typed into.
     pub(super) fn ask_answer(&mut self, view: Option<&View>) {
+        if let Err(why) = self.must_read(view) {
+            return self.complain(why);
+        }
         let asked = self.lesson.as_ref().and_then(Tutor::question);
         let open = view.is_some_and(|view| self.guessing().is_some() && self.hides_any(view));
         match asked.map(|question| question.kind) {
@@ -81,13 +88,15 @@ impl App {
         }
     }
 
-    pub(super) fn help_key(&mut self, name: &str) -> Option<Effect> {
-        let Overlay::Help { top } = &mut self.overlay else {
+    pub(super) fn help_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        let body = screen::body(&screen::places(self, view, self.area), view);
+        // Without the frame.
+        let size = body.inner(Margin::new(1, 1));
+        let Overlay::Help(help) = &mut self.overlay else {
             return None;
         };
-        match name {
-            "Esc" | "q" | "?" | "F1" | "Enter" => self.overlay = Overlay::None,
-            _ => *top = scrolled(*top, name, usize::MAX),
+        if !help.key(name, size, &self.keymap) {
+            self.close(view);
         }
         None
     }
@@ -103,21 +112,37 @@ impl App {
     }
 
     pub(super) fn chooser_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        let Overlay::Chooser { at } = &mut self.overlay else {
+        let Overlay::Chooser(chooser) = &mut self.overlay else {
             return None;
         };
+        let left = chooser.left(&self.offers).len();
+        let fresh = chooser.typed.is_empty();
         match name {
             "Enter" => {
-                return self
-                    .offers
-                    .get(*at)
-                    .map(|offer| Effect::Open(offer.name.clone()));
+                let offer = chooser.selected(&self.offers)?;
+                let seen = self.preview.as_ref().filter(|seen| seen.name == offer.name);
+                let is_lesson = match seen.map(|seen| &seen.what) {
+                    Some(Ok(glance)) => glance.is_lesson,
+                    _ => offer.group == Group::Lessons,
+                };
+                let name = offer.name.clone();
+                return Some(match is_lesson {
+                    true => Effect::Lesson(name),
+                    false => Effect::Open(name),
+                });
             }
-            "q" | "Esc" if view.is_none() => return Some(Effect::Quit),
-            "q" | "Esc" => self.overlay = Overlay::None,
-            ":" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open ")),
-            "L" => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson ")),
-            _ => *at = scrolled(*at, name, self.offers.len().saturating_sub(1)),
+            "q" if fresh && view.is_none() => return Some(Effect::Quit),
+            "q" if fresh => self.overlay = Overlay::None,
+            "Esc" if !fresh => *chooser = Chooser::default(),
+            "Esc" if view.is_some() => self.overlay = Overlay::None,
+            "Esc" => self.say("no scene is open to go back to; q quits"),
+            ":" if fresh => {
+                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open "))
+            }
+            "Backspace" => chooser.type_text(""),
+            "Space" if !fresh => chooser.type_text(" "),
+            _ if name.chars().count() == 1 => chooser.type_text(name),
+            _ => chooser.at = scrolled(chooser.at, name, left.saturating_sub(1)),
         }
         None
     }
@@ -129,7 +154,10 @@ impl App {
         view: Option<&View>,
     ) -> Option<Effect> {
         let scenes = self.scenes();
-        let context = context(view, self.selected, &scenes);
+        let context = Context {
+            keymap: Some(&self.keymap),
+            ..context(view, self.selected, &scenes)
+        };
         let Overlay::Line(line) = &mut self.overlay else {
             return None;
         };
@@ -153,17 +181,34 @@ impl App {
         };
         let (purpose, text) = (line.purpose, line.text().trim().to_string());
         self.close(view);
+        if purpose == Purpose::Node {
+            return self.seek(text, view);
+        }
         let line = match purpose {
             _ if text.is_empty() => return None,
-            Purpose::Command => text,
+            Purpose::Command | Purpose::Node => text,
             Purpose::Increment => format!("increment {text}"),
-            Purpose::Node => format!("node {text}"),
             Purpose::Answer => format!("answer {text}"),
         };
-        self.history.retain(|old| *old != line);
-        self.history.push(line.clone());
+        self.remember(&line);
+        self.take_line(&line, view)
+    }
+
+    /// Keeps a line, to be recalled.
+    pub(super) fn remember(&mut self, line: &str) {
+        self.history.retain(|old| old != line);
+        self.history.push(line.into());
+    }
+
+    /// Does what a line means now, or lets it wait.
+    pub(super) fn take_line(&mut self, line: &str, view: Option<&View>) -> Option<Effect> {
+        self.say("");
         let scenes = self.scenes();
-        let action = action::parse(&line, &context(view, self.selected, &scenes));
+        let action = action::parse(line, &self.context(view, &scenes));
+        if let Some(awaited) = action.as_ref().ok().and_then(|a| self.awaits(a, view)) {
+            self.ahead.push(Typed::Line(line.into()), Some(awaited));
+            return None;
+        }
         self.attempt(action, None, view)
     }
 

@@ -1,28 +1,34 @@
 //! The event loop, and what it loops over: an app, a session, and commands that wait for the solver.
 
 use crate::action::ChartOf;
+use crate::action::config::Config;
 use crate::explain::report;
 use crate::format::SceneError;
 use crate::outside::shown;
-use crate::record::command::{Command, Unit};
+use crate::record::command::Command;
 use crate::record::journal::{JournalError, Keep};
-use crate::scene::{Scene, builtin};
+use crate::scene::Scene;
 use crate::session::{Reply, Session};
 use crate::study::measuring::Measuring;
+use crate::teach::progress::{self, Keeper, Progress};
 use crate::teach::{Lesson, Tutor};
-use crate::tui::app::{App, Effect, Offer, Overlay};
+use crate::tui::app::{App, Effect, Opens, Overlay, Reading};
 use crate::tui::chartpage::{ChartPage, NoPage};
+use crate::tui::choosing::{self, Looking, Offer};
 use crate::tui::keys;
+use crate::tui::layout::Pane;
 use crate::tui::loading::{Loaded, Loading};
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use crossterm::event::{self, Event, KeyEvent};
+use ratatui::layout::Rect;
 use signal_hook::consts::SIGHUP;
 use std::collections::VecDeque;
 use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Why the debugger could not start, or had to end.
 #[derive(Debug, thiserror::Error)]
@@ -75,8 +81,9 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let mut debugger = Debugger::new(Theme::from_environment(), offers(), session);
+    let mut debugger = configured(Config::open()?, session);
     debugger.keeps = keeps;
+    debugger.in_the_world();
     if let Some(told) = told {
         debugger.app.say(told);
     }
@@ -91,14 +98,28 @@ pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
     }
-    let mut debugger = Debugger::new(Theme::from_environment(), offers(), None);
+    let mut debugger = configured(Config::open()?, None);
+    debugger.in_the_world();
+    if let Some(runs) = lesson.runs.clone() {
+        // Not while keys wait; what is wrong with it is told where it is asked for.
+        std::thread::spawn(move || runs.measure().is_ok());
+    }
     debugger.teach(lesson);
     run_on(debugger)
+}
+
+/// A debugger as the user has set it.
+fn configured(config: Config, session: Option<Session>) -> Debugger {
+    let mut debugger = Debugger::new(Theme::chosen(config.colours), offers(), session);
+    let app = &mut debugger.app;
+    (app.keymap, app.colours, app.mouse) = (config.keymap, config.colours, config.mouse);
+    debugger
 }
 
 fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
+        terminal.heed_mouse(debugger.app.mouse)?;
         // The terminal is given back before anything else is said.
         events(&mut debugger, &mut terminal, &signals)
     });
@@ -120,6 +141,7 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
 pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
     let session = load(scene, &[])?;
     let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
+    debugger.app.area = Rect::new(0, 0, width, height);
     debugger.type_keys(keys);
     Ok(debugger.text(width, height))
 }
@@ -134,19 +156,25 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     let mut changed = true;
     while signals.end().is_none() {
         changed |= debugger.advance();
-        if std::mem::take(&mut changed) {
-            terminal.draw(&debugger.app, debugger.view().as_ref())?;
+        while let Some(outside) = debugger.outside.pop_front() {
+            changed = true;
+            if obey(outside, terminal, signals)? {
+                return Ok(());
+            }
         }
-        let works = debugger.is_busy() || debugger.loading.is_some();
+        if std::mem::take(&mut changed) {
+            let app = &debugger.app;
+            debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
+        }
+        let works = debugger.is_busy() || debugger.loading.is_some() || debugger.looking.is_busy();
         let wait = if works { BUSY } else { IDLE };
         let mut ready = event::poll(wait)?;
         while ready {
             changed = true;
-            match debugger.event(&event::read()?) {
-                None => {}
-                Some(Outside::Quit) => return Ok(()),
-                Some(Outside::Suspend) => suspend(terminal, signals)?,
-                Some(Outside::Redraw) => terminal.forget()?,
+            if let Some(outside) = debugger.event(&event::read()?)
+                && obey(outside, terminal, signals)?
+            {
+                return Ok(());
             }
             debugger.breathe();
             ready = event::poll(Duration::ZERO)?;
@@ -163,6 +191,18 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     Ok(())
 }
 
+/// Does what only the event loop can; true for the end.
+fn obey(outside: Outside, terminal: &mut Terminal, signals: &Signals) -> io::Result<bool> {
+    match outside {
+        Outside::Quit => return Ok(true),
+        Outside::Suspend => suspend(terminal, signals)?,
+        Outside::Redraw => terminal.forget()?,
+        Outside::Copy(text) => terminal.copy(&text)?,
+        Outside::Mouse(on) => terminal.heed_mouse(on)?,
+    }
+    Ok(false)
+}
+
 fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     terminal.suspend()?;
     signals.resumed();
@@ -177,17 +217,14 @@ fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, SceneErr
     Ok(Session::new(scene))
 }
 
-/// The built-in scenes.
+/// What there is to choose from, with what was done of the lessons.
 pub fn offers() -> Vec<Offer> {
-    let offer = |scene: &builtin::Builtin| Offer {
-        name: scene.name.into(),
-        title: scene.title(),
-    };
-    builtin::list().iter().map(offer).collect()
+    let progress = progress::place().and_then(|file| Progress::read(&file).ok());
+    choosing::offers(&progress.unwrap_or_default())
 }
 
 /// What only the event loop can do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outside {
     /// Leave.
     Quit,
@@ -195,6 +232,10 @@ pub enum Outside {
     Suspend,
     /// Draw the whole screen anew.
     Redraw,
+    /// Copy a text to the terminal's clipboard.
+    Copy(String),
+    /// Heed the mouse, or leave it to the terminal.
+    Mouse(bool),
 }
 
 /// The debugger without its terminal: keys in, screens out.
@@ -203,44 +244,82 @@ pub struct Debugger {
     pub app: App,
     /// The session; `None` before a scene is chosen.
     pub session: Option<Session>,
-    /// Commands given while the solver was at work on an earlier one.
-    queue: VecDeque<Command>,
-    /// Whether the solver is at work on a run that may never end: nothing queues behind such a run.
-    endless: bool,
+    /// What keys that had to wait ask of the event loop.
+    outside: VecDeque<Outside>,
+    /// When the solver began with what it is at.
+    begun: Instant,
     /// Frames of the session when the screen was last drawn.
     frames: usize,
-    /// Whether remedies were being tried then.
-    trying: bool,
     /// Whether scenes that are opened here get a journal.
     keeps: bool,
     /// A chart that is being measured.
     measuring: Option<Measuring>,
     /// A file that is being read.
     loading: Option<Loading>,
+    /// An offer that is looked at.
+    looking: Looking,
+    /// How far the user came in the lessons, kept.
+    progress: Keeper,
+    /// Whether offers are listed anew, with what is in the folder, when they are shown.
+    lists: bool,
 }
-
-/// Most commands that wait; more come only from a key that is held down.
-const WAITING: usize = 16;
 
 impl Debugger {
     /// A debugger on a session, or one that offers scenes.
     pub fn new(theme: Theme, offers: Vec<Offer>, session: Option<Session>) -> Self {
         let mut app = App::new(theme, offers);
-        match session {
-            Some(_) => app.say("s is one minor iteration; ? lists the keys"),
+        match &session {
+            Some(session) => greet(&mut app, session),
             None => app.choose(),
         }
         Debugger {
             app,
             session,
-            queue: VecDeque::new(),
-            endless: false,
+            outside: VecDeque::new(),
+            begun: Instant::now(),
             frames: 0,
-            trying: false,
             keeps: false,
             measuring: None,
             loading: None,
+            looking: Looking::default(),
+            progress: Keeper::default(),
+            lists: false,
         }
+    }
+
+    /// From here on progress in lessons is kept, and offers are what is there.
+    fn in_the_world(&mut self) {
+        self.progress = Keeper::new(progress::place());
+        self.lists = true;
+    }
+
+    /// Keeps progress in lessons in this file.
+    pub fn keep_progress_in(&mut self, file: PathBuf) {
+        self.progress = Keeper::new(Some(file));
+    }
+
+    fn keep_progress(&mut self) {
+        let kept = self
+            .app
+            .lesson
+            .as_ref()
+            .map(|tutor| self.progress.follow(tutor));
+        if let Some(Err(why)) = kept {
+            self.app.complain(why);
+        }
+    }
+
+    /// Looks at the offer that is selected. Returns whether there is anything new to draw.
+    fn preview(&mut self) -> bool {
+        let chooser = match &self.app.overlay {
+            Overlay::Chooser(chooser) => Some(chooser),
+            _ => None,
+        };
+        let known = self.app.preview.as_ref();
+        let found = self.looking.follow(chooser, &self.app.offers, known);
+        let any = found.is_some();
+        self.app.preview = found.or(self.app.preview.take());
+        any
     }
 
     /// Says in a line where the journal is, or that there is none any more, to whoever started the program.
@@ -271,10 +350,21 @@ impl Debugger {
     /// Takes in what came from the terminal.
     pub fn event(&mut self, event: &Event) -> Option<Outside> {
         match event {
-            Event::Key(key) => self.key(key),
+            Event::Key(key) => {
+                let mut last = None;
+                for key in keys::apart(key) {
+                    last = self.key(&key).or(last);
+                }
+                last
+            }
             Event::Paste(text) => {
                 self.app.paste(text);
                 None
+            }
+            Event::Mouse(mouse) if self.app.mouse => {
+                let view = self.session.as_ref().map(View::of);
+                let effect = self.app.mouse(mouse, view.as_ref())?;
+                self.carry_out(effect)
             }
             _ => None,
         }
@@ -283,34 +373,65 @@ impl Debugger {
     /// Takes in a key.
     pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
         let view = self.session.as_ref().map(View::of);
-        match self.app.key(key, view.as_ref())? {
+        let chose = matches!(self.app.overlay, Overlay::Chooser(_));
+        let effect = self.app.key(key, view.as_ref());
+        self.keep_progress();
+        if self.lists && !chose && matches!(self.app.overlay, Overlay::Chooser(_)) {
+            self.app.offers = offers();
+        }
+        self.carry_out(effect?)
+    }
+
+    /// Does what a key asks of the world outside the app, as far as that is not the event loop's.
+    fn carry_out(&mut self, effect: Effect) -> Option<Outside> {
+        match effect {
             Effect::Quit => return Some(Outside::Quit),
             Effect::Suspend => return Some(Outside::Suspend),
             Effect::Redraw => return Some(Outside::Redraw),
+            Effect::Copy(text) => return Some(Outside::Copy(text)),
+            Effect::Mouse(on) => return Some(Outside::Mouse(on)),
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
-            Effect::Open(scene) => self.load(Loading::scene(&scene), &scene),
+            Effect::Open(scene) => self.load(Loading::scene(&scene), Opens::Scene, &scene),
             Effect::Chart(of) => self.chart(of),
-            Effect::Lesson(name) => self.load(Loading::lesson(&name), &name),
+            Effect::Lesson(name) => self.load(Loading::lesson(&name), Opens::Scene, &name),
         }
         None
     }
 
-    fn load(&mut self, loading: Loading, name: &str) {
+    /// Does what waited, as far as it need not wait any longer. Returns whether there was anything.
+    fn resume(&mut self) -> bool {
+        let mut any = false;
+        while !self.is_busy() {
+            let view = self.session.as_ref().map(View::of);
+            let Some(effect) = self.app.resume(view.as_ref()) else {
+                break;
+            };
+            any = true;
+            let outside = effect.and_then(|effect| self.carry_out(effect));
+            if let Some(outside) = outside {
+                self.outside.push_back(outside);
+                break;
+            }
+        }
+        any
+    }
+
+    fn load(&mut self, loading: Loading, opens: Opens, name: &str) {
         self.loading = Some(loading);
-        self.app.loading = true;
+        self.app.loading = Some(opens);
         self.app.say(format!("reading {name}; Ctrl-C gives it up"));
     }
 
-    /// Shows what was read, unless a line is being typed. Returns whether there was anything.
+    /// Shows what was read, once nothing lies over the panes but the list of scenes. Returns whether there was anything.
     fn follow_loading(&mut self) -> bool {
-        if matches!(self.app.overlay, Overlay::Line(_)) {
+        if !self.app.is_open_to_pages() {
             return false;
         }
         let Some(loaded) = self.loading.as_ref().and_then(Loading::result) else {
             return false;
         };
-        (self.loading, self.app.loading) = (None, false);
+        (self.loading, self.app.loading) = (None, None);
         match loaded {
             Loaded::Scene(Ok(session)) => self.open(*session),
             Loaded::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
@@ -341,29 +462,29 @@ impl Debugger {
         }
     }
 
-    /// Waits until the solver has nothing left to do.
+    /// Waits until the solver has nothing left to do, and nothing waits for it.
     pub fn settle(&mut self) {
         loop {
-            while self.loading.is_some() && !matches!(self.app.overlay, Overlay::Line(_)) {
-                std::thread::sleep(Duration::from_millis(1));
-                self.advance();
-            }
-            while self.is_busy() || !self.queue.is_empty() {
+            let moved = self.advance();
+            if self.is_busy() {
                 if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
                     self.tell(reply);
                 }
-                self.advance();
-            }
-            self.advance();
-            if self.is_busy() || !self.queue.is_empty() {
                 continue;
+            }
+            let open = self.app.is_open_to_pages();
+            // Under another page these would wait for ever.
+            if open && (self.loading.is_some() || self.measuring.is_some()) {
+                std::thread::sleep(Duration::from_millis(1));
+                continue;
+            }
+            while self.looking.is_busy() {
+                std::thread::sleep(Duration::from_millis(1));
+                self.advance();
             }
             match &mut self.session {
                 Some(session) if session.background().is_busy() => session.wait_for_background(),
-                // Under another page it would wait for ever.
-                _ if self.measuring.is_some() && matches!(self.app.overlay, Overlay::None) => {
-                    std::thread::sleep(QUICK);
-                }
+                _ if moved && self.app.ahead.is_any() => {}
                 _ => return,
             }
         }
@@ -375,30 +496,20 @@ impl Debugger {
     }
 
     fn submit(&mut self, command: Command) {
-        if !self.is_busy() {
-            self.start(command);
-        } else if self.endless || self.queue.len() >= WAITING {
-            self.app.complain("the solver is at work; Ctrl-C stops it");
-        } else {
-            self.queue.push_back(command);
-        }
-    }
-
-    fn start(&mut self, command: Command) {
         let Some(session) = &mut self.session else {
             return;
         };
-        self.endless = matches!(
-            command,
-            Command::Forward {
-                unit: Unit::Run,
-                ..
-            }
-        );
+        self.begun = Instant::now();
+        // The page itself says that it is being looked for.
+        let shown = match command {
+            Command::Census(_) => self.app.focus == Pane::Diagnosis,
+            Command::Remedies => self.app.focus == Pane::Remedies,
+            _ => false,
+        };
         match session.submit(command) {
+            Ok(_) if shown => {}
             Ok(reply) => self.tell(reply),
             Err(message) => {
-                self.queue.clear();
                 if let Some(tutor) = &mut self.app.lesson {
                     tutor.failed();
                 }
@@ -409,9 +520,6 @@ impl Debugger {
 
     /// Says what a command led to, unless the status at the top says the same.
     fn tell(&mut self, Reply(text): Reply) {
-        // However soon the remedies are all tried, that they are being tried is not said any longer then.
-        let background = self.session.as_ref().map(|session| session.background());
-        self.trying |= background.is_some_and(|background| background.is_trying());
         let known = self.session.as_ref().and_then(|session| {
             match (session.is_running(), &session.frame().event) {
                 (true, _) => Some(text.clone()),
@@ -423,26 +531,19 @@ impl Debugger {
         let view = self.session.as_ref().map(View::of);
         let hidden = view.is_some_and(|view| !view.running && self.app.hides_any(&view));
         let known = hidden || known.is_some_and(|known| known == text);
-        let said = if known { String::new() } else { text };
         let idle = self
             .session
             .as_ref()
             .filter(|session| !session.is_running());
-        let aside = idle.map_or(String::new(), Session::aside);
-        let between = if said.is_empty() || aside.is_empty() {
-            ""
-        } else {
-            "   "
-        };
         if let (Some(tutor), Some(session)) = (&mut self.app.lesson, idle) {
             tutor.settled(session.cursor(), session.frame());
         }
-        self.app.say(format!("{said}{between}{aside}"));
+        self.app.say(if known { String::new() } else { text });
     }
 
     fn chart(&mut self, of: ChartOf) {
         let over = match of {
-            ChartOf::File(file) => return self.load(Loading::chart(&file), &file),
+            ChartOf::File(file) => return self.load(Loading::chart(&file), Opens::Page, &file),
             ChartOf::Scene => Vec::new(),
             ChartOf::Settings(over) => over,
         };
@@ -485,14 +586,13 @@ impl Debugger {
     }
 
     fn interrupt(&mut self) {
-        self.app.loading = false;
+        self.app.loading = None;
         if self.loading.take().is_some() {
             return self.app.say("not read");
         }
         if let Some(measuring) = &self.measuring {
             measuring.interrupt();
         }
-        self.queue.clear();
         if let Some(tutor) = &mut self.app.lesson {
             // What the lesson wanted is not done.
             tutor.failed();
@@ -508,14 +608,18 @@ impl Debugger {
     }
 
     fn open(&mut self, mut session: Session) {
-        if self.keeps {
+        let resumed = session.journal().is_some();
+        // A journal that was opened goes on itself.
+        if self.keeps && !resumed {
             session.keep_at_default_place();
         }
-        self.session = Some(session);
-        self.queue.clear();
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
-        self.app.say("s is one minor iteration; ? lists the keys");
+        match resumed {
+            true => self.app.say("resumed from its journal, which goes on"),
+            false => greet(&mut self.app, &session),
+        }
+        self.session = Some(session);
     }
 
     /// Begins a lesson at the start of its scene.
@@ -527,26 +631,31 @@ impl Debugger {
     fn take_lesson(&mut self, lesson: Lesson, session: Session) {
         let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
         self.session = Some(session);
-        self.queue.clear();
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         self.app.lesson = Some(tutor);
+        self.app.reading = Reading::default();
         self.app.say("");
     }
 
-    /// Gathers what the solver did and gives it the next command. Returns whether there is something new to draw.
+    /// Gathers what the solver did and does what waited for that. Returns whether there is something new to draw.
     pub fn advance(&mut self) -> bool {
-        let measured = self.follow_loading() | self.follow_chart();
+        let gathered = self.gather();
+        let resumed = self.resume();
+        let idle = !self.is_busy() && !self.app.ahead.is_any();
+        let looked = idle && self.look();
+        gathered | resumed | looked
+    }
+
+    fn gather(&mut self) -> bool {
+        let measured = self.follow_loading() | self.follow_chart() | self.preview();
+        self.keep_progress();
         let Some(session) = &mut self.session else {
             return measured;
         };
         let was_busy = session.is_running();
         self.app.unkept = session.lost_journal().is_some();
-        let mut seen = session.gather_background();
-        let trying = session.background().is_trying();
-        if std::mem::replace(&mut self.trying, trying) && !trying {
-            self.app.say("");
-        }
+        let seen = session.gather_background();
         match session.exported() {
             Some(Ok(Reply(told))) => self.app.say(told),
             Some(Err(why)) => self.app.complain(why),
@@ -572,13 +681,6 @@ impl Debugger {
                 "the solver broke down, please report this: {message}"
             ));
         }
-        if !busy && self.queue.is_empty() {
-            seen |= self.look();
-        }
-        if !busy && let Some(command) = self.queue.pop_front() {
-            self.start(command);
-            return true;
-        }
         measured || seen || said || grown || failed || was_busy != busy
     }
 
@@ -593,15 +695,29 @@ impl Debugger {
         session.background().is_busy() != before
     }
 
-    /// Waits a moment for a quick step, so that keys typed fast are not told to wait. A run to the end is none.
+    /// Waits a moment for what just began, so that keys typed fast are not told to wait.
     fn breathe(&mut self) {
-        let begin = std::time::Instant::now();
+        let entered = Instant::now();
         let quick = |debugger: &Debugger| {
-            debugger.loading.is_some() || debugger.is_busy() && !debugger.endless
+            let solves = debugger.is_busy() && debugger.begun.elapsed() < QUICK;
+            solves || debugger.loading.is_some() && entered.elapsed() < QUICK
         };
-        while quick(self) && begin.elapsed() < QUICK {
+        while quick(self) {
             std::thread::sleep(Duration::from_micros(500));
             self.advance();
         }
+    }
+}
+
+/// What is said when a scene opens: what is doubtful about its start, or else which key goes on.
+fn greet(app: &mut App, session: &Session) {
+    match session.doubts() {
+        [] => app.say("s is one minor iteration; ? lists the keys"),
+        [doubt] => app.complain(doubt),
+        [doubt, others @ ..] => app.complain(format!(
+            "{doubt} (and {} more: stickslip check {} tells all)",
+            others.len(),
+            session.scene_name()
+        )),
     }
 }

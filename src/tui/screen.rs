@@ -3,7 +3,8 @@
 use crate::outside::shown;
 use crate::session::Session;
 use crate::tui::app::{App, Overlay};
-use crate::tui::layout::{self, Pane};
+use crate::tui::choosing::Preview;
+use crate::tui::layout::{self, Pane, Places};
 use crate::tui::paint;
 use crate::tui::panes::branches;
 use crate::tui::panes::chooser;
@@ -28,25 +29,37 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Widget;
 
+/// What a page over the panes covers.
+pub fn body(places: &Places, view: Option<&View>) -> Rect {
+    let areas = places.panes.iter().map(|pane| pane.1);
+    let body = areas.reduce(Rect::union).unwrap_or_default();
+    match view {
+        Some(_) => body,
+        // The line that names the program is all that there is of a status.
+        None => Rect {
+            y: places.status.y + 1,
+            height: body.bottom().saturating_sub(places.status.y + 1),
+            ..body
+        },
+    }
+}
+
 /// Draws everything. Without a view (no scene yet) there is only the chooser.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
-    let slaves = view.map_or(0, |view| view.model.contacts.len());
-    let outcome = view.map_or(1, |view| status::outcome_lines(app, view, area.width));
-    let message = footer::message_lines(app, view, area.width);
-    let rows = view.map_or(0, |_| lesson::rows(app, area.width));
-    let places = layout::places(area, &app.choice(slaves, outcome, message, rows));
-    status::draw(buffer, places.status, app, view);
-    let body = places
-        .panes
-        .iter()
-        .map(|pane| pane.1)
-        .reduce(Rect::union)
-        .unwrap_or_default();
+    buffer.set_style(area, app.theme.ground);
+    let places = places(app, view, area);
+    let body = body(&places, view);
     match (&app.overlay, view) {
-        (Overlay::Help { top }, _) => help::draw(buffer, body, *top, &app.theme),
+        (Overlay::Help(help), _) => help::draw(buffer, body, help, &app.theme, &app.keymap),
         (Overlay::Manual(reader), _) => manual::draw(buffer, body, reader, &app.theme),
         (Overlay::Chart(page), _) => workprecision::draw(buffer, body, page, &app.theme),
-        (Overlay::Chooser { at }, _) => chooser::draw(buffer, body, *at, app),
+        (Overlay::Chooser(chooser), _) => {
+            let picture = chooser::draw(buffer, body, chooser, app);
+            if let Some(view) = app.preview.as_ref().and_then(Preview::view) {
+                let own = App::new(app.theme, Vec::new());
+                shape::picture(buffer, picture, &own, &view);
+            }
+        }
         (_, None) => {}
         (_, Some(view)) => {
             for (pane, area) in &places.panes {
@@ -54,8 +67,17 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
             }
         }
     }
+    // These may be longer than their rows.
+    status::draw(buffer, &places, app, view);
     footer::draw(buffer, &places, app, view);
     harmless(buffer, area);
+}
+
+/// Where everything stands on a screen of this size.
+pub fn places(app: &App, view: Option<&View>, area: Rect) -> Places {
+    let slaves = view.map_or(0, |view| view.model.contacts.len());
+    let rows = view.map_or(0, |_| lesson::rows(app, area.width));
+    layout::places(area, &app.choice(slaves, rows))
 }
 
 /// Takes from the cells what a terminal would obey, and what was not shown as something else before.
@@ -73,15 +95,19 @@ fn harmless(buffer: &mut Buffer, area: Rect) {
     }
 }
 
-fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
-    // These tell what comes next.
+/// Whether a pane must not be seen yet, since it tells what comes next.
+pub fn is_hidden(pane: Pane, app: &App, view: &View) -> bool {
     let tells = [
         Pane::Timeline,
         Pane::Diagnosis,
         Pane::Branches,
         Pane::Remedies,
     ];
-    if tells.contains(&pane) && app.hides_any(view) {
+    tells.contains(&pane) && app.hides_any(view)
+}
+
+fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    if is_hidden(pane, app, view) {
         let inner = paint::frame(buffer, area, "Hidden", app.focus == pane, &app.theme);
         let text = " until you have said what follows";
         Line::styled(text, app.theme.faint).render(inner, buffer);

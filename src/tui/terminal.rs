@@ -7,6 +7,7 @@
 use crate::tui::app::App;
 use crate::tui::screen;
 use crate::tui::view::View;
+use crossterm::clipboard::CopyToClipboard;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{
@@ -15,9 +16,11 @@ use crossterm::terminal::{
 };
 use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
+use ratatui::layout::Rect;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
 use signal_hook::iterator::Handle;
 use signal_hook::{SigId, flag, low_level};
+use std::fmt;
 use std::io::{self, IsTerminal, Stdout, Write, stdout};
 use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -27,8 +30,28 @@ use std::time::Duration;
 
 /// Whether the terminal is ours at this moment.
 static TAKEN: AtomicBool = AtomicBool::new(false);
+/// Whether the mouse is to be heeded whenever the terminal is ours.
+static MOUSE: AtomicBool = AtomicBool::new(false);
 /// What a panic on another thread had to say; the screen is not its to write on.
 static PANIC: Mutex<Option<String>> = Mutex::new(None);
+
+/// Has clicks and the wheel reported, with places of any size. The library's own order wants every motion, too.
+struct HeedMouse;
+
+impl crossterm::Command for HeedMouse {
+    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        f.write_str("\x1b[?1000h\x1b[?1006h")
+    }
+}
+
+/// Has nothing of the mouse reported.
+struct LeaveMouse;
+
+impl crossterm::Command for LeaveMouse {
+    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        f.write_str("\x1b[?1006l\x1b[?1000l")
+    }
+}
 
 /// The terminal, taken over for as long as this lives.
 #[derive(Debug)]
@@ -54,15 +77,30 @@ impl Terminal {
     }
 
     /// Draws what changed, in one go where the terminal can do that.
-    pub fn draw(&mut self, app: &App, view: Option<&View>) -> io::Result<()> {
+    /// Returns its size.
+    pub fn draw(&mut self, app: &App, view: Option<&View>) -> io::Result<Rect> {
         queue!(stdout(), BeginSynchronizedUpdate)?;
         let drawn = self.screen.draw(|frame| {
             let area = frame.area();
             screen::draw(frame.buffer_mut(), area, app, view);
         });
-        let drawn = drawn.map(drop);
+        let drawn = drawn.map(|frame| frame.area);
         execute!(stdout(), EndSynchronizedUpdate)?;
         drawn
+    }
+
+    /// Has clicks and the wheel reported, or leaves the mouse to the terminal.
+    pub fn heed_mouse(&mut self, on: bool) -> io::Result<()> {
+        MOUSE.store(on, Ordering::SeqCst);
+        match on {
+            true => execute!(stdout(), HeedMouse),
+            false => execute!(stdout(), LeaveMouse),
+        }
+    }
+
+    /// Copies a text to the clipboard, where the terminal lets a program do that (OSC 52).
+    pub fn copy(&mut self, text: &str) -> io::Result<()> {
+        execute!(stdout(), CopyToClipboard::to_clipboard_from(text))
     }
 
     /// Forgets what is on the screen, so that the next draw is a full one.
@@ -103,7 +141,10 @@ impl Drop for Terminal {
 fn take() -> io::Result<()> {
     enable_raw_mode()?;
     TAKEN.store(true, Ordering::SeqCst);
-    let entered = execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide);
+    let mut entered = execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide);
+    if MOUSE.load(Ordering::SeqCst) {
+        entered = entered.and_then(|()| execute!(stdout(), HeedMouse));
+    }
     if entered.is_err() {
         give_back();
     }
@@ -116,6 +157,7 @@ fn give_back() {
         let _ = execute!(
             stdout(),
             EndSynchronizedUpdate,
+            LeaveMouse,
             DisableBracketedPaste,
             LeaveAlternateScreen,
             Show

@@ -5,12 +5,15 @@
 //! hide their grey in the background. Cyan, yellow and magenta tell the modes apart for
 //! colour-blind eyes too; red and green are left to failure and success.
 
+use crate::action::Colours;
 use crate::model::Mode;
 use ratatui::style::{Color, Modifier, Style};
 
 /// The styles that the panes draw with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Theme {
+    /// What lies under all of it.
+    pub ground: Style,
     /// Ordinary text.
     pub text: Style,
     /// Headings and pane titles.
@@ -37,7 +40,45 @@ pub struct Theme {
 }
 
 impl Theme {
-    /// With colour.
+    /// With these colours.
+    pub fn of(colours: Colours) -> Self {
+        match colours {
+            Colours::Dark => Theme::colour(),
+            Colours::Light => Theme::light(),
+            Colours::HighContrast => Theme::high_contrast(),
+            Colours::None => Theme::mono(),
+        }
+    }
+
+    /// For light grounds, on which yellow and cyan are hardly seen.
+    fn light() -> Self {
+        let colour = |colour| Style::new().fg(colour);
+        Theme {
+            warning: colour(Color::Magenta).add_modifier(Modifier::BOLD),
+            free: colour(Color::Blue),
+            sliding: colour(Color::Magenta),
+            fixed: Style::new().add_modifier(Modifier::BOLD),
+            ..Theme::colour()
+        }
+    }
+
+    /// Bright on black, whatever the terminal's ground is, and nothing dim.
+    fn high_contrast() -> Self {
+        let colour = |colour| Style::new().fg(colour).add_modifier(Modifier::BOLD);
+        Theme {
+            ground: Style::new().fg(Color::White).bg(Color::Black),
+            faint: Style::new(),
+            good: colour(Color::LightGreen),
+            bad: colour(Color::LightRed).add_modifier(Modifier::REVERSED),
+            warning: colour(Color::LightYellow).add_modifier(Modifier::UNDERLINED),
+            free: colour(Color::LightCyan),
+            sliding: colour(Color::LightYellow),
+            fixed: colour(Color::LightMagenta),
+            ..Theme::mono()
+        }
+    }
+
+    /// With the terminal's own colours, for dark grounds.
     pub fn colour() -> Self {
         let colour = |colour| Style::new().fg(colour);
         let mono = Theme::mono();
@@ -57,6 +98,7 @@ impl Theme {
         let plain = Style::new();
         let bold = plain.add_modifier(Modifier::BOLD);
         Theme {
+            ground: plain,
             text: plain,
             heading: bold,
             faint: plain.add_modifier(Modifier::DIM),
@@ -73,11 +115,11 @@ impl Theme {
         }
     }
 
-    /// As the user's environment asks: <https://no-color.org>.
-    pub fn from_environment() -> Self {
-        match std::env::var_os("NO_COLOR") {
-            Some(value) if !value.is_empty() => Theme::mono(),
-            _ => Theme::colour(),
+    /// With these colours, unless the user's environment wants none.
+    pub fn chosen(colours: Colours) -> Self {
+        match wants_no_colour() {
+            true => Theme::mono(),
+            false => Theme::of(colours),
         }
     }
 
@@ -95,6 +137,11 @@ impl Theme {
         self.mode(mode)
             .add_modifier(Modifier::REVERSED | Modifier::BOLD)
     }
+}
+
+/// Whether the user's environment wants no colours: <https://no-color.org>.
+pub fn wants_no_colour() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 /// A mode in a word.

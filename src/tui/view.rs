@@ -4,6 +4,7 @@ use crate::action::Context;
 use crate::contact::record::{ContactRecord, Forced};
 use crate::explain::examination::Examination;
 use crate::explain::influence::Push;
+use crate::explain::round_off::RoundOff;
 use crate::history::frame::Frame;
 use crate::history::strip::Strip;
 use crate::history::tree::Tree;
@@ -33,12 +34,16 @@ pub struct View<'a> {
     pub tree: Option<&'a Tree>,
     /// What is found out beside the session; `None` in drawings of it alone.
     pub background: Option<&'a Background>,
+    /// The start gaps in words; empty where there are none.
+    pub start_gaps: &'a str,
     /// Which of them is shown.
     pub cursor: usize,
     /// Whether the solver is at work.
     pub running: bool,
     /// Norms by major iteration of the shown increment attempt.
     pub residuals: Vec<(u32, Norms)>,
+    /// The branch, if there are several, and the watches with their values, in a line; empty where there is neither.
+    pub aside: String,
 }
 
 impl<'a> View<'a> {
@@ -52,9 +57,14 @@ impl<'a> View<'a> {
             strips: session.strips(),
             tree: Some(session.tree()),
             background: Some(session.background()),
+            start_gaps: session.start_gaps(),
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.residual_history(),
+            aside: match session.is_running() {
+                true => String::new(),
+                false => session.aside(),
+            },
         };
         if view.event().is_none() {
             view.residuals.clear();
@@ -66,6 +76,23 @@ impl<'a> View<'a> {
     pub fn examination(&self) -> Option<Option<&'a Examination>> {
         self.background?
             .examination((self.tree?.current(), self.cursor))
+    }
+
+    /// Whether any remedies were tried, or are being tried.
+    pub fn has_tried(&self) -> bool {
+        self.background.is_some_and(|b| b.tried().is_some())
+    }
+
+    /// Whether remedies are being tried.
+    pub fn is_trying(&self) -> bool {
+        self.background.is_some_and(Background::is_trying)
+    }
+
+    /// Whether the remedies that were tried last, or are being tried, start from here; not those that were stopped.
+    pub fn tries_here(&self) -> bool {
+        let here = self.tree.map(|tree| (tree.current(), self.cursor));
+        let tried = self.background.and_then(Background::tried);
+        tried.is_some_and(|tried| Some(tried.place) == here && !tried.stopped)
     }
 
     /// What pushed a slave node in the shown minor iteration; an inner `None` if that cannot be told.
@@ -102,6 +129,13 @@ impl<'a> View<'a> {
     /// What that minor iteration found at a slave node.
     pub fn record(&self, slave: usize) -> Option<&'a ContactRecord> {
         self.event()?.nodes.get(slave)
+    }
+
+    /// Which of the shown numbers are round-off; none at the start.
+    pub fn round_off(&self) -> RoundOff {
+        self.event().map_or(RoundOff::default(), |event| {
+            RoundOff::of(self.model, &event.before)
+        })
     }
 
     /// Name of a slave node.
@@ -150,16 +184,7 @@ impl<'a> View<'a> {
 
     /// Where a node is: its place in the reference shape, displaced.
     pub fn place(&self, node: usize) -> [f64; 2] {
-        let at = self.model.nodes[node].at;
-        let u = &self.frame().state.u;
-        let Some(&first) = self.model.dofs.first.get(node) else {
-            return at;
-        };
-        let moved = |axis: usize| u.get(first + axis).copied().unwrap_or(0.0);
-        match self.model.dofs.count.get(node) {
-            Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
-            _ => at,
-        }
+        self.model.place(&self.frame().state.u, node)
     }
 }
 
@@ -176,5 +201,6 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         selected,
         scenes,
         lessons: teach::list(),
+        keymap: None,
     }
 }

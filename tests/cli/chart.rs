@@ -147,6 +147,52 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
 }
 
 #[test]
+fn a_chart_is_measured_by_any_monitor_contact_forces_included() {
+    let directory = tempfile::tempdir().unwrap();
+    let common = [
+        "--over",
+        "increment=0.05,0.025",
+        "--repeats",
+        "1",
+        "--csv",
+        "-",
+    ];
+    let by = |names: &[&str]| {
+        let by: Vec<&str> = names.iter().flat_map(|name| ["--by", *name]).collect();
+        let more = ["--svg", "a.svg", "--force"];
+        ran(
+            directory.path(),
+            &[&[BEAM], &common[..], &by[..], &more[..]].concat(),
+        )
+    };
+    let force = by(&["contact_x"]);
+    let errors: Vec<f64> = rows(&force).iter().map(|r| number(r, "error")).collect();
+    assert!(errors.iter().all(|e| *e < 1e-8), "{errors:?}");
+    assert!(
+        err(&force).contains("difference of contact_x over"),
+        "{}",
+        err(&force)
+    );
+    let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
+    assert!(
+        svg.contains("error of contact_x (part of the largest)"),
+        "{svg}"
+    );
+    let displacement: Vec<f64> = rows(&by(&["u_x"]))
+        .iter()
+        .map(|r| number(r, "error"))
+        .collect();
+    assert_ne!(errors, displacement);
+    let none = by(&["no_such"]);
+    assert_eq!(code(&none), 2);
+    assert!(
+        err(&none).contains("no no_such") && err(&none).contains("u_x"),
+        "{}",
+        err(&none)
+    );
+}
+
+#[test]
 fn a_table_of_ones_own_is_a_reference_with_its_legs() {
     let directory = tempfile::tempdir().unwrap();
     let fine = program(

@@ -13,3 +13,7 @@ mod map;
 mod chart;
 // One thread or two, one job or two: the same bytes.
 mod threads;
+// Pictures and other files of what is there: whole, equal, and of the state that they say.
+mod export;
+// Wrong kinds of files, mistyped words, readers that have seen enough.
+mod manners;

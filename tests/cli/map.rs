@@ -4,7 +4,8 @@ use crate::program::{code, err, interrupted, program, rows, well};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use stickslip::study::map::{Ended, Map, MonitorKind, Seen, TOLERANCE};
+use stickslip::study::map::{Ended, Map, Seen, TOLERANCE};
+use stickslip::study::monitor_kind::MonitorKind;
 use stickslip::study::verdict::RunVerdict;
 use stickslip::study::{Plan, Study, Vary};
 

@@ -11,7 +11,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 use stickslip::tui;
 use tempfile::TempDir;
-use vt100::{Parser, Screen};
+use vt100::{MouseProtocolMode, Parser, Screen};
 
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
 
@@ -86,6 +86,7 @@ impl<'a> Start<'a> {
             command.env_remove(name);
         }
         command.env("XDG_STATE_HOME", state.path());
+        command.env("XDG_CONFIG_HOME", state.path());
         for (name, value) in &self.variables {
             command.env(name, value);
         }
@@ -245,9 +246,11 @@ impl Session {
         }
     }
 
-    /// Whether the screen is the main one, with its cursor, and the keyboard's pastes are plain.
+    /// Whether the screen is the main one, with its cursor, the keyboard's pastes are plain and the mouse is its own.
     pub fn on_main_screen(screen: &Screen) -> bool {
-        !screen.alternate_screen() && !screen.hide_cursor() && !screen.bracketed_paste()
+        let mouse = screen.mouse_protocol_mode() != MouseProtocolMode::None;
+        let plain = !screen.hide_cursor() && !screen.bracketed_paste();
+        !screen.alternate_screen() && plain && !mouse
     }
 
     /// Waits until the terminal is the program's: raw, on the alternate screen.

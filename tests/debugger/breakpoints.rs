@@ -250,7 +250,8 @@ fn watches_show_the_numbers_of_the_iteration_that_is_looked_at() {
     let mut session = session(FLOOR);
     assert_eq!(
         say(&mut session, "watch f_n"),
-        "f_n beam.5: nothing is solved for it here"
+        "watching f_n beam.5",
+        "its number stands beside, once"
     );
     say(&mut session, "watch residual");
     say(&mut session, "watch margin beam.5 as to go");

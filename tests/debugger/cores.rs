@@ -380,7 +380,7 @@ fn the_command_writes_a_core_whole_once_and_says_where_there_is_none() {
 }
 
 #[test]
-fn the_debugger_writes_cores_and_whole_problems() {
+fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
     let directory = tempfile::tempdir().unwrap();
     let mut session = Session::new(scene("osc-two6", &[]));
     let write = |session: &mut Session, what: Exported, name: &str| {
@@ -409,6 +409,23 @@ fn the_debugger_writes_cores_and_whole_problems() {
     let whole = write(&mut session, Exported::Whole, "whole.ron").unwrap();
     let cycle = stuck(read(&whole)).expect("a cycle").cycle;
     assert_eq!((cycle.period, cycle.members.len()), (6, 2));
+    // By the extension: a picture of the state, the scene, and the problem for another program.
+    let bytes = write(&mut session, Exported::Shown, "shown.svg").unwrap();
+    assert!(
+        bytes.contains("the increment failed: the modes 6-cycle"),
+        "{bytes}"
+    );
+    let scene_file = write(&mut session, Exported::Shown, "scene.ron").unwrap();
+    assert_eq!(scene_file, session.scene().text);
+    let siconos = write(&mut session, Exported::Whole, "whole.dat").unwrap();
+    assert!(siconos.starts_with("2\n2\n"), "{siconos}");
+    let unknown = write(&mut session, Exported::Shown, "a.bmp").unwrap_err();
+    assert!(
+        unknown.contains(".svg (") && unknown.contains(".dat ("),
+        "{unknown}"
+    );
+    let film = write(&mut session, Exported::Shown, "a.cast").unwrap_err();
+    assert!(film.contains("stickslip export JOURNAL"), "{film}");
     let mut session = Session::new(scene("02-two-cantilevers-smooth", &[]));
     let none = write(&mut session, Exported::Core, "none.ron").unwrap_err();
     assert!(none.contains("do not cycle"), "{none}");

@@ -17,3 +17,5 @@ mod replay;
 mod journal;
 // Lessons can be played through, tell nothing early, and say where they are wrong.
 mod lessons;
+// Lessons on small screens, and what of them is kept.
+mod reading;

@@ -7,7 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
-use stickslip::action;
+use stickslip::action::config::Config;
+use stickslip::action::{self, Colours};
 use stickslip::manual::render::{WIDTH, render};
 use stickslip::manual::{self, PAGES};
 use stickslip::scene::{Scene, builtin};
@@ -183,6 +184,19 @@ fn the_lesson_in_the_manual_plays_through() {
     let lesson = Lesson::from_text("lessons.md", examples[0]).unwrap_or_else(|e| panic!("{e}"));
     let answers = play(&Arc::new(lesson)).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(answers.len(), 3);
+}
+
+#[test]
+fn the_keys_and_colours_in_the_manual_can_be_read() {
+    let examples = examples("keys");
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("keys.ron", examples[0]), ("debugger.ron", examples[1])] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let config = Config::from(folder.path()).unwrap_or_else(|e| panic!("{e}"));
+    let name = |key| config.keymap.by_key(key).map(|entry| entry.name);
+    assert_eq!((name("j"), name(">")), (Some("step"), None));
+    assert_eq!((config.colours, config.mouse), (Colours::Light, false));
 }
 
 #[test]

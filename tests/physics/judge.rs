@@ -50,6 +50,7 @@ impl Stage {
             friction: self.friction,
             start: Mode::Free,
             state: InitialState::default(),
+            overlap: 0.0,
         }];
         let with = |at: [f64; 2]| {
             let mut all = vec![at];

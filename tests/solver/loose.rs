@@ -2,13 +2,11 @@
 
 use crate::common::{Run, run, scene};
 use crate::program::{code, err, program};
-use stickslip::explain::report::advice;
 use stickslip::explain::smaller::{Smaller, smaller};
 use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
 use stickslip::step::event::Failure;
 use stickslip::step::intervene::Intervention;
-use stickslip::step::major_history::MajorCycle;
 use stickslip::step::stepper::Stepper;
 
 const PUSHED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scales/pushed-block.ron");
@@ -136,11 +134,4 @@ fn the_program_gives_no_advice_that_does_not_help() {
         "{told}"
     );
     assert!(!told.contains(none), "{told}");
-    let round = MajorCycle {
-        start: 2,
-        period: 2,
-        members: vec![],
-    };
-    let advice = advice(&Failure::MajorCycle(round));
-    assert!(!advice.contains("a slave of each"), "{advice}");
 }

@@ -63,6 +63,7 @@ pub fn model(slaves: usize) -> Model {
                 },
                 start: Mode::Free,
                 state: Default::default(),
+                overlap: 0.0,
             })
             .collect(),
         dofs: Dofs {
@@ -223,9 +224,11 @@ pub fn view<'a>(model: &'a Model, frames: &'a [Frame]) -> View<'a> {
         strips: &[],
         tree: None,
         background: None,
+        start_gaps: "",
         cursor: frames.len() - 1,
         running: false,
         residuals: residuals(),
+        aside: String::new(),
     }
 }
 

@@ -8,8 +8,11 @@ mod terminal;
 
 // Shared: frames made by hand.
 mod by_hand;
+mod failures;
 // Whole screens at every size; what does not fit says so.
 mod screens;
+// What can be opened: found, looked at, taken; files completed.
+mod chooser;
 // The table of slave nodes: marks with and without colour, ties, order, words.
 mod nodes;
 // Keys and typed lines become commands; help lists them all.
@@ -18,7 +21,13 @@ mod keyboard;
 mod real_scenes;
 // Diagnosis, timeline, branches, remedies and charts, on scenes that do not converge.
 mod panes;
+// Keys, colours and the mouse as the user wants them; what is copied and looked for.
+mod custom;
+// Keys typed ahead of the solver.
+mod walks;
 // The real program: keys in, screens out, the terminal as it was after whatever ends it.
 mod sessions;
 // Journals that cannot be written, what is no file, what would harm the terminal.
 mod session_files;
+// A journal as a film shows the session's screens.
+mod film;

@@ -274,3 +274,40 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
         assert_eq!(listed(&app, &view), ["1", "2", "3", "4", "5"]);
     }
 }
+
+#[test]
+fn names_of_wide_letters_keep_the_columns() {
+    // Both names take six columns.
+    let screens = ["beam.1", "梁の一"].map(|name| {
+        let mut model = model(5);
+        model.nodes[0].name = name.into();
+        let frames = frames(&model, minor());
+        let view = view(&model, &frames);
+        let mut app = app();
+        [(80, 24), (120, 40), (200, 60)].map(|(width, height)| {
+            press(&mut app, &view, "Tab");
+            screen::text(&app, Some(&view), width, height)
+        })
+    });
+    let place = |screen: &str, text: &str| {
+        let row = screen.lines().find(|row| row.contains(text));
+        let row = row.unwrap_or_else(|| panic!("{text}:\n{screen}"));
+        // The picture has a character for every column.
+        row.chars().count() - row.split_once(text).unwrap().1.chars().count()
+    };
+    for (narrow, wide) in screens[0].iter().zip(&screens[1]) {
+        for number in ["1.23", "4.00", "4.49"] {
+            assert_eq!(place(narrow, number), place(wide, number), "{wide}");
+        }
+    }
+    // Names that are too wide are cut at their columns, not at their letters; these have 26.
+    let places = ["abcdefghijklmnopqrstuvwxyz", "接触する面の長い名前の節点"].map(|name| {
+        let mut model = model(5);
+        model.nodes[0].name = name.into();
+        let frames = frames(&model, minor());
+        let screen = screen::text(&app(), Some(&view(&model, &frames)), 80, 24);
+        assert!(screen.contains('…'), "{screen}");
+        place(&screen, "1.23")
+    });
+    assert_eq!(places[0], places[1]);
+}

@@ -274,7 +274,7 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
         assert!(finished(&session), "{}", trial.label);
         good += 1;
     }
-    assert_eq!(good, 7);
+    assert_eq!(good, 8);
     let ends: Vec<BranchEnd> = session.branches().into_iter().map(|b| b.verdict).collect();
     assert_eq!(ends[0], BranchEnd::Cycle);
     assert!(
@@ -383,8 +383,8 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     let again = record.replay().unwrap();
     assert_eq!(again.place(), session.place());
     assert_eq!(again.frame().state, session.frame().state);
-    assert_eq!(again.branches().len(), 17);
-    for branch in 0..17 {
+    assert_eq!(again.branches().len(), 22);
+    for branch in 0..22 {
         let tip = |session: &Session| session.tree().tip(branch).unwrap().0.state.clone();
         assert_eq!(tip(&again), tip(&session), "b{}", branch + 1);
     }
@@ -399,8 +399,8 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
 fn screens_at_three_sizes() {
     for (name, keys) in [
         ("timeline", "c Left t"),
-        ("diagnosis", "c d d"),
-        ("remedies", "c r r"),
+        ("diagnosis", "c d z"),
+        ("remedies", "c r z"),
         ("branches", "c r Enter v v Up"),
         ("card", "c e"),
     ] {

@@ -8,9 +8,7 @@ use stickslip::interface::minor_history::Cycle;
 use stickslip::model::Mode;
 use stickslip::model::{Monitor, Watched};
 use stickslip::step::event::{Failure, Outcome};
-use stickslip::tui::app::{App, Effect, Offer};
-use stickslip::tui::theme::Theme;
-use stickslip::tui::{keys, screen};
+use stickslip::tui::screen;
 
 #[test]
 fn whole_screens() {
@@ -101,28 +99,6 @@ fn the_load_is_drawn_over_a_monitor() {
     assert!(medium.contains(" Load over ") && !medium.contains(" Residual "));
     view.cursor = 0;
     assert!(screen::text(&app, Some(&view), 200, 60).contains("No increment is done yet."));
-}
-
-#[test]
-fn without_a_scene_there_is_the_chooser() {
-    let offer = |name: &str| Offer {
-        name: name.into(),
-        title: format!("what {name} shows"),
-    };
-    let mut app = App::new(Theme::colour(), vec![offer("01-first"), offer("02-second")]);
-    app.choose();
-    insta::assert_snapshot!("chooser-80x24", screen::text(&app, None, 80, 24));
-    let press = |app: &mut App, key: &str| app.key(&keys::press(key).expect("a key's name"), None);
-    assert_eq!(press(&mut app, "Esc"), Some(Effect::Quit));
-    press(&mut app, "Down");
-    assert_eq!(
-        press(&mut app, "Enter"),
-        Some(Effect::Open("02-second".into()))
-    );
-    press(&mut app, ":");
-    assert!(screen::text(&app, None, 80, 24).contains(":open"));
-    press(&mut app, "Esc");
-    assert!(screen::text(&app, None, 80, 24).contains("Choose a scene"));
 }
 
 #[test]

@@ -23,6 +23,7 @@ const CTRL_C: &str = "\x03";
 const CTRL_Z: &str = "\x1a";
 const ESC: &str = "\x1b";
 const UP: &str = "\x1b[A";
+const DOWN: &str = "\x1b[B";
 
 /// The snapshots that a session left behind.
 fn snapshots(session: &Session) -> Vec<PathBuf> {
@@ -84,11 +85,13 @@ fn the_cycle_that_the_paper_s_rule_runs_into_is_left_by_forcing_the_tip_to_slide
 fn without_a_scene_the_built_in_ones_are_offered_and_enter_opens_one() {
     let mut session = Start::debugger(&[]).size(80, 36).go();
     session.see("Choose a scene");
+    session.type_and_see(DOWN, &format!("▸ {}", builtin::list()[1].name));
+    session.type_and_see(UP, &format!("▸ {FLOOR}"));
     for scene in builtin::list() {
-        session.see(scene.name);
+        session.type_and_see(scene.name, &format!("Choose: {}▏", scene.name));
+        session.see(&format!("▸ {}", scene.name));
+        session.type_and_see(ESC, "type to find one");
     }
-    session.type_and_see("j", &format!("▸ {}", builtin::list()[1].name));
-    session.type_and_see("k", &format!("▸ {FLOOR}"));
     session.keys("\r");
     session.see_picture(FLOOR, "", 80, 36);
     session.quit();
@@ -119,10 +122,10 @@ fn help_opens_scrolls_and_closes() {
     session.type_and_see("?", "Go through the iterations");
     session.type_and_see("G", "closer to switching than the tolerance");
     session.keys(ESC);
-    session.see_picture(FLOOR, "", 120, 40);
+    session.see_picture(FLOOR, "? Esc", 120, 40);
     session.type_and_see("?", "Go through the iterations");
     session.keys("?");
-    session.see_picture(FLOOR, "", 120, 40);
+    session.see_picture(FLOOR, "? ?", 120, 40);
     session.quit();
 }
 
@@ -193,7 +196,7 @@ fn keys_are_answered_while_the_solver_runs_and_ctrl_c_stops_it_alone() {
     session.type_and_see("?", "Go through the iterations");
     session.keys("?");
     session.see_no_more("Go through the iterations");
-    session.type_and_see("s", "the solver is at work; Ctrl-C stops it");
+    session.type_and_see("s", "s waits until the run stops; Ctrl-C interrupts it");
     let now = patiently(|| steps(&session)).unwrap();
     let further = patiently(|| steps(&session).filter(|later| *later > now));
     assert!(further.is_some(), "it stands still\n{}", session.text());

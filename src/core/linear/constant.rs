@@ -102,6 +102,7 @@ impl Constant {
             friction,
             start: Mode::Free,
             state: Default::default(),
+            overlap: 0.0,
         };
         let node = |k: usize| Node {
             name: format!("contact.{}", k + 1),

@@ -26,6 +26,8 @@ pub struct Link {
 #[derive(Debug, Default)]
 pub struct Interface {
     pub projection: Option<Projection>,
+    /// What is left of the overlap that the node started with (length), by which it may be inside.
+    pub allowed: f64,
     pub links: Vec<Link>,
     /// The element that `links` reach into, once they are listed.
     linked: Option<Option<(usize, usize)>>,

@@ -19,7 +19,7 @@ pub struct Norms {
     /// What `relative` must not exceed to be in balance: the tolerance, or the round-off of the stiffest forces
     /// where that is larger.
     pub limit: f64,
-    /// MajorCycle-off of the stiffest forces over the loads and contact forces: what part of these is not known. Also of
+    /// Round-off of the stiffest forces over the loads and contact forces: what part of these is not known. Also of
     /// lengths that are to vanish, over the length scale.
     #[serde(default)]
     pub noise: f64,

@@ -74,7 +74,7 @@ impl System {
         self.balance(model, at);
     }
 
-    /// MajorCycle-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
+    /// Round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
     fn round_off(&mut self, model: &Model, u: &[f64]) -> [f64; 2] {
         let Some(pattern) = self.pattern().cloned() else {
             return [0.0; 2];

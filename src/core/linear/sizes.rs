@@ -12,7 +12,7 @@ use crate::linear::source::At;
 use crate::model::Component;
 use crate::model::{Body, BodyKind, Form, Load, Model};
 
-/// MajorCycle-off of an internal force, or of a length, in units of the machine precision times the terms that it sums up.
+/// Round-off of an internal force, or of a length, in units of the machine precision times the terms that it sums up.
 pub const ROUND_OFF: f64 = 8.0;
 /// Sizes of units are rounded to powers of two with this step in the exponent: far enough for scenes in common units to
 /// be in units of one.

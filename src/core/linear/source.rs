@@ -24,6 +24,10 @@ pub struct At<'a> {
     pub u: &'a [f64],
     /// The last accepted state.
     pub accepted: Accepted<'a>,
+    /// Leg of the path on which the increment lies.
+    pub leg: usize,
+    /// Load factor of the last accepted state.
+    pub start_load: f64,
     /// Load factor that the present major iteration aims at.
     pub target: f64,
     /// Load factor that the last major iteration aimed at: that of `u`.

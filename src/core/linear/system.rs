@@ -153,6 +153,7 @@ impl System {
         self.condensed.fresh = false;
         self.scaled = false;
         self.place(model, at.u);
+        let unclosed = model.unclosed(at.leg, at.target);
         for (interface, (node, slave)) in self
             .interfaces
             .iter_mut()
@@ -166,6 +167,7 @@ impl System {
                     self.positions[slave.node],
                 )
             });
+            interface.allowed = slave.overlap * unclosed;
         }
         match layout {
             Layout::Whole => self.bind_whole(model, at)?,
@@ -396,7 +398,7 @@ impl System {
         let interface = &self.interfaces[contact];
         let projection = interface.projection.as_ref()?;
         Some(NodeKinematics {
-            gap: projection.gap,
+            gap: projection.gap + interface.allowed,
             normal: projection.normal,
             foot: projection.foot,
             moves: interface.moves,

@@ -28,4 +28,7 @@ pub struct Contact {
     pub start: Mode,
     /// What the node brings into the first minor iteration.
     pub state: InitialState,
+    /// How deep the node starts inside its surface, where that is closed over the first leg of the path only
+    /// ([`crate::model::InitialGaps::Ramp`]); 0 for all others (length).
+    pub overlap: f64,
 }

@@ -25,8 +25,8 @@ pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, least};
 pub use mesh::ElementKind;
 pub use settings::{
-    AtCycle, AtLimit, BoundUpdate, Geometry, ResidualMethod, Settings, SlipCount, Solver, Sticking,
-    Strategy, Ties, Touch,
+    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, ResidualMethod, Settings, SlipCount,
+    Solver, Sticking, Strategy, Ties, Touch,
 };
 
 /// A checked scene.
@@ -111,4 +111,35 @@ pub enum Watched {
         /// Slave numbers.
         slaves: Vec<usize>,
     },
+}
+
+impl Model {
+    /// Where a node is when all degrees of freedom have these values: its place in the reference shape, displaced.
+    pub fn place(&self, u: &[f64], node: usize) -> [f64; 2] {
+        let at = self.nodes[node].at;
+        let Some(&first) = self.dofs.first.get(node) else {
+            return at;
+        };
+        let moved = |axis: usize| u.get(first + axis).copied().unwrap_or(0.0);
+        match self.dofs.count.get(node) {
+            Some(2..) => [at[0] + moved(0), at[1] + moved(1)],
+            _ => at,
+        }
+    }
+
+    /// What part of the overlaps that are closed over the first leg of the path ([`Contact::overlap`]) is left at a load
+    /// factor on a leg.
+    pub fn unclosed(&self, leg: usize, load_factor: f64) -> f64 {
+        match self.path.as_slice() {
+            [from, to, ..] if leg == 0 => ((to - load_factor) / (to - from)).clamp(0.0, 1.0),
+            _ => 0.0,
+        }
+    }
+
+    /// The places of all nodes ([`Model::place`]).
+    pub fn places(&self, u: &[f64]) -> Vec<[f64; 2]> {
+        (0..self.nodes.len())
+            .map(|node| self.place(u, node))
+            .collect()
+    }
 }

@@ -38,6 +38,12 @@ documented! {
         pub at_major_limit: AtLimit,
         /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
         pub tolerance: f64,
+        /// What becomes of gaps that are there before the first increment. Default: keep.
+        #[serde(skip_serializing_if = "InitialGaps::is_default")]
+        pub initial_gaps: InitialGaps,
+        /// With `initial_gaps: adjust`, nodes with a gap of at most this are moved onto their surface, too (length). Default: 0.
+        #[serde(skip_serializing_if = "is_zero")]
+        pub adjust_gap: f64,
         /// Memory that the scene may take, in GB. Default: what is free.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub memory: Option<f64>,
@@ -62,9 +68,15 @@ impl Default for Settings {
             at_cycle: AtCycle::default(),
             at_major_limit: AtLimit::default(),
             tolerance: 1e-11,
+            initial_gaps: InitialGaps::default(),
+            adjust_gap: 0.0,
             memory: None,
         }
     }
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 documented! {
@@ -133,6 +145,30 @@ impl Strategy {
             Strategy::Lemke => "lemke",
             Strategy::Census => "census",
         }
+    }
+}
+
+documented! {
+    /// What becomes of gaps that are there before the first increment.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum InitialGaps {
+        /// They are what they are: a node that starts inside is pushed out by the first increment.
+        #[default]
+        Keep,
+        /// Slave nodes that start inside, or up to `adjust_gap` away, are moved onto their surface before anything is
+        /// solved, without stress, as decks of other codes do.
+        Adjust,
+        /// Slave nodes that start inside stay there, and are pushed out over the first leg of the path, in proportion to the
+        /// load factor: a press fit.
+        Ramp,
+    }
+}
+
+impl InitialGaps {
+    /// Whether it is what a scene that does not name it has.
+    pub fn is_default(&self) -> bool {
+        *self == InitialGaps::default()
     }
 }
 

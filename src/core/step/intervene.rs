@@ -58,6 +58,11 @@ pub enum Refusal {
     /// A friction out of bounds.
     #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
     Friction,
+    /// Gaps of the start are long past.
+    #[error(
+        "initial_gaps and adjust_gap are settled when a scene is opened: set them in its file, or with --set"
+    )]
+    StartGaps,
     /// A limit of no iterations.
     #[error("limits of iterations are at least 1")]
     Limits,
@@ -188,6 +193,10 @@ impl State {
         if settings.minors == 0 || settings.majors == 0 {
             return Err(Refusal::Limits);
         }
+        let gaps = |settings: &Settings| (settings.initial_gaps, settings.adjust_gap);
+        if gaps(settings) != gaps(&self.controls.settings) {
+            return Err(Refusal::StartGaps);
+        }
         if settings.solver != self.controls.settings.solver
             && let Some(why) = Estimate::of(model).too_large(settings.solver)
         {
@@ -207,6 +216,14 @@ impl State {
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);
         self.start_again();
         Ok(())
+    }
+
+    /// The state in which the present attempt of the increment began. What was changed by hand since then is not in it,
+    /// except modes that are held.
+    pub fn attempt_again(&self) -> State {
+        let mut again = self.clone();
+        again.start_again();
+        again
     }
 
     /// Starts the present increment again, from its start to the end of the present piece.

@@ -208,6 +208,8 @@ impl State {
                 history: &self.start.history,
                 contacts: &self.start.nodes,
             },
+            leg: self.start.leg,
+            start_load: self.start.load_factor,
             target: self.target,
             last_target: self.last_target,
             contacts: &self.nodes,

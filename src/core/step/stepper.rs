@@ -12,6 +12,8 @@
 //! takes the forces back, `verdict` and `jump` say whether a converged state is accepted, `increment` accepts it or cuts.
 
 use crate::contact::record::ContactRecord;
+use crate::contact::state::ContactState;
+use crate::interface::kinematics::NodeKinematics;
 use crate::interface::problem::InterfaceProblem;
 use crate::linear::bodies::Bodies;
 use crate::linear::norms::Norms;
@@ -36,7 +38,7 @@ pub struct Stepper {
     /// What a search over all nodes keeps from one proposal to the next.
     pub(super) kept: Option<Box<dyn Any + Send>>,
     /// What the contacts came with into the present minor iteration, where only one of them may change.
-    pub(super) before: Vec<crate::contact::state::ContactState>,
+    pub(super) before: Vec<ContactState>,
     pub(super) event: Event,
 }
 
@@ -173,6 +175,20 @@ impl Stepper {
             return None;
         }
         self.source.problem(&self.state.at()).ok()
+    }
+
+    /// How a contact stands over its surface at the start of the present major iteration; `None` where it has no surface,
+    /// or where nothing can be linearised.
+    pub fn kinematics(&mut self, contact: usize) -> Option<NodeKinematics> {
+        if !self.linearise() {
+            return None;
+        }
+        self.source.kinematics(contact)
+    }
+
+    /// Which motions nothing resists while the contacts, where they are now, have the modes of these.
+    pub fn loose(&self, contacts: &[ContactState]) -> Singular {
+        self.source.explain(contacts)
     }
 
     /// Values of the scene's monitors at the start of the present major iteration (after an accepted increment: at

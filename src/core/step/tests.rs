@@ -148,6 +148,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         friction: Friction::default(),
         start: Mode::Free,
         state: Default::default(),
+        overlap: 0.0,
     };
     let load = |(dof, value)| Load {
         dof,

@@ -6,9 +6,9 @@ use super::words::{of_word, word, words};
 use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
 use crate::model::documented::text;
 use crate::model::{
-    AtCycle, AtLimit, Axis, BoundUpdate, Component, Friction, Geometry, InitialState, Jumps, Law,
-    Mode, Plane, ResidualMethod, Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch,
-    Update,
+    AtCycle, AtLimit, Axis, BoundUpdate, Component, Friction, Geometry, InitialGaps, InitialState,
+    Jumps, Law, Mode, Plane, ResidualMethod, Settings, SlipCount, Solver, Sticking, Strategy, Ties,
+    Touch, Update,
 };
 
 macro_rules! fields {
@@ -105,6 +105,8 @@ fields!(Settings {
     at_cycle,
     at_major_limit,
     tolerance,
+    initial_gaps,
+    adjust_gap,
     memory,
 });
 words!(
@@ -114,6 +116,7 @@ words!(
     Component,
     BoundUpdate,
     Geometry,
+    InitialGaps,
     Jumps,
     Law,
     Mode,

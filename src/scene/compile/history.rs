@@ -93,6 +93,13 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
             &what,
         )?;
     }
+    let gap = settings.adjust_gap;
+    if !(gap.is_finite() && gap >= 0.0) {
+        return Err(Fault::new(
+            here.then("adjust_gap"),
+            format!("the gap is {gap:?}; it must be a length that is not negative"),
+        ));
+    }
     let tolerance = settings.tolerance;
     if tolerance > 0.0 && tolerance <= 1e-2 {
         return Ok(());

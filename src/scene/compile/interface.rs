@@ -89,6 +89,7 @@ pub(super) fn slaves(
                     friction: group.friction.unwrap_or(spec.friction),
                     start: group.start,
                     state: group.state,
+                    overlap: 0.0,
                 };
                 let fresh = taken.insert(node);
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;

@@ -11,6 +11,7 @@ mod linear;
 mod monitors;
 mod tractions;
 
+use super::gaps;
 use super::geometry;
 use super::limits;
 use super::nodes::Names;
@@ -18,7 +19,7 @@ use crate::format::error::{Fault, at};
 use crate::format::spec::Spec;
 use crate::linear::estimate::Estimate;
 use crate::model::{Body, BodyKind, Model};
-use crate::model::{Settings, Touch};
+use crate::model::{InitialGaps, Settings, Touch};
 pub(crate) use history::increments;
 use layout::Layout;
 
@@ -27,7 +28,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     history::memory(&spec.settings)?;
     check_texts(spec)?;
     check_lengths(spec)?;
-    let names = Names::of(spec)?;
+    let mut names = Names::of(spec)?;
     bodies::materials(spec)?;
     let mut bodies = bodies::bodies(spec, &names)?;
     let mut on_body = vec![false; names.nodes.len()];
@@ -49,6 +50,16 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
     interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
+    history::settings(&spec.settings)?;
+    match spec.settings.initial_gaps {
+        InitialGaps::Keep => {}
+        InitialGaps::Adjust => {
+            let within = spec.settings.adjust_gap;
+            gaps::adjust(&mut names.nodes, &surfaces, &slaves, within);
+            bodies::check_bodies(spec, &names, &bodies, length)?;
+        }
+        InitialGaps::Ramp => gaps::ramp(&names.nodes, &surfaces, &mut slaves),
+    }
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
     let (mut loads, prescribed) = layout.loads(spec, &names)?;
@@ -58,7 +69,6 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
-    history::settings(&spec.settings)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
     let settings = Settings {
         touch: touch(spec.settings.touch, &bodies),

@@ -5,15 +5,17 @@ use crate::history::compare::{self, Sameness, Side};
 use crate::history::tree::Tree;
 use crate::history::verdicts::{BranchEnd, Summary};
 use crate::history::{branches, verdicts};
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Width of one side of the comparison.
 const SIDE: usize = 32;
@@ -35,10 +37,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let width = usize::from(inner.width);
     let compared = comparison(tree, &all, order.get(at).map_or(0, |o| o.0), app, view);
     let room = usize::from(inner.height);
-    let rows = order.len().min(room.saturating_sub(compared.len()).max(3));
-    let top = at
-        .saturating_sub(rows / 2)
-        .min(order.len().saturating_sub(rows));
+    let (top, rows) = shown(at, order.len(), room.saturating_sub(compared.len()));
     let mut lines: Vec<Line> = order
         .iter()
         .enumerate()
@@ -52,6 +51,26 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
     lines.extend(compared);
     paint::lines(buffer, inner, &lines);
+}
+
+/// The first branch that is shown, and how many are, where there is room for so many.
+fn shown(at: usize, count: usize, room: usize) -> (usize, usize) {
+    let rows = count.min(room.max(3));
+    let top = at.saturating_sub(rows / 2).min(count.saturating_sub(rows));
+    (top, rows)
+}
+
+/// The row of the tree in which a place of the screen is.
+pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    let tree = view.tree?;
+    let all = verdicts::summaries(tree);
+    let selected = app.branch.min(all.len().saturating_sub(1));
+    let order = verdicts::order(&all);
+    let compared = comparison(tree, &all, order.get(selected)?.0, app, view);
+    let room = usize::from(area.height).saturating_sub(2);
+    let (top, rows) = shown(selected, order.len(), room.saturating_sub(compared.len()));
+    let row = usize::from(at.y).checked_sub(usize::from(area.y) + 1)?;
+    (row < rows.min(room)).then_some(top + row)
 }
 
 fn line<'a>(
@@ -76,11 +95,11 @@ fn line<'a>(
         branch.whole.minors,
         branch.whole.majors
     );
-    let room = width.saturating_sub(cost.len() + 4);
+    let room = width.saturating_sub(cost.width() + 4);
     let name = paint::cut(&format!("{twig}{}", branch.name), room * 3 / 5);
-    let pad = (room * 3 / 5).saturating_sub(name.chars().count());
+    let pad = (room * 3 / 5).saturating_sub(name.width());
     let verdict = paint::cut(&verdict, (room - room * 3 / 5).saturating_sub(3));
-    let verdict_pad = (room - room * 3 / 5).saturating_sub(3 + verdict.chars().count());
+    let verdict_pad = (room - room * 3 / 5).saturating_sub(3 + verdict.width());
     Line::from(vec![
         Span::styled(if selected { "▸" } else { " " }, theme.focus),
         Span::styled(current.to_string(), theme.strong),
@@ -154,7 +173,7 @@ fn comparison(
         ]),
     ];
     let row = |name: &str, style: Style, cells: [String; 2]| {
-        let name = format!(" {:<NAME$} ", paint::cut(name, NAME));
+        let name = format!(" {} ", shown::padded(&paint::cut(name, NAME), NAME));
         let [a, b] = cells.map(|cell| Span::raw(format!("{cell:<SIDE$}")));
         Line::from(vec![Span::styled(name, style), a, b])
     };
@@ -176,6 +195,7 @@ fn comparison(
         theme.faint,
         of(&|side| format!("{:.1e}", side.residual)),
     ));
+    let round_off = view.round_off();
     for slave in 0..view.model.contacts.len() {
         let [a, b] = [&sides[0].nodes[slave], &sides[1].nodes[slave]];
         let style = if a.next == b.next {
@@ -185,7 +205,9 @@ fn comparison(
         };
         let cell = |node: &compare::NodeSide| {
             let numbers = match node.forces {
-                Some([f_n, f_t]) => number::cell(f_n, 12) + &number::cell(f_t, 12),
+                Some(forces) => forces
+                    .map(|force| number::cell(round_off.force(force), 12))
+                    .concat(),
                 None => String::new(),
             };
             format!("{:<8}{numbers}", theme::word(node.next))

@@ -1,40 +1,156 @@
-//! The list of built-in scenes: what there is to see when no scene was named, and for `open`.
+//! The list of what can be opened: scenes, lessons, files; with a look at the selected one where there is room.
 
 use crate::tui::app::App;
+use crate::tui::choosing::{Chooser, Glance, Offer, Preview};
 use crate::tui::paint;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
-/// Draws the list with one scene selected.
-pub fn draw(buffer: &mut Buffer, area: Rect, at: usize, app: &App) {
-    let theme = &app.theme;
-    let inner = paint::frame(buffer, area, "Choose a scene", true, theme);
-    let width = app
-        .offers
-        .iter()
-        .map(|offer| offer.name.width())
-        .max()
-        .unwrap_or(0);
-    let top = (at + 1).saturating_sub(inner.height as usize);
-    let lines: Vec<Line> = app
-        .offers
-        .iter()
-        .enumerate()
-        .skip(top)
-        .map(|(index, offer)| {
-            let (mark, style) = if index == at {
-                ("▸", theme.selected)
-            } else {
-                (" ", theme.text)
+/// Width from which on the preview stands beside the list, and height from which on it stands below.
+const BESIDE: u16 = 110;
+const BELOW: u16 = 16;
+/// Rows of a preview below, and columns of its picture.
+const ROWS: u16 = 7;
+const PICTURE: u16 = 30;
+/// Most rows of words over the picture beside the list.
+const WORDS: u16 = 12;
+
+/// Draws the list with one offer selected; returns where a picture of that is to be, if anywhere.
+pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Rect {
+    let left = chooser.left(&app.offers);
+    let title = match chooser.typed.as_str() {
+        "" => "Choose a scene or a lesson; type to find one".into(),
+        typed => format!("Choose: {typed}▏ {} of {}", left.len(), app.offers.len()),
+    };
+    let inner = paint::frame(buffer, area, &title, true, &app.theme);
+    let (list, preview) = match () {
+        _ if inner.width >= BESIDE => {
+            let columns = [Constraint::Fill(1), Constraint::Fill(1)];
+            let [list, preview] = Layout::horizontal(columns).areas(inner);
+            (list, Some(preview))
+        }
+        _ if inner.height >= BELOW => {
+            let rows = [Constraint::Fill(1), Constraint::Length(ROWS)];
+            let [list, preview] = Layout::vertical(rows).areas(inner);
+            let rule = "─".repeat(usize::from(preview.width));
+            buffer.set_string(preview.x, preview.y, rule, app.theme.faint);
+            let below = Rect {
+                y: preview.y + 1,
+                height: preview.height - 1,
+                ..preview
             };
-            Line::from(vec![
-                Span::styled(format!(" {mark} "), theme.focus),
-                Span::styled(format!("{:<width$}", offer.name), style),
-                Span::styled(format!("   {}", offer.title), theme.faint),
-            ])
-        })
-        .collect();
-    paint::lines(buffer, inner, &lines);
+            (list, Some(below))
+        }
+        _ => (inner, None),
+    };
+    let (lines, at) = lines(&left, chooser.at, usize::from(list.width), app);
+    // The heading over the first offer of a group is shown with it.
+    let room = usize::from(list.height);
+    let top = (at + 1).saturating_sub(room);
+    let lines: Vec<Line> = lines.into_iter().skip(top).collect();
+    match left.is_empty() {
+        true => {
+            let text = " nothing has these words in its name or title; Esc forgets them";
+            paint::lines(buffer, list, &[Line::styled(text, app.theme.faint)]);
+        }
+        false => paint::lines(buffer, list, &lines),
+    }
+    let selected = left.get(chooser.at);
+    let known = app.preview.as_ref();
+    let seen = selected.and_then(|offer| known.filter(|preview| preview.name == offer.name));
+    match (preview, seen) {
+        (Some(area), Some(preview)) => look(buffer, area, preview, inner.width >= BESIDE, app),
+        _ => Rect::ZERO,
+    }
+}
+
+/// Headings and offers, and the line of the selected one.
+fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Line<'a>>, usize) {
+    let theme = &app.theme;
+    let widths = left.iter().map(|offer| offer.name.width());
+    let names = widths.max().unwrap_or(0).min(width / 2);
+    let (mut lines, mut here, mut group) = (Vec::new(), 0, None);
+    for (index, offer) in left.iter().enumerate() {
+        if group.replace(offer.group) != Some(offer.group) {
+            lines.push(Line::styled(
+                format!(" {}", offer.group.title()),
+                theme.heading,
+            ));
+        }
+        let (mark, style) = match index == at {
+            true => ("▸", theme.selected),
+            false => (" ", theme.text),
+        };
+        if index == at {
+            here = lines.len();
+        }
+        let name = paint::cut(&offer.name, names);
+        let blank = " ".repeat(names.saturating_sub(name.width()));
+        let done = match offer.done.as_str() {
+            "" => String::new(),
+            done => format!("✓ {done}  "),
+        };
+        let room = width.saturating_sub(names + 6 + done.width());
+        lines.push(Line::from(vec![
+            Span::styled(format!(" {mark} "), theme.focus),
+            Span::styled(name, style),
+            Span::raw(format!("{blank}   ")),
+            Span::styled(done, theme.good),
+            Span::styled(paint::cut(&offer.title, room), theme.faint),
+        ]));
+    }
+    (lines, here)
+}
+
+/// Title and words of the selected offer; returns where its picture is to be.
+fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &App) -> Rect {
+    let theme = &app.theme;
+    let glance = match &preview.what {
+        Ok(glance) => glance,
+        Err(why) => {
+            let lines = paint::wrap(why, usize::from(area.width.saturating_sub(2)));
+            let lines = lines
+                .iter()
+                .map(|line| Line::styled(format!(" {line}"), theme.warning));
+            paint::lines(buffer, area, &lines.collect::<Vec<_>>());
+            return Rect::ZERO;
+        }
+    };
+    let (words, picture) = match beside {
+        true => {
+            let told = told(glance, area.width, app).len() as u16 + 1;
+            let rows = [Constraint::Length(told.min(WORDS)), Constraint::Fill(1)];
+            let [words, picture] = Layout::vertical(rows).areas(area);
+            (words, picture)
+        }
+        false => {
+            let columns = [Constraint::Fill(1), Constraint::Length(PICTURE)];
+            let [words, picture] = Layout::horizontal(columns).areas(area);
+            (words, picture)
+        }
+    };
+    let mut lines = told(glance, words.width, app);
+    let room = usize::from(words.height);
+    if lines.len() > room && room > 0 {
+        lines.truncate(room);
+        // The page of the scene tells the rest.
+        lines[room - 1].push_span(Span::styled(" …", theme.faint));
+    }
+    paint::lines(buffer, words, &lines);
+    picture
+}
+
+fn told(glance: &Glance, width: u16, app: &App) -> Vec<Line<'static>> {
+    let room = usize::from(width.saturating_sub(4));
+    let styled = |text: &str, style| -> Vec<Line<'static>> {
+        let lines = paint::wrap(text, room).into_iter();
+        lines
+            .map(|line| Line::styled(format!(" {line}"), style))
+            .collect()
+    };
+    let mut lines = styled(&glance.title, app.theme.heading);
+    lines.extend(styled(&glance.about, app.theme.text));
+    lines
 }

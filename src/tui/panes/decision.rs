@@ -6,6 +6,7 @@ use crate::explain::influence::Push;
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::number::{self, long};
 use crate::explain::report;
+use crate::explain::round_off::{NOTE, RoundOff};
 use crate::model::Mode;
 use crate::model::Ties;
 use crate::tui::app::App;
@@ -17,6 +18,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Width of the rows' headings.
 const LABEL: usize = 9;
@@ -40,7 +42,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let decision = record.map(|record| record.decision);
     let hidden = app.hides(view, slave);
     let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
-        tests(&record.decision, inner.width as usize, theme)
+        tests(
+            &record.decision,
+            &view.round_off(),
+            inner.width as usize,
+            theme,
+        )
     });
     let words = match (hidden, &app.lesson) {
         (false, _) => words(record, slave, view),
@@ -184,6 +191,7 @@ const MEASURED: usize = 13;
 
 /// All that the minor iteration found at the node, with a word on each, for the screen that has room for it.
 fn measured(record: &ContactRecord, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+    let round_off = view.round_off();
     let signed = |value: f64| {
         if value < 0.0 {
             long(value)
@@ -210,42 +218,42 @@ fn measured(record: &ContactRecord, view: &View, theme: &Theme) -> Vec<Line<'sta
     let rows = [
         (
             "gap",
-            signed(record.gap),
+            signed(round_off.length(record.gap)),
             "negative: penetration; on the geometry that this major iteration froze",
         ),
         (
             "F_n",
-            signed(record.f_n),
+            signed(round_off.force(record.f_n)),
             "total normal force on the slave node; compression is positive",
         ),
         (
             "F_t",
-            signed(record.f_t),
+            signed(round_off.force(record.f_t)),
             "total tangential force, along t (n turned anticlockwise)",
         ),
         (
             "T_max",
-            signed(record.t_max),
+            signed(round_off.force(record.t_max)),
             "what friction can carry, with its sign: |F_n| tan φ + cohesion",
         ),
         (
             "T_max used",
-            signed(record.t_max_used),
+            signed(round_off.force(record.t_max_used)),
             "the one that this minor iteration was solved with",
         ),
         (
             "|F_t|/T_max",
-            format!(" {}", number::ratio(record.f_t, record.t_max)),
+            format!(" {}", round_off.ratio(record.f_t, record.t_max)),
             "how much of the friction is used",
         ),
         (
             "slip",
-            signed(record.slip),
+            signed(round_off.length(record.slip)),
             "u_tS* − u_tS, as the settings count it",
         ),
         (
             "drift",
-            signed(record.drift),
+            signed(round_off.length(record.drift)),
             "along the surface, from the point where it stuck or where the increment found it",
         ),
         ("S*", place, ""),
@@ -394,17 +402,22 @@ fn cell_look(
 }
 
 /// The inequalities with their numbers: one line each where there is room, else two.
-fn tests(decision: &Decision, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn tests(
+    decision: &Decision,
+    round_off: &RoundOff,
+    width: usize,
+    theme: &Theme,
+) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for test in decision.tests.iter().flatten() {
         let inequality = inequality(test);
-        let (margin, style) = margin(test, theme);
+        let (margin, style) = margin(test, round_off, theme);
         let style_left = if test.margin < 0.0 && !test.tie {
             theme.strong
         } else {
             theme.text
         };
-        let used = inequality.chars().count() + margin.chars().count();
+        let used = inequality.width() + margin.width();
         if used < width {
             lines.push(Line::from(vec![
                 Span::styled(inequality, style_left),
@@ -441,7 +454,7 @@ fn inequality(test: &Test) -> String {
 }
 
 /// How far the inequality is from switching, and its unit.
-fn margin(test: &Test, theme: &Theme) -> (String, Style) {
+fn margin(test: &Test, round_off: &RoundOff, theme: &Theme) -> (String, Style) {
     let unit = match test.tested {
         Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => "force",
         Tested::Slip | Tested::Gap => "length",
@@ -452,7 +465,16 @@ fn margin(test: &Test, theme: &Theme) -> (String, Style) {
             format!("a tie, by {} {unit} ", long(test.margin)),
             theme.warning,
         ),
-        false => (format!("margin {} {unit} ", long(test.margin)), theme.faint),
+        false => {
+            let nothing = match unit {
+                "force" => round_off.force(test.value) == 0.0 && test.value != 0.0,
+                "length" => round_off.length(test.value) == 0.0 && test.value != 0.0,
+                _ => false,
+            };
+            let note = if nothing { NOTE } else { "" };
+            let text = format!("margin {} {unit} {note}", long(test.margin));
+            (format!("{} ", text.trim_end()), theme.faint)
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use crate::explain::examination::Examination;
 use crate::explain::number;
 use crate::interface::census::Census;
 use crate::interface::problem::NodeAnswer;
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
@@ -40,6 +41,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .collect(),
         Ok(found) => {
             let answers = answers(found, width, app, view);
+            if !found.going_on.is_empty() {
+                title += &format!(" ({})", found.going_on);
+            }
             let mut lines = words(found, width, app);
             // The list to choose from must be on the screen; what is said before it scrolls.
             let room = height.saturating_sub(answers.len());
@@ -61,7 +65,8 @@ fn words(found: &Examination, width: usize, app: &App) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for (index, text) in found.lines.iter().enumerate() {
         let style = match index {
-            0 if found.cycles => app.theme.strong,
+            0 if found.fails => app.theme.strong,
+            _ if text.starts_with("do:") => app.theme.strong,
             _ => app.theme.text,
         };
         let indent = text.len() - text.trim_start().len() + 1;
@@ -117,7 +122,10 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
         let name = paint::cut(view.slave(node.slave), NAME);
         let mark = if differs { "*" } else { " " };
         let style = if differs { theme.strong } else { theme.text };
-        let mut spans = vec![Span::styled(format!("{mark}{name:<NAME$} "), style)];
+        let mut spans = vec![Span::styled(
+            format!("{mark}{} ", shown::padded(&name, NAME)),
+            style,
+        )];
         for number in shown.clone() {
             let answer = &census.answers[number].answer.nodes[place];
             spans.extend(cell(answer, app));

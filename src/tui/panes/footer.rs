@@ -4,30 +4,38 @@ use crate::action::{ACTIONS, Entry, Group};
 use crate::tui::app::{App, Overlay, Tone};
 use crate::tui::layout::{Pane, Places};
 use crate::tui::paint;
-use crate::tui::view::{View, context};
+use crate::tui::view::View;
 use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
 /// Actions that the footer never leaves out, however narrow the screen.
 const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
-/// Most lines that a message takes.
-const MESSAGE: usize = 3;
-
-/// Draws message and keys.
+/// Draws message and keys. What their rows have no room for begins further up, over the panes.
 pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
-    let message = message(app, view, places.message.width as usize);
-    paint::lines(buffer, places.message, &message);
-    paint::lines(buffer, places.footer, &[keys(app, view, places)]);
+    let width = places.message.width as usize;
+    let mut lines = message(app, view, places, width);
+    let keys = keys(app, view, places);
+    // A screen without a row for keys has none for more of the message either.
+    let most = match places.footer.height {
+        0 => return paint::lines(buffer, places.message, &lines),
+        _ => usize::from(places.footer.bottom() / 2).max(2),
+    };
+    lines.truncate(most.saturating_sub(keys.len()).max(1));
+    lines.extend(keys.into_iter().take(most - lines.len()));
+    let height = lines.len() as u16;
+    let area = Rect {
+        y: places.footer.bottom() - height,
+        height,
+        ..places.footer
+    };
+    paint::over(buffer, area, &lines);
 }
 
-/// Lines that the message needs.
-pub fn message_lines(app: &App, view: Option<&View>, width: u16) -> u16 {
-    message(app, view, width as usize).len().min(MESSAGE) as u16
-}
-
-fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
+fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec<Line<'static>> {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
         use crate::tui::commandline::Purpose;
@@ -37,30 +45,47 @@ fn message(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
             Purpose::Answer => "your answer: ".into(),
             Purpose::Increment => app.question(view).unwrap_or_else(|| "increment: ".into()),
         };
-        return vec![line.line(&prompt, width, theme)];
+        return line.lines(&prompt, width, theme);
     }
     if let Some(question) = app.question(view) {
-        return vec![Line::styled(format!(" {question}"), theme.key)];
+        return wrapped(&question, width, theme.key);
+    }
+    if let Some(note) = app.ahead.note() {
+        return wrapped(&note, width, theme.warning);
     }
     if let Some(count) = app.count {
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
-    if let (true, "", Some(tutor)) = (app.zoomed, app.message.text.as_str(), &app.lesson) {
-        return vec![Line::styled(format!(" ▶ {}", tutor.todo()), theme.key)];
+    let shown = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
+    if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.lesson) {
+        return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
     }
-    let style = match app.message.tone {
-        Tone::Plain => theme.text,
-        Tone::Error => theme.bad,
-    };
-    paint::wrap(&app.message.text, width.saturating_sub(2))
+    let aside = view.map_or("", |view| view.aside.as_str());
+    let text = app.message.text.as_str();
+    match app.message.tone {
+        Tone::Plain if text.is_empty() => wrapped(aside, width, theme.text),
+        Tone::Plain if aside.is_empty() => wrapped(text, width, theme.text),
+        Tone::Plain => wrapped(&format!("{text}   {aside}"), width, theme.text),
+        Tone::Error => {
+            let mut lines = wrapped(text, width, theme.bad);
+            if !aside.is_empty() {
+                lines.extend(wrapped(aside, width, theme.text));
+            }
+            lines
+        }
+    }
+}
+
+fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+    paint::wrap(text, width.saturating_sub(2))
         .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect()
 }
 
-fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
+fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
     let room = places.footer.width as usize;
-    match &app.overlay {
+    let line = match &app.overlay {
         Overlay::None => table_keys(app, places, room),
         Overlay::Manual(reader) => match reader.typed() {
             Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
@@ -69,13 +94,24 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
                     ("↑↓", "scroll"),
                     ("←→", "page"),
                     ("/", "search"),
-                    ("n", "again"),
+                    ("n N", "again"),
                     ("Esc", "back"),
                 ],
                 app,
             ),
         },
-        Overlay::Help { .. } => listed(&[("↑↓", "scroll"), ("Esc", "back")], app),
+        Overlay::Help(help) => match help.search.typed() {
+            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
+            None => listed(
+                &[
+                    ("↑↓", "scroll"),
+                    ("/", "search"),
+                    ("n N", "again"),
+                    ("Esc", "back"),
+                ],
+                app,
+            ),
+        },
         Overlay::Chart(_) => listed(
             &[
                 ("←→", "run"),
@@ -85,18 +121,16 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
             ],
             app,
         ),
-        Overlay::Chooser { .. } => {
-            let leave = if view.is_some() { "back" } else { "quit" };
-            listed(
-                &[
-                    ("↑↓", "choose"),
-                    ("Enter", "open"),
-                    (":", "a file: open PATH"),
-                    ("L", "lessons"),
-                    ("q", leave),
-                ],
-                app,
-            )
+        Overlay::Chooser(chooser) => {
+            let (back, leave) = match (chooser.typed.is_empty(), view.is_some()) {
+                (false, _) => ("forget what was typed", None),
+                (true, true) => ("back", None),
+                (true, false) => ("back", Some(("q", "quit"))),
+            };
+            let mut keys = vec![("↑↓", "choose"), ("Enter", "open"), (":", "a file")];
+            keys.extend([("letters", "find"), ("Esc", back)]);
+            keys.extend(leave);
+            listed(&keys, app)
         }
         Overlay::Mode => listed(
             &[("f s x", "once"), ("F S X", "hold"), ("Esc", "leave it")],
@@ -104,10 +138,11 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Line<'static> {
         ),
         Overlay::Answer => listed(&[("Esc", "look again first")], app),
         Overlay::Line(line) => {
-            let scenes: Vec<String> = app.offers.iter().map(|offer| offer.name.clone()).collect();
-            line.hint(&context(view, app.selected, &scenes), &app.theme)
+            let scenes = app.scenes();
+            return line.hint(&app.context(view, &scenes), room, &app.theme);
         }
-    }
+    };
+    vec![line]
 }
 
 fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {
@@ -125,29 +160,31 @@ fn hint(key: &str, label: &str, app: &App) -> [Span<'static>; 2] {
 /// As many of the table's labelled actions as fit, in its order; those that must be there are counted first.
 fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
     let teaches = app.lesson.is_some() || app.guess.is_some();
-    let labelled: Vec<(&Entry, String)> = ACTIONS
+    // What has no key any more is left to its name.
+    let key = |entry: &'static Entry| app.keymap.keys(entry).next().map(str::to_owned);
+    let labelled: Vec<(&Entry, String, String)> = ACTIONS
         .iter()
         .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
-        .map(|entry| (entry, label(entry, app, places)))
+        .filter_map(|entry| Some((entry, key(entry)?, label(entry, app, places))))
         .collect();
-    let width = |entry: &Entry, label: &str| entry.keys[0].width() + label.width() + 3;
+    let width = |key: &str, label: &str| key.width() + label.width() + 3;
     let needed = |entry: &Entry| ALWAYS.contains(&entry.name) || entry.group == Group::Learn;
     let mut left = labelled
         .iter()
-        .filter(|(entry, _)| needed(entry))
-        .fold(room, |left, (entry, label)| {
-            left.saturating_sub(width(entry, label))
+        .filter(|(entry, ..)| needed(entry))
+        .fold(room, |left, (_, key, label)| {
+            left.saturating_sub(width(key, label))
         });
     let mut spans = Vec::new();
-    for (entry, label) in &labelled {
-        let width = width(entry, label);
+    for (entry, key, label) in &labelled {
+        let width = width(key, label);
         if !needed(entry) {
             if width > left {
                 continue;
             }
             left -= width;
         }
-        spans.extend(hint(entry.keys[0], label, app));
+        spans.extend(hint(key, label, app));
     }
     Line::from(spans)
 }

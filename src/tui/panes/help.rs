@@ -1,6 +1,9 @@
-//! The `?` page: every action with its keys, from the table, and what the marks on the screen mean.
+//! The `?` page: every action with its keys, and what the marks on the screen mean; and the page of the present keys, as the
+//! file has them that changes them.
 
-use crate::action::{ACTIONS, Group};
+use crate::action::config;
+use crate::action::{ACTIONS, Group, Keymap};
+use crate::manual::search::Search;
 use crate::tui::paint;
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
@@ -27,11 +30,91 @@ const MARKS: &[(&str, &str)] = &[
     ("a tie", "closer to switching than the tolerance"),
 ];
 
-/// Draws the page from line `top` on.
-pub fn draw(buffer: &mut Buffer, area: Rect, top: usize, theme: &Theme) {
-    let inner = paint::frame(buffer, area, "Help", true, theme);
-    let lines = page(inner.width as usize, theme);
-    let top = top.min(lines.len().saturating_sub(inner.height as usize));
+/// Lines that a page key goes past.
+const PAGE: usize = 10;
+
+/// Which list is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Listing {
+    /// All actions.
+    Actions,
+    /// The present keys, as a file has them.
+    Keys,
+}
+
+/// A list that is being read.
+#[derive(Debug, Clone)]
+pub struct Help {
+    /// Which.
+    pub listing: Listing,
+    /// The first line that is shown, from 0.
+    pub top: usize,
+    /// What is looked for in it.
+    pub search: Search,
+}
+
+impl Help {
+    /// The top of a list.
+    pub fn new(listing: Listing) -> Help {
+        Help {
+            listing,
+            top: 0,
+            search: Search::default(),
+        }
+    }
+
+    /// What a key does in a page of this size; false if it leaves it.
+    pub fn key(&mut self, name: &str, size: Rect, keymap: &Keymap) -> bool {
+        let lines = self.lines(size.width as usize, &Theme::mono(), keymap);
+        let last = lines.len().saturating_sub(size.height as usize);
+        // A line near the end stands at the foot of the page.
+        let top = self.top.min(last);
+        if let Some(go) = self.search.key(name) {
+            let texts: Vec<String> = lines.iter().map(Line::to_string).collect();
+            self.top = self.search.find(go, self.top, &texts).unwrap_or(self.top);
+            return true;
+        }
+        self.top = match name {
+            "Esc" | "q" | "?" | "F1" | "Enter" => return false,
+            "Up" | "k" => top.saturating_sub(1),
+            "Down" | "j" => top + 1,
+            "PageUp" => top.saturating_sub(PAGE),
+            "PageDown" | "Space" => top + PAGE,
+            "Home" | "g" => 0,
+            "End" | "G" => last,
+            _ => top,
+        }
+        .min(last);
+        true
+    }
+
+    fn lines(&self, width: usize, theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
+        match self.listing {
+            Listing::Actions => page(width, theme, keymap),
+            Listing::Keys => keys(theme, keymap),
+        }
+    }
+}
+
+/// Draws the page.
+pub fn draw(buffer: &mut Buffer, area: Rect, help: &Help, theme: &Theme, keymap: &Keymap) {
+    let title = help.search.title().unwrap_or_else(|| {
+        match help.listing {
+            Listing::Actions => "Help",
+            Listing::Keys => "Keys",
+        }
+        .into()
+    });
+    let inner = paint::frame(buffer, area, &title, true, theme);
+    let mut lines = help.lines(inner.width as usize, theme, keymap);
+    for line in &mut lines {
+        if help.search.holds(&line.to_string()) {
+            *line = Line::styled(line.to_string(), theme.selected);
+        }
+    }
+    let top = help
+        .top
+        .min(lines.len().saturating_sub(inner.height as usize));
     paint::lines(buffer, inner, &lines[top..]);
 }
 
@@ -40,7 +123,7 @@ const KEYS: usize = 14;
 const NAMES: usize = 23;
 
 /// The whole page. On a narrow screen the help goes on in further lines.
-pub fn page(width: usize, theme: &Theme) -> Vec<Line<'static>> {
+pub fn page(width: usize, theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for group in Group::ALL {
         lines.push(Line::styled(format!(" {}", group.title()), theme.heading));
@@ -49,7 +132,8 @@ pub fn page(width: usize, theme: &Theme) -> Vec<Line<'static>> {
             let room = width.saturating_sub(3 + KEYS + NAMES + 1).max(20);
             for (index, help) in paint::wrap(entry.help, room).into_iter().enumerate() {
                 let (keys, name) = if index == 0 {
-                    (entry.keys.join(" "), name.as_str())
+                    let keys: Vec<&str> = keymap.keys(entry).collect();
+                    (keys.join(" "), name.as_str())
                 } else {
                     Default::default()
                 };
@@ -75,5 +159,29 @@ pub fn page(width: usize, theme: &Theme) -> Vec<Line<'static>> {
             ]));
         }
     }
+    lines
+}
+
+/// The present keys, and where they are changed.
+fn keys(theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
+    let file = config::folder().map(|folder| folder.join(config::KEYS));
+    let file = file.map_or(config::KEYS.into(), |file| file.display().to_string());
+    let state = match keymap.is_changed() {
+        true => "as this file changes them; :copy keys copies all of it",
+        false => "in the form of the file that changes them; :copy keys copies all of it",
+    };
+    let mut lines = vec![
+        Line::styled(format!(" {state}"), theme.faint),
+        Line::styled(format!(" {file}"), theme.faint),
+        Line::raw(" {"),
+    ];
+    for (group, entries) in keymap.listed() {
+        lines.push(Line::styled(
+            format!("     // {}", group.title()),
+            theme.faint,
+        ));
+        lines.extend(entries.iter().map(|line| Line::raw(format!("     {line}"))));
+    }
+    lines.push(Line::raw(" }"));
     lines
 }

@@ -1,5 +1,6 @@
 //! The lesson: what the tutor says, and what to do next.
 
+use crate::outside::shown;
 use crate::teach::Tutor;
 use crate::teach::tutor::Paragraph;
 use crate::tui::app::App;
@@ -9,25 +10,73 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Rows that the lesson wants at a width, border included; 0 without a lesson.
 pub fn rows(app: &App, width: u16) -> u16 {
     let inner = usize::from(width.saturating_sub(2));
     match &app.lesson {
-        Some(tutor) => 3 + said(tutor, inner, &app.theme).len() as u16,
+        Some(tutor) => {
+            let todo = todo(tutor, inner, &app.theme);
+            2 + (said(tutor, inner, &app.theme).len() + todo.len()) as u16
+        }
         None => 0,
     }
 }
 
-/// Draws the lesson. What to do next stands in the last row; where the rest does not fit, its end is shown.
+/// Draws the lesson. What to do next stands below it; where there is no room for all, a part is shown, and how to see more.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     let Some(tutor) = &app.lesson else { return };
     let inner = paint::frame(buffer, area, &title(tutor), false, &app.theme);
-    let mut lines = said(tutor, inner.width as usize, &app.theme);
-    let room = (inner.height as usize).saturating_sub(1);
-    lines.drain(..lines.len().saturating_sub(room));
-    lines.push(todo(tutor, inner.width as usize, &app.theme));
+    let (width, room) = room(area, tutor, &app.theme);
+    let mut lines = said(tutor, width, &app.theme);
+    let (top, all) = (top(app, tutor, width, room), lines.len());
+    let shown = top..(top + room).min(all);
+    let same = app.reading.edition == tutor.edition();
+    let seen = if same { app.reading.seen } else { 0 };
+    lines = lines.into_iter().skip(top).take(room).collect();
+    let more = all > shown.end.max(seen);
+    match more {
+        true => lines.push(Line::styled(" ▼ Space shows more", app.theme.key)),
+        false => lines.extend(todo(tutor, width, &app.theme)),
+    }
     paint::lines(buffer, inner, &lines);
+    if shown.len() < all {
+        let again = if more {
+            ""
+        } else {
+            "; Backspace: from the first"
+        };
+        let place = format!(
+            " lines {} to {} of {all}{again} ",
+            shown.start + 1,
+            shown.end
+        );
+        let x = area.x + 2;
+        let room = usize::from(area.width.saturating_sub(4));
+        let place = paint::cut(&place, room);
+        buffer.set_string(x, area.bottom() - 1, place, app.theme.heading);
+    }
+}
+
+/// Width and rows that a pane of this size has for what the tutor says.
+pub fn room(area: Rect, tutor: &Tutor, theme: &Theme) -> (usize, usize) {
+    let width = usize::from(area.width.saturating_sub(2));
+    let inner = usize::from(area.height.saturating_sub(2));
+    (width, inner.saturating_sub(todo(tutor, width, theme).len()))
+}
+
+/// The first line that is shown: what was said last, and of a new page its beginning.
+pub fn top(app: &App, tutor: &Tutor, width: usize, room: usize) -> usize {
+    let all = said(tutor, width, &app.theme).len();
+    let (now, then) = (tutor.edition(), app.reading.edition);
+    let wanted = match now.0 == then.0 {
+        true if now.1 == then.1 => app.reading.top,
+        // An answer is told after the question, which was read.
+        true => all - remark(tutor, width, &app.theme).len(),
+        false => 0,
+    };
+    wanted.min(all.saturating_sub(room))
 }
 
 fn title(tutor: &Tutor) -> String {
@@ -44,30 +93,43 @@ fn title(tutor: &Tutor) -> String {
     format!("Lesson  {}  {place}{score}", lesson.title)
 }
 
-fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> Line<'static> {
-    let text = paint::cut(&format!("▶ {}", tutor.todo()), width.saturating_sub(2));
-    Line::styled(format!(" {text}"), theme.key)
+/// What to do next, wrapped.
+fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    wrapped("▶ ", &tutor.todo(), width, theme.key)
 }
 
 /// All that the tutor says, wrapped. A mark stands before what answers an answer, so that no colour is needed.
-fn said(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
-    let part = |paragraph: &Paragraph| match paragraph {
+pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    let page = tutor.page();
+    let parts = page.iter().flat_map(|part| paragraph(part, width, theme));
+    parts.collect()
+}
+
+/// What the tutor says to the last answer.
+fn remark(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    match tutor.page().last() {
+        Some(part @ (Paragraph::Right(_) | Paragraph::Wrong(_))) => paragraph(part, width, theme),
+        _ => Vec::new(),
+    }
+}
+
+fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    match part {
         Paragraph::Text(text) => wrapped("", text, width, theme.text),
         Paragraph::Option(number, text) => wrapped(&format!("{number} "), text, width, theme.text),
         Paragraph::Right(text) => wrapped("✓ ", text, width, theme.good),
         Paragraph::Wrong(text) => wrapped("✗ ", text, width, theme.warning),
-    };
-    tutor.page().iter().flat_map(part).collect()
+    }
 }
 
 /// A paragraph whose further lines stand under the first one's words.
 fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
-    let indent = mark.chars().count();
+    let indent = mark.width();
     let lines = paint::wrap(text, width.saturating_sub(2 + indent));
     let line = |(index, words): (usize, String)| {
         let mark = if index == 0 { mark } else { "" };
         Line::from(vec![
-            Span::styled(format!(" {mark:<indent$}"), style),
+            Span::styled(format!(" {}", shown::padded(mark, indent)), style),
             Span::styled(words, style),
         ])
     };

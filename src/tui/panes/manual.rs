@@ -1,6 +1,7 @@
 //! A page of the manual over the whole screen: scrolled, searched, and turned to the next page.
 
 use crate::manual::render::{self, Line as Shown, Style};
+use crate::manual::search::Search;
 use crate::manual::{PAGES, Page};
 use crate::tui::paint;
 use crate::tui::theme::Theme;
@@ -19,12 +20,7 @@ pub struct Reader {
     lines: Vec<Shown>,
     /// The first line that is shown.
     top: usize,
-    /// What is being typed to search for.
-    typed: Option<String>,
-    /// What was searched for last, in small letters.
-    sought: String,
-    /// Whether it was not found.
-    missed: bool,
+    search: Search,
 }
 
 impl Reader {
@@ -34,34 +30,20 @@ impl Reader {
             page,
             lines: render::render(page.text, render::WIDTH),
             top: 0,
-            typed: None,
-            sought: String::new(),
-            missed: false,
+            search: Search::default(),
         }
     }
 
     /// What is being typed to search for.
     pub fn typed(&self) -> Option<&str> {
-        self.typed.as_deref()
+        self.search.typed()
     }
 
     /// What a key does; false if it leaves the page.
     pub fn key(&mut self, name: &str) -> bool {
-        if let Some(typed) = &mut self.typed {
-            match name {
-                "Esc" => self.typed = None,
-                "Enter" => {
-                    self.sought = typed.to_lowercase();
-                    self.typed = None;
-                    self.find(self.top);
-                }
-                "Backspace" => {
-                    typed.pop();
-                }
-                "Space" => typed.push(' '),
-                _ if name.chars().count() == 1 => typed.push_str(name),
-                _ => {}
-            }
+        if let Some(go) = self.search.key(name) {
+            let lines: Vec<String> = self.lines.iter().map(|line| line.text()).collect();
+            self.top = self.search.find(go, self.top, &lines).unwrap_or(self.top);
             return true;
         }
         let last = self.lines.len().saturating_sub(1);
@@ -75,57 +57,41 @@ impl Reader {
             "End" | "G" => self.top = self.lines.len().saturating_sub(PAGE),
             "Left" | "h" => self.turn(PAGES.len() - 1),
             "Right" | "l" => self.turn(1),
-            "/" => self.typed = Some(String::new()),
-            "n" => self.find(self.top + 1),
             _ => {}
         }
         true
+    }
+
+    /// A line up or down.
+    pub fn scroll(&mut self, up: bool) {
+        self.top = match up {
+            true => self.top.saturating_sub(1),
+            false => (self.top + 1).min(self.lines.len().saturating_sub(1)),
+        };
     }
 
     /// Turns to another page, so many further on.
     fn turn(&mut self, by: usize) {
         let here = PAGES.iter().position(|page| page.topic == self.page.topic);
         let next = (here.unwrap_or(0) + by) % PAGES.len();
-        let sought = std::mem::take(&mut self.sought);
+        let search = std::mem::take(&mut self.search);
         *self = Reader {
-            sought,
+            search,
             ..Reader::new(&PAGES[next])
         };
-    }
-
-    /// Goes to the next line from `from` on that holds what is sought, round from the page's start.
-    fn find(&mut self, from: usize) {
-        if self.sought.is_empty() {
-            return;
-        }
-        let count = self.lines.len();
-        let order = (0..count).map(|k| (from + k) % count);
-        let holds = |line: &usize| {
-            self.lines[*line]
-                .text()
-                .to_lowercase()
-                .contains(&self.sought)
-        };
-        let found = order.into_iter().find(holds);
-        self.missed = found.is_none();
-        self.top = found.unwrap_or(self.top);
     }
 }
 
 /// Draws the page under a line with its topic, or with what is searched for.
 pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, theme: &Theme) {
-    let title = match &reader.typed {
-        Some(typed) => format!("/{typed}_"),
-        None if reader.missed => {
-            format!("{}: nothing holds '{}'", reader.page.topic, reader.sought)
-        }
-        None => {
-            let (line, count) = (reader.top + 1, reader.lines.len());
-            format!(
-                "Manual: {}  {line}/{count}  {}",
-                reader.page.topic, reader.page.about
-            )
-        }
+    let (line, count) = (reader.top + 1, reader.lines.len());
+    let title = match (reader.search.typed(), reader.search.title()) {
+        (Some(_), Some(typed)) => typed,
+        (_, Some(missed)) => format!("{}: {missed}", reader.page.topic),
+        _ => format!(
+            "Manual: {}  {line}/{count}  {}",
+            reader.page.topic, reader.page.about
+        ),
     };
     let room = area.width.saturating_sub(4) as usize;
     let title = Line::styled(format!(" {} ", paint::cut(&title, room)), theme.focus);
@@ -141,13 +107,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, theme: &Theme) {
         .skip(reader.top)
         .take(inner.height as usize);
     let lines: Vec<Line> = shown
-        .map(|line| styled(line, &reader.sought, theme))
+        .map(|line| styled(line, &reader.search, theme))
         .collect();
     paint::lines(buffer, inner, &lines);
 }
 
-fn styled(line: &Shown, sought: &str, theme: &Theme) -> Line<'static> {
-    if !sought.is_empty() && line.text().to_lowercase().contains(sought) {
+fn styled(line: &Shown, search: &Search, theme: &Theme) -> Line<'static> {
+    if search.holds(&line.text()) {
         return Line::styled(line.text(), theme.selected);
     }
     let span = |(style, text): &(Style, String)| {

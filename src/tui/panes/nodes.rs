@@ -4,13 +4,15 @@ use crate::action::{Filter, Sort};
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::table2::Tested;
 use crate::explain::number;
+use crate::explain::round_off::RoundOff;
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
@@ -111,6 +113,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .unwrap_or(0);
     let columns = Columns::fit(inner.width as usize, longest.clamp(4, 20));
     let rows = (inner.height as usize).saturating_sub(1);
+    let round_off = view.round_off();
     let top = first_row(at, rows, order.len());
     let mut lines = vec![headings(&columns, app)];
     lines.extend(
@@ -118,9 +121,23 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .iter()
             .skip(top)
             .take(rows)
-            .map(|&slave| row(slave, slave == selected, &columns, app, view)),
+            .map(|&slave| row(slave, slave == selected, &columns, &round_off, app, view)),
     );
     paint::lines(buffer, inner, &lines);
+}
+
+/// The slave node in whose row a place of the screen is.
+pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    let order = app.order(view);
+    let count = view.model.contacts.len();
+    let selected = app.selected.min(count.saturating_sub(1));
+    let here = order.iter().position(|slave| *slave == selected);
+    // Border and headings.
+    let rows = usize::from(area.height).saturating_sub(3);
+    let row = usize::from(at.y).checked_sub(usize::from(area.y) + 2)?;
+    let top = first_row(here.unwrap_or(0), rows, order.len());
+    let inside = row < rows && at.x > area.x && at.x + 1 < area.right();
+    order.get(top + row).copied().filter(|_| inside)
 }
 
 /// Heading: which node of how many shown, which those are, and how they are sorted.
@@ -187,6 +204,7 @@ fn row<'a>(
     slave: usize,
     selected: bool,
     columns: &Columns,
+    round_off: &RoundOff,
     app: &App,
     view: &View<'a>,
 ) -> Line<'a> {
@@ -212,7 +230,7 @@ fn row<'a>(
     spans.extend(modes(slave, changed, columns, app, view));
     spans.push(Span::raw(" "));
     if let Some(record) = record {
-        spans.extend(numbers(record, columns, app));
+        spans.extend(numbers(record, round_off, columns, app));
     }
     Line::from(spans)
 }
@@ -261,7 +279,7 @@ fn modes(
     } else {
         style(next)
     };
-    let used = first.len() + arrow.chars().count() + second.len();
+    let used = first.width() + arrow.width() + second.width();
     let arrow_style = if changed {
         app.theme.strong
     } else {
@@ -275,20 +293,37 @@ fn modes(
     ]
 }
 
-fn numbers(record: &ContactRecord, columns: &Columns, app: &App) -> Vec<Span<'static>> {
+fn numbers(
+    record: &ContactRecord,
+    round_off: &RoundOff,
+    columns: &Columns,
+    app: &App,
+) -> Vec<Span<'static>> {
+    // What changed the mode is shown as it is, however small.
+    let decided = |tested: Tested| {
+        let mut tests = record.decision.tests.iter().flatten();
+        record.decision.changes() && tests.any(|test| test.tested == tested)
+    };
     let cell = |value| number::cell(value, columns.number);
-    let ratio = format!(
-        "{:<width$}",
-        number::ratio(record.f_t, record.t_max),
-        width = columns.ratio
-    );
+    let force = |value: f64, tested: Tested| match decided(tested) {
+        true => cell(value),
+        false => cell(round_off.force(value)),
+    };
+    let length = |value: f64, tested: Tested| match decided(tested) {
+        true => cell(value),
+        false => cell(round_off.length(value)),
+    };
+    let ratio = match decided(Tested::ShearForce) {
+        true => number::ratio(record.f_t, record.t_max),
+        false => round_off.ratio(record.f_t, record.t_max),
+    };
     let texts = [
-        cell(record.gap),
-        cell(record.f_n),
-        cell(record.f_t),
-        cell(record.t_max),
-        ratio,
-        cell(record.slip),
+        length(record.gap, Tested::Gap),
+        force(record.f_n, Tested::NormalForce),
+        force(record.f_t, Tested::ShearForce),
+        force(record.t_max, Tested::ShearForce),
+        format!("{ratio:<width$}", width = columns.ratio),
+        length(record.slip, Tested::Slip),
     ];
     let style = |index: usize| number_style(index, record, app);
     texts
@@ -322,14 +357,7 @@ fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
 
 /// A name cut or padded to a width; what is cut off at the end shows as `…`.
 fn fitted(name: &str, width: usize) -> String {
-    match name.chars().count() {
-        count if count <= width => format!("{name:<width$}"),
-        _ => name
-            .chars()
-            .take(width.saturating_sub(1))
-            .chain(['…'])
-            .collect(),
-    }
+    shown::padded(&paint::cut(name, width), width)
 }
 
 #[cfg(test)]

@@ -1,17 +1,21 @@
 //! The remedies that were tried: what each costs and what it leaves; one of them selected, to be taken.
 
 use crate::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEnd};
+use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr;
 
 /// Columns by [`COLUMNS`], the most telling first: a narrow screen shows as many as fit.
 const ORDER: [usize; 10] = [0, 1, 3, 5, 6, 7, 9, 8, 4, 2];
+/// Lines before the first remedy.
+const HEAD: usize = 2;
 /// Least width of the remedies' names.
 const NAME: usize = 26;
 
@@ -37,8 +41,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .is_some_and(|background| background.is_trying());
     let count = tried.trials.len();
     let state = match (trying, tried.all) {
-        (true, Some(all)) => format!("{count} of {all} tried; now: {}", tried.now),
-        (true, None) => "holding a census …".into(),
+        (true, Some(all)) => format!("{count} of {all} tried; Ctrl-C stops; now: {}", tried.now),
+        (true, None) => "holding a census; Ctrl-C stops after it …".into(),
         (false, _) if tried.stopped => format!("stopped after {count}"),
         (false, _) if count == 0 => "the history is done: there is nothing to remedy".into(),
         (false, _) => {
@@ -68,7 +72,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Line::from(head).style(theme.heading),
     ];
     let at = app.remedy.min(count.saturating_sub(1));
-    let room = usize::from(inner.height).saturating_sub(lines.len());
+    let room = usize::from(inner.height).saturating_sub(HEAD);
     let top = (at + 1).saturating_sub(room);
     for (number, (trial, row)) in tried
         .trials
@@ -89,21 +93,31 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
                 name.clone(),
                 if selected { theme.selected } else { theme.text },
             ),
-            Span::raw(" ".repeat(names.saturating_sub(name.chars().count()))),
+            Span::raw(" ".repeat(names.saturating_sub(name.width()))),
         ];
         spans.extend(shown.iter().map(|&(k, w)| {
             let style = if k == 0 { style } else { theme.text };
-            Span::styled(format!("  {:>w$}", row[k]), style)
+            Span::styled(format!("  {}", shown::padded_before(&row[k], w)), style)
         }));
         lines.push(Line::from(spans));
     }
     paint::lines(buffer, inner, &lines);
 }
 
+/// The remedy in whose row a place of the screen is.
+pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    let tried = view.background?.tried()?;
+    let selected = app.remedy.min(tried.trials.len().saturating_sub(1));
+    let room = usize::from(area.height).saturating_sub(2 + HEAD);
+    let top = (selected + 1).saturating_sub(room);
+    let row = usize::from(at.y).checked_sub(usize::from(area.y) + 1 + HEAD)?;
+    (row < room && top + row < tried.trials.len()).then_some(top + row)
+}
+
 /// Which columns fit, in the order of [`COLUMNS`], and how wide they are.
 fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
     let wide = |k: usize| {
-        let cells = rows.iter().map(|row| row[k].chars().count());
+        let cells = rows.iter().map(|row| row[k].width());
         cells.chain([COLUMNS[k].len()]).max().unwrap_or(0)
     };
     let mut room = width.saturating_sub(3 + NAME);

@@ -4,9 +4,11 @@
 //! of the shown major iteration.
 
 use crate::contact::projection::tangent;
+use crate::explain::examination::Examination;
 use crate::explain::number;
+use crate::explain::outline::{Bounds, Point, bounds, curve};
 use crate::fem::lagrange;
-use crate::model::{BodyKind, Solid};
+use crate::model::{BodyKind, Contact, Solid};
 use crate::tui::app::App;
 use crate::tui::camera::Camera;
 use crate::tui::canvas::{Canvas, Dot};
@@ -15,22 +17,25 @@ use crate::tui::paint;
 use crate::tui::theme;
 use crate::tui::view::View;
 use ratatui::buffer::{Buffer, Cell};
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::collections::HashMap;
+use std::f64::consts::FRAC_PI_4;
 use unicode_width::UnicodeWidthStr;
 
-type Point = [f64; 2];
-
-/// Straight pieces that an element's curve is drawn with.
-const PIECES: usize = 12;
 /// Length of the longest force, and of a normal, as parts of what is seen.
 const FORCE: f64 = 0.25;
 const NORMAL: f64 = 0.04;
 /// Least diagonal of an element that is drawn, in dots.
 const ELEMENT: f64 = 12.0;
+/// Length of the longest motion that is drawn, as a part of what is seen.
+const MOTION: f64 = 0.15;
+/// Heads of arrows, by eighths of a turn anticlockwise from the right.
+const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+/// Mark of a node that the diagnosis is about, right of its letter.
+const MARK: &str = "!";
 /// Dots between two normals of an element.
 const SPACING: f64 = 16.0;
 
@@ -38,102 +43,62 @@ const SPACING: f64 = 16.0;
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let inner = paint::frame(buffer, area, "Shape", app.focus == Pane::Shape, theme);
-    if inner.is_empty() {
-        return;
+    if let (Some(longest), 2..) = (picture(buffer, inner, app, view), inner.height) {
+        let moves = found(view).is_some_and(|found| !found.arrows.is_empty());
+        caption(buffer, inner, longest, moves, app, view);
     }
+}
+
+/// Draws the shape alone, but in the last row; returns the longest force, `None` where there is no room.
+pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Option<f64> {
+    if inner.is_empty() {
+        return None;
+    }
+    let (mut canvas, window) = field(inner, app, view);
+    bodies(&mut canvas, &window, app, view);
+    surfaces(&mut canvas, &window, app, view);
+    let longest = forces(&mut canvas, &window, app, view);
+    let tips = motions(&mut canvas, &window, app, view);
+    canvas.render(buffer);
+    heads(buffer, &canvas, &tips, app);
+    names(buffer, &canvas, &window, app, view);
+    slaves(buffer, &canvas, &window, app, view);
+    Some(longest)
+}
+
+/// The canvas inside the frame, and what of the scene is seen on it.
+fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
     let field = Rect {
         height: inner.height.saturating_sub(1).max(1),
         ..inner
     };
-    let mut canvas = Canvas::new(field);
+    let canvas = Canvas::new(field);
+    let towards = selected_place(app, view);
     let window = Window::new(
         &canvas,
-        &bounds(view),
+        &bounds(view.model, &|node| view.place(node)),
         &app.camera,
-        selected_place(app, view),
+        towards,
     );
-    bodies(&mut canvas, &window, app, view);
-    surfaces(&mut canvas, &window, app, view);
-    let longest = forces(&mut canvas, &window, app, view);
-    canvas.render(buffer);
-    names(buffer, &canvas, &window, app, view);
-    slaves(buffer, &canvas, &window, app, view);
-    if inner.height > 1 {
-        caption(buffer, inner, longest, app);
+    (canvas, window)
+}
+
+/// The slave node nearest to a place of the screen, if one is near.
+pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    // A cell is about twice as high as wide.
+    const NEAR: u32 = 3;
+    let inner = area.inner(Margin::new(1, 1));
+    if inner.is_empty() {
+        return None;
     }
-}
-
-/// A rectangle in the scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Bounds {
-    low: Point,
-    high: Point,
-}
-
-impl Bounds {
-    const NOTHING: Bounds = Bounds {
-        low: [f64::INFINITY; 2],
-        high: [f64::NEG_INFINITY; 2],
+    let (canvas, window) = field(inner, app, view);
+    let far = |(slave, contact): (usize, &Contact)| {
+        let (x, y) = canvas.cell(window.dot(view.place(contact.node)))?;
+        let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
+        (far <= NEAR).then_some((far, slave))
     };
-
-    fn add(&mut self, point: Point) {
-        for (axis, x) in point.into_iter().enumerate().filter(|(_, x)| x.is_finite()) {
-            self.low[axis] = self.low[axis].min(x);
-            self.high[axis] = self.high[axis].max(x);
-        }
-    }
-
-    fn size(&self) -> Point {
-        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
-    }
-
-    fn diagonal(&self) -> f64 {
-        let [x, y] = self.size();
-        x.hypot(y)
-    }
-}
-
-/// What is to be seen at zoom 1: the bodies as they were and as they are, and what of the surfaces is near. Rounded
-/// to coarse steps, so that the picture does not breathe while it is stepped through.
-fn bounds(view: &View) -> Bounds {
-    let mut bodies = Bounds::NOTHING;
-    for node in view.model.bodies.iter().flat_map(|body| &body.nodes) {
-        bodies.add(view.model.nodes[*node].at);
-        bodies.add(view.place(*node));
-    }
-    if bodies.diagonal() <= 0.0 || !bodies.diagonal().is_finite() {
-        view.model.nodes.iter().for_each(|node| bodies.add(node.at));
-    }
-    let reach = 0.2 * bodies.diagonal();
-    let mut all = bodies;
-    for node in view
-        .model
-        .surfaces
-        .iter()
-        .flat_map(|surface| surface.elements.iter().flatten())
-    {
-        let at = view.place(*node);
-        let clamped =
-            |axis: usize| at[axis].clamp(bodies.low[axis] - reach, bodies.high[axis] + reach);
-        if bodies.diagonal().is_finite() {
-            all.add([clamped(0), clamped(1)]);
-        }
-    }
-    let step = all.diagonal() / 16.0;
-    if !(step > 0.0 && step.is_finite()) {
-        return Bounds {
-            low: [-1.0, -1.0],
-            high: [1.0, 1.0],
-        };
-    }
-    // A power of two is a step that itself seldom changes.
-    let step = 2f64.powf(step.log2().ceil());
-    let down = |x: f64| (x / step).floor() * step;
-    let up = |x: f64| (x / step).ceil() * step;
-    Bounds {
-        low: all.low.map(down),
-        high: all.high.map(up),
-    }
+    let near = view.model.contacts.iter().enumerate().filter_map(far);
+    near.min().map(|(_, slave)| slave)
 }
 
 /// The map from the scene to the dots: equal in both directions, y upwards.
@@ -185,26 +150,6 @@ fn selected_place(app: &App, view: &View) -> Option<Point> {
     let slaves = &view.model.contacts;
     let slave = slaves.get(app.selected.min(slaves.len().saturating_sub(1)))?;
     Some(view.place(slave.node)).filter(|place| place.iter().all(|x| x.is_finite()))
-}
-
-/// The Lagrange curve through the nodes of an element.
-fn curve(nodes: &[Point]) -> Vec<Point> {
-    if nodes.len() < 2 || nodes.len() > lagrange::MAX_NODES {
-        return nodes.to_vec();
-    }
-    let pieces = if nodes.len() == 2 { 1 } else { PIECES };
-    (0..=pieces)
-        .map(|piece| {
-            let shape = lagrange::shape(nodes.len(), -1.0 + 2.0 * piece as f64 / pieces as f64);
-            [0, 1].map(|axis| {
-                nodes
-                    .iter()
-                    .zip(shape.n)
-                    .map(|(node, n)| n * node[axis])
-                    .sum()
-            })
-        })
-        .collect()
 }
 
 fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: ratatui::style::Style) {
@@ -383,7 +328,8 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     let Some(event) = view.event() else {
         return 0.0;
     };
-    let size = |f_n: f64, f_t: f64| f_n.hypot(f_t);
+    let round_off = view.round_off();
+    let size = |f_n: f64, f_t: f64| round_off.force(f_n.hypot(f_t));
     let largest = event
         .nodes
         .iter()
@@ -393,7 +339,8 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     if largest == 0.0 {
         return 0.0;
     }
-    for (slave, node) in view.model.contacts.iter().zip(&event.nodes) {
+    let nodes = view.model.contacts.iter().zip(&event.nodes);
+    for (slave, node) in nodes.filter(|(_, node)| size(node.f_n, node.f_t) > 0.0) {
         let (n, t) = (node.normal, tangent(node.normal));
         let scale = FORCE * window.extent / largest;
         let tip = view.place(slave.node);
@@ -405,6 +352,42 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
         );
     }
     largest
+}
+
+/// What is known of the shown state, if that is an end.
+fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
+    view.examination().flatten().filter(|found| found.fails)
+}
+
+/// Motions of bodies that nothing holds, as lines; returns their ends, and the directions there.
+fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<[Dot; 2]> {
+    let Some(found) = found(view) else {
+        return Vec::new();
+    };
+    let length = MOTION * window.extent;
+    let line = |&[at, along]: &[Point; 2]| {
+        let tip = [0, 1].map(|axis| at[axis] + length * along[axis]);
+        [window.dot(at), window.dot(tip)]
+    };
+    let lines: Vec<[Dot; 2]> = found.arrows.iter().map(line).collect();
+    for [from, to] in &lines {
+        canvas.line(*from, *to, app.theme.strong);
+    }
+    lines
+}
+
+/// Heads of arrows.
+fn heads(buffer: &mut Buffer, canvas: &Canvas, lines: &[[Dot; 2]], app: &App) {
+    for [from, to] in lines {
+        let (x, y) = (to[0] - from[0], from[1] - to[1]);
+        let eighth = (y.atan2(x) / FRAC_PI_4).round().rem_euclid(8.0) as usize;
+        if let Some((x, y)) = canvas.cell(*to)
+            && let Some(cell) = buffer.cell_mut((x, y))
+        {
+            cell.set_symbol(HEADS[eighth % HEADS.len()])
+                .set_style(app.theme.strong);
+        }
+    }
 }
 
 /// Letters of the modes at the slave nodes; the selected one is reversed and named.
@@ -433,10 +416,17 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
                 cell.set_style(style.add_modifier(Modifier::REVERSED));
             }
         }
+        let beside = (x + 1, y);
+        if found(view).is_some_and(|found| found.nodes.contains(&slave))
+            && canvas.area().contains(beside.into())
+            && let Some(cell) = buffer.cell_mut(beside)
+        {
+            cell.set_symbol(MARK).set_style(theme.strong);
+        }
     }
 }
 
-fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, app: &App) {
+fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &App, view: &View) {
     let theme = &app.theme;
     let mut spans = vec![Span::styled(" faint: unloaded", theme.faint)];
     if longest > 0.0 {
@@ -444,6 +434,12 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, app: &App) {
             format!("   longest force {}", number::short(longest)),
             theme.faint,
         ));
+    }
+    if moves {
+        spans.push(Span::styled("   → loose", theme.faint));
+    }
+    if found(view).is_some_and(|found| !found.nodes.is_empty()) {
+        spans.push(Span::styled(format!("   {MARK} diagnosed"), theme.faint));
     }
     if app.camera != Camera::ALL {
         spans.push(Span::styled(

@@ -8,7 +8,8 @@ use crate::model::Model;
 use crate::model::Strategy;
 use crate::step::event::{Event, Outcome};
 use crate::step::state::Status;
-use crate::tui::app::App;
+use crate::tui::app::{App, Overlay};
+use crate::tui::layout::Places;
 use crate::tui::paint;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
@@ -17,8 +18,9 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
-/// Draws the status.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
+/// Draws the status. What its rows have no room for stands over the rows below.
+pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
+    let area = places.status;
     let Some(view) = view else {
         let title = " a step-through debugger for contact iterations";
         let line = Line::from(vec![
@@ -33,17 +35,17 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     if area.height > 2 {
         lines.insert(0, scene(app, view, area.width as usize));
     }
-    lines.extend(outcome(app, view, area.width));
-    paint::lines(buffer, area, &lines);
+    let told = outcome(app, view, area.width);
+    let open = matches!(app.overlay, Overlay::None);
+    let more = usize::from(open) * (told.len().min(OUTCOME) + lines.len());
+    lines.extend(told.into_iter().take(OUTCOME));
+    let below = (places.message.y.saturating_sub(area.bottom())) / 3;
+    let height = area.height + (more as u16).saturating_sub(area.height).min(below);
+    paint::over(buffer, Rect { height, ..area }, &lines);
 }
 
 /// Most lines that the last iteration's outcome takes.
 const OUTCOME: usize = 3;
-
-/// Lines that the outcome needs.
-pub fn outcome_lines(app: &App, view: &View, width: u16) -> u16 {
-    outcome(app, view, width).len().min(OUTCOME) as u16
-}
 
 fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
     const PROGRAM: &str = " stickslip ";
@@ -115,6 +117,15 @@ fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
     Line::from(spans)
 }
 
+/// The start, with the gaps that the scene starts with.
+fn start(view: &View) -> String {
+    let text = "▸ at the start; nothing is solved yet";
+    match view.start_gaps {
+        "" => text.into(),
+        gaps => format!("{text}; start gaps: {gaps}"),
+    }
+}
+
 /// What the shown minor iteration led to, and what the user has done to the solve.
 fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
     let theme = &app.theme;
@@ -140,7 +151,7 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             format!("◇ {}", report::intervention(view.model, intervention)),
             theme.strong,
         ),
-        (None, None) => ("▸ at the start; nothing is solved yet".into(), theme.text),
+        (None, None) => (start(view), theme.text),
         (None, Some(_)) if app.hides_any(view) => {
             ("? solved; what follows is yours to say".into(), theme.text)
         }
@@ -154,7 +165,7 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
     let mut lines: Vec<Line> = words.into_iter().enumerate().map(line).collect();
     if let Some(text) = interventions(view) {
         match lines.last_mut() {
-            Some(last) if last.width() + 3 + text.chars().count() <= width as usize => {
+            Some(last) if last.width() + 3 + text.width() <= width as usize => {
                 last.push_span(Span::styled(format!("   {text}"), theme.warning));
             }
             _ => lines.push(Line::styled(format!("   {text}"), theme.warning)),

@@ -11,7 +11,7 @@ use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
 use std::ops::Range;
 use unicode_width::UnicodeWidthStr;
@@ -42,15 +42,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if strips.is_empty() || inner.height <= FRAME {
         return;
     }
-    let longest = (0..count).map(|slave| view.slave(slave).width()).max();
-    let name = longest.unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
-    let left = inner.x + name as u16;
-    let room = usize::from(inner.right().saturating_sub(left));
-    let columns = columns(strips, view.cursor, left, room);
-    let top = selected
-        .saturating_sub(rows / 2)
-        .min(count.saturating_sub(rows));
-    let shown = top..(top + rows).min(count);
+    let (left, columns) = visible(inner, view);
+    let name = usize::from(left - inner.x);
+    let shown = rows_shown(rows, selected, count);
     let nodes = inner.y + 3;
     let below = nodes + shown.len() as u16;
 
@@ -95,6 +89,47 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     for column in &columns {
         bracket(buffer, inner, below + 1, column, &columns, app, view);
     }
+}
+
+/// Where the first column stands, and the iterations that are visible.
+fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
+    let names = (0..view.model.contacts.len()).map(|slave| view.slave(slave).width());
+    let name = names.max().unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
+    let left = inner.x + name as u16;
+    let room = usize::from(inner.right().saturating_sub(left));
+    (left, columns(view.strips, view.cursor, left, room))
+}
+
+/// The slave nodes that are visible, where there is room for so many.
+fn rows_shown(rows: usize, selected: usize, count: usize) -> Range<usize> {
+    let top = selected
+        .saturating_sub(rows / 2)
+        .min(count.saturating_sub(rows));
+    top..(top + rows).min(count)
+}
+
+/// What is inside the frame, where there is anything.
+fn inside(area: Rect, view: &View) -> Option<Rect> {
+    let inner = area.inner(Margin::new(1, 1));
+    (!view.strips.is_empty() && inner.height > FRAME).then_some(inner)
+}
+
+/// The step of the branch in whose column a place of the screen is.
+pub fn step_at(area: Rect, view: &View, at: Position) -> Option<usize> {
+    let inner = inside(area, view).filter(|inner| inner.contains(at))?;
+    let (_, columns) = visible(inner, view);
+    let column = columns.into_iter().find(|column| column.x == at.x);
+    column.map(|column| column.at)
+}
+
+/// The slave node in whose row a place of the screen is.
+pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
+    let inner = inside(area, view).filter(|inner| inner.contains(at))?;
+    let count = view.model.contacts.len();
+    let rows = usize::from(inner.height - FRAME);
+    let selected = app.selected.min(count.saturating_sub(1));
+    let row = usize::from(at.y).checked_sub(usize::from(inner.y) + 3)?;
+    rows_shown(rows, selected, count).nth(row)
 }
 
 fn title(view: &View) -> String {

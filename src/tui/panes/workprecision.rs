@@ -1,12 +1,12 @@
 //! The work-precision page: a chart, measured just now or read from a table (`stickslip chart --csv`), drawn in the
-//! terminal, error over cost in decades.
+//! terminal, error over cost, both in powers of ten.
 //!
 //! Each run is its series' letter, a capital where no other run beats it in both; failures stand as ✗ on a rail above. One
 //! run is selected, and told in full below.
 
 use crate::explain::number;
-use crate::study::precision::{Point, Precision};
-use crate::study::precision_figure::{Decades, NOTHING, power};
+use crate::study::log_axis::{LogAxis, written};
+use crate::study::precision::{Point, Precision, ROUND_OFF};
 use crate::tui::chartframe::ChartFrame;
 use crate::tui::chartpage::ChartPage;
 use crate::tui::paint;
@@ -77,28 +77,32 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
 fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
     let chart = page.shown();
     let cost = |p: &Point| page.cost.of(p);
-    let x = Decades::of(chart.points.iter().map(cost));
-    let y = Decades::of(
+    let x = LogAxis::of(chart.points.iter().map(cost));
+    let y = LogAxis::of(
         chart
             .points
             .iter()
-            .filter_map(|p| Some(p.error?.max(NOTHING))),
+            .filter_map(|p| Some(p.error?.max(ROUND_OFF))),
     );
     let column = |value: f64| plot.x + (x.part(value) * f64::from(plot.width - 1)).round() as u16;
     let row = |error: f64| {
-        let part = 1.0 - y.part(error.max(NOTHING));
+        let part = 1.0 - y.part(error.max(ROUND_OFF));
         plot.y + (part * f64::from(plot.height - 1)).round() as u16
     };
     let frame = ChartFrame::around(plot, LEFT);
-    for decade in y.low..=y.high {
-        let at = row(10f64.powi(decade));
-        frame.tick(buffer, at - plot.y, &power(decade), theme.faint);
+    for value in y.ticks(usize::from(plot.height).div_ceil(2)) {
+        let words = written(value);
+        frame.tick(buffer, row(value) - plot.y, &words, theme.faint);
     }
-    for decade in x.low..=x.high {
-        let (at, words) = (column(10f64.powi(decade)), power(decade));
+    let mut free = 0;
+    for value in x.ticks(usize::from(plot.width) / 9) {
+        let (at, words) = (column(value), written(value));
         let left = at.saturating_sub(words.len() as u16 / 2);
         let left = left.min(plot.right().saturating_sub(words.len() as u16));
-        frame.below(buffer, left, &words, theme.faint);
+        if left >= free {
+            frame.below(buffer, left, &words, theme.faint);
+            free = left + words.len() as u16 + 1;
+        }
     }
     let mut put = |x: u16, y: u16, text: &str, style: Style| {
         buffer.set_string(x, y, text, style);
@@ -165,6 +169,7 @@ fn told(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
         point.name
     );
     let error = match (point.error, &point.failed) {
+        (Some(error), _) if point.is_round_off() => format!("error {error:.3e} (round-off)"),
         (Some(error), _) => format!("error {error:.3e}"),
         (None, Some(why)) => format!("✗ {why}"),
         (None, None) => "the reference".to_owned(),

@@ -26,6 +26,7 @@ use crate::interface::trials::Trials;
 use crate::linalg::DenseFactors;
 use crate::model::InitialState;
 use crate::model::{Mode, Model, Settings};
+use crate::scene::siconos::Friction2d;
 use crate::scene::{Scene, limits};
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
@@ -70,6 +71,9 @@ pub enum NoExport {
         /// What its matrix would take, in units of 2^20 bytes.
         mebibytes: usize,
     },
+    /// The form of Siconos has friction coefficients only.
+    #[error("{0} has cohesion, and the form of Siconos knows none; a .ron file has it")]
+    Cohesive(String),
     /// Why no matrix says what the scene says.
     #[error("the problem cannot be written as a matrix: {0}")]
     NoMatrix(String),
@@ -249,15 +253,7 @@ fn text(
     title: String,
     mut head: Vec<String>,
 ) -> Result<String, NoExport> {
-    let carried: Vec<&str> = problem
-        .nodes
-        .iter()
-        .filter(|node| node.moves() != [true; 2])
-        .map(|node| names::slave(model, node.slave))
-        .collect();
-    if !carried.is_empty() {
-        return Err(NoExport::Carried(carried.join(", ")));
-    }
+    unsupported(model, problem)?;
     let count = problem.nodes.len();
     let mut problem = problem.clone();
     for node in &mut problem.nodes {
@@ -316,6 +312,55 @@ fn text(
         }
     }
     Err(NoExport::NoMatrix(refused.join("; ")))
+}
+
+/// A frozen problem in the form of Siconos, its nodes as they stand, less those that no file can have ([`writable`]):
+/// `q` has the gaps, and what was slipped before, so that `u` are the gaps and the slips of the whole increment.
+///
+/// # Errors
+/// Why there is none: that form knows a compliance only, and no cohesion.
+pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, NoExport> {
+    let here = writable(problem);
+    if here.is_empty() {
+        return Err(NoExport::NoInterface);
+    }
+    let problem = problem.reduced(&here).ok_or(NoExport::Singular)?;
+    unsupported(model, &problem)?;
+    let cohesive = problem.nodes.iter().find(|n| n.friction.cohesion != 0.0);
+    if let Some(node) = cohesive {
+        let name = names::slave(model, node.slave).to_owned();
+        return Err(NoExport::Cohesive(name));
+    }
+    let none = || NoExport::NoMatrix("some motion is resisted by nothing".to_owned());
+    let (matrix, mut q, _) = compliance(&problem).ok_or_else(none)?;
+    let Matrix::Compliance(w) = matrix else {
+        return Err(none());
+    };
+    for (pair, node) in q.chunks_exact_mut(2).zip(&problem.nodes) {
+        pair[0] += node.kinematics.map_or(0.0, |k| k.gap);
+        // Slip is that of the master against the slave; u is the slave's.
+        pair[1] -= node.state.slipped(&problem.settings);
+    }
+    let mu = problem.nodes.iter().map(|n| n.friction.coefficient());
+    Ok(Friction2d {
+        w,
+        q,
+        mu: mu.collect(),
+    })
+}
+
+/// Refuses nodes whose forces a support carries.
+fn unsupported(model: &Model, problem: &InterfaceProblem) -> Result<(), NoExport> {
+    let carried: Vec<&str> = problem
+        .nodes
+        .iter()
+        .filter(|node| node.moves() != [true; 2])
+        .map(|node| names::slave(model, node.slave))
+        .collect();
+    match carried.is_empty() {
+        true => Ok(()),
+        false => Err(NoExport::Carried(carried.join(", "))),
+    }
 }
 
 /// A contact as it stands.

@@ -1,0 +1,57 @@
+//! When an action can be done: at once, or only while the session rests.
+
+use super::meaning::{Action, Page, Question, Ui};
+use crate::record::command::Command;
+
+impl Action {
+    /// Whether an action asks something of the session, or changes it.
+    pub fn asks(&self) -> bool {
+        match self {
+            Action::Session(_) => true,
+            Action::Ui(ui) => matches!(
+                ui,
+                Ui::Repeat
+                    | Ui::Page(Page::Diagnosis | Page::Remedies)
+                    | Ui::StartFrom(_)
+                    | Ui::Apply(_)
+                    | Ui::Chart(_)
+                    | Ui::Open(_)
+                    | Ui::Lesson(_)
+                    | Ui::On
+                    | Ui::Answer(_)
+                    | Ui::Predict(_)
+                    | Ui::Ask(Question::Mode | Question::Increment | Question::Answer)
+            ),
+        }
+    }
+
+    /// Whether an action means the same before another scene is shown and after.
+    pub fn outlives_the_scene(&self) -> bool {
+        match self {
+            Action::Session(command) => matches!(command, Command::Journal(None)),
+            Action::Ui(ui) => matches!(
+                ui,
+                Ui::NextPane
+                    | Ui::PreviousPane
+                    | Ui::Zoom
+                    | Ui::Explain
+                    | Ui::Page(Page::Timeline)
+                    | Ui::Sort(_)
+                    | Ui::SortBackward
+                    | Ui::Filter(_)
+                    | Ui::Ask(Question::Node | Question::Break | Question::Lesson)
+                    | Ui::CommandLine
+                    | Ui::Help
+                    | Ui::Keys
+                    | Ui::Colours(_)
+                    | Ui::Mouse(_)
+                    | Ui::Manual(_)
+                    | Ui::Cancel
+                    | Ui::Interrupt
+                    | Ui::Redraw
+                    | Ui::Suspend
+                    | Ui::Quit
+            ),
+        }
+    }
+}

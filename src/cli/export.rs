@@ -1,0 +1,313 @@
+//! `stickslip export INPUT -o FILE`: pictures and other files of what is there, the kind by the extension
+//! ([`crate::record::export`]).
+
+use super::base::{Error, Exit, SetArgs, tell};
+use super::interrupt::Interrupt;
+use super::place::{At, seek, tell_missed};
+use crate::explain::{names, report};
+use crate::format::kind::FileKind;
+use crate::history::strip::Strip;
+use crate::outside::files::{self, Output};
+use crate::outside::input;
+use crate::record::export::shown::{COLUMNS, Shown};
+use crate::record::export::{self, Kind, MadeOf, Origin};
+use crate::record::journal::Record;
+use crate::record::snapshot::{Applied, Snapshot};
+use crate::scene::Scene;
+use crate::step::drive::{RunEnd, Until};
+use crate::step::event::{Failure, Position};
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
+use crate::tui::cast;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+.svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline.
+.ron: the scene as it was opened; with --frozen the interface problem that is solved next, as a scene of its own.
+.dat: that interface problem in the form of Siconos.
+.cast: a journal as a film for asciinema.
+
+A scene is taken at its end, or where it fails. Exit codes: 0 the file was written, though the scene may have failed;
+2 bad input or usage; 3 --at is not reached, or no file can say what is asked for.")]
+pub struct Args {
+    /// A scene file, the name of a built-in scene, a snapshot or a journal
+    #[arg(value_name = "SCENE|SNAPSHOT|JOURNAL")]
+    input: String,
+    #[command(flatten)]
+    set: SetArgs,
+    /// Where to; its extension says what is made
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// After which minor iteration; without MINOR at the end of the major, without MAJOR at the end of the increment
+    /// [default: at the end of the history, or where it fails]
+    #[arg(long, value_name = "INC[.MAJOR[.MINOR]]")]
+    at: Option<At>,
+    /// Freezes the interface problem, and writes that as a scene of its own
+    #[arg(long)]
+    frozen: bool,
+    /// Overwrites a file that exists
+    #[arg(long)]
+    force: bool,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let interrupt = Interrupt::listen();
+    let usage = |why: String| Error::Usage(why);
+    let kind = export::kind(&args.output).map_err(|e| usage(e.to_string()))?;
+    if args.frozen && !kind.may_be_frozen {
+        let told = format!(
+            "a .{} file is of no frozen problem; .ron and .dat are",
+            kind.extension
+        );
+        return Err(usage(told));
+    }
+    // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
+    drop(Output::create(&args.output, args.force)?);
+    let bytes = match kind.made_of {
+        MadeOf::Journal => film(args)?,
+        MadeOf::State(_) => match state(args, kind, &interrupt)? {
+            Ok(bytes) => bytes,
+            Err(exit) => return Ok(exit),
+        },
+    };
+    files::write(&args.output, &bytes, args.force)?;
+    tell(&format!("wrote {}", args.output.display()));
+    Ok(Exit::Good)
+}
+
+/// What the input is, where it is a file of ours; else a scene.
+fn input_kind(input: &str) -> FileKind {
+    /// Bytes that tell snapshots and journals from scenes.
+    const READ_TO_TELL: u64 = 4096;
+    let path = Path::new(input);
+    if !path.is_file() || !Snapshot::is_one(path) {
+        return FileKind::Scene;
+    }
+    let start = input::start(path, READ_TO_TELL).unwrap_or_default();
+    match String::from_utf8_lossy(&start).contains("began:") {
+        true => FileKind::Journal,
+        false => FileKind::Snapshot,
+    }
+}
+
+/// The film of a journal.
+fn film(args: &Args) -> Result<Vec<u8>, Error> {
+    if input_kind(&args.input) != FileKind::Journal {
+        return Err(Error::Usage(format!(
+            "{}: a .cast is made of a journal, which the debugger keeps (:journal tells where); this is none",
+            args.input
+        )));
+    }
+    scene_only(args, "a journal is shown as it was kept")?;
+    let record = Record::read(Path::new(&args.input))?;
+    Ok(cast::film(&record)?.into_bytes())
+}
+
+/// Refuses what only concerns scenes.
+fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
+    let given = match (args.set.set.is_empty(), args.at) {
+        (true, None) => return Ok(()),
+        (false, _) => "--set",
+        (true, Some(_)) => "--at",
+    };
+    Err(Error::Usage(format!(
+        "{}: {why}; {given} is for scenes",
+        args.input
+    )))
+}
+
+/// A scene, and of a snapshot what was done to it, and how far.
+struct Course {
+    scene: Scene,
+    applied: Vec<Applied>,
+    steps: Option<u64>,
+}
+
+fn open(args: &Args) -> Result<Course, Error> {
+    match input_kind(&args.input) {
+        FileKind::Snapshot => {
+            scene_only(args, "a snapshot is taken as it was recorded")?;
+            let snapshot = Snapshot::read(Path::new(&args.input))?;
+            Ok(Course {
+                scene: Scene::from_spec(&snapshot.name, snapshot.scene)?,
+                applied: snapshot.interventions,
+                steps: Some(snapshot.steps),
+            })
+        }
+        FileKind::Journal => {
+            let name = &args.input;
+            Err(Error::Usage(format!(
+                "{name}: this is a journal, and a .cast is made of one; `w` in the debugger (`stickslip resume {name}`) \
+                 writes a snapshot of what it shows"
+            )))
+        }
+        _ => Ok(Course {
+            scene: Scene::open(&args.input, &args.set.set)?,
+            applied: Vec::new(),
+            steps: None,
+        }),
+    }
+}
+
+/// What was seen on the way.
+struct Seen {
+    strips: Vec<Strip>,
+    last_major: State,
+}
+
+impl Seen {
+    fn at_start(stepper: &Stepper) -> Seen {
+        let state = stepper.state();
+        Seen {
+            strips: vec![Strip::of(stepper.model(), state, None, None, 0.0)],
+            last_major: state.clone(),
+        }
+    }
+
+    fn see(&mut self, stepper: &Stepper) {
+        let (state, event) = (stepper.state(), stepper.event());
+        let strip = Strip::of(stepper.model(), state, Some(event), self.strips.last(), 0.0);
+        self.strips.push(strip);
+        // A timeline shows the last ones, and says how many there were only if that is little.
+        if self.strips.len() > 64 * COLUMNS {
+            self.strips.drain(..32 * COLUMNS);
+        }
+        if state.next.minor == 1 && state.status == Status::Running {
+            self.last_major = state.clone();
+        }
+    }
+}
+
+/// How a run ended.
+enum Ended {
+    There(String),
+    Not(Exit),
+}
+
+/// The bytes of a file of a state, or with which code to end where there are none.
+fn state(args: &Args, kind: &Kind, interrupt: &Interrupt) -> Result<Result<Vec<u8>, Exit>, Error> {
+    let MadeOf::State(make) = kind.made_of else {
+        return Ok(Err(Exit::Bad));
+    };
+    let course = open(args)?;
+    let scene = &course.scene;
+    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    let mut seen = Seen::at_start(&stepper);
+    // The scene's own file needs no solve.
+    let solves = kind.extension != "ron" || args.frozen;
+    let ended = match solves {
+        true => drive(&course, args.at, &mut stepper, &mut seen, interrupt)?,
+        false => Ended::There(String::new()),
+    };
+    let ended = match ended {
+        Ended::There(ended) => ended,
+        Ended::Not(exit) => return Ok(Err(exit)),
+    };
+    let solved = seen.strips.len() > 1;
+    let event = solved.then(|| stepper.event().clone());
+    let state = stepper.state().clone();
+    let at = event.as_ref().map_or(state.next, |event| event.position);
+    let origin = origin(&course, at, &state);
+    let shown = Shown {
+        scene,
+        origin: &origin,
+        state: &state,
+        event: event.as_ref(),
+        strips: &seen.strips,
+        last_major: Some(&seen.last_major),
+        ended,
+        frozen: args.frozen,
+    };
+    match make(&shown, &mut stepper) {
+        Ok(bytes) => Ok(Ok(bytes)),
+        Err(why) => {
+            tell(&format!("{}: {why}", scene.name));
+            Ok(Err(Exit::Unconverged))
+        }
+    }
+}
+
+fn origin(course: &Course, at: Position, state: &State) -> Origin {
+    let mut origin = Origin::of(&course.scene, at, state.target);
+    let model = &course.scene.model;
+    let words = course.applied.iter();
+    let words = words.map(|a| report::intervention(model, &a.intervention));
+    origin.changes.extend(words);
+    origin
+}
+
+/// Goes where the state is that is wanted.
+fn drive(
+    course: &Course,
+    at: Option<At>,
+    stepper: &mut Stepper,
+    seen: &mut Seen,
+    interrupt: &Interrupt,
+) -> Result<Ended, Error> {
+    let (scene, name) = (&course.scene, &course.scene.name);
+    if let Some(at) = at {
+        let found = seek(stepper, at, interrupt, &mut |stepper| seen.see(stepper));
+        return Ok(match found {
+            Ok(_) => Ended::There(String::new()),
+            Err(missed) => Ended::Not(tell_missed(scene, stepper, at, missed)),
+        });
+    }
+    let mut applied = course.applied.iter().peekable();
+    let mut intervene = |stepper: &mut Stepper, done: u64| {
+        while let Some(next) = applied.next_if(|a| a.step == done) {
+            stepper
+                .intervene(&next.intervention)
+                .map_err(|e| Error::Usage(format!("{name}: after step {done}: {e}")))?;
+        }
+        Ok(())
+    };
+    intervene(stepper, 0)?;
+    if course.steps == Some(0) {
+        return Ok(Ended::There(String::new()));
+    }
+    let came = || interrupt.came();
+    let until = Until::end().interrupted_by(&came);
+    let until = match course.steps {
+        Some(steps) => until.minors(steps).past_failures(),
+        None => until,
+    };
+    let mut done = 0;
+    let end = stepper.drive(until, |stepper| {
+        done += 1;
+        seen.see(stepper);
+        match intervene(stepper, done) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => ControlFlow::Break(error),
+        }
+    });
+    Ok(match end {
+        RunEnd::Stopped(error) => return Err(error),
+        RunEnd::Interrupted => {
+            tell(&format!("{name}: interrupted"));
+            Ended::Not(Exit::Interrupted)
+        }
+        RunEnd::Finished | RunEnd::Spent => match &stepper.state().status {
+            Status::Failed(failure) => {
+                Ended::There(failed(scene, stepper, &failure.clone(), false))
+            }
+            _ => Ended::There(String::new()),
+        },
+        RunEnd::Failed(failure) => Ended::There(failed(scene, stepper, &failure, true)),
+    })
+}
+
+/// The failure of the last minor iteration in words; told, too, where it was not asked for.
+fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, told: bool) -> String {
+    let words = report::describe_failure(&scene.model, failure);
+    if told {
+        let at = names::position(stepper.event().position);
+        let name = &scene.name;
+        tell(&format!(
+            "{name}: {at}: {words}; this is the state that is exported"
+        ));
+    }
+    words
+}

@@ -1,0 +1,170 @@
+//! Places in a run, as `--at` names them.
+
+use super::base::{Exit, NoValue, tell};
+use super::interrupt::Interrupt;
+use crate::explain::{names, report};
+use crate::scene::Scene;
+use crate::step::drive::{RunEnd, Until};
+use crate::step::event::{Event, Failure, Outcome};
+use crate::step::stepper::Stepper;
+use std::fmt;
+use std::ops::ControlFlow;
+use std::str::FromStr;
+
+/// A place in a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct At {
+    increment: u32,
+    major: Option<u32>,
+    minor: Option<u32>,
+}
+
+impl FromStr for At {
+    type Err = NoValue;
+
+    fn from_str(text: &str) -> Result<At, NoValue> {
+        let wrong = "a place is INC, INC.MAJOR or INC.MAJOR.MINOR, whole numbers from 1 on";
+        let mut numbers = Vec::new();
+        for part in text.split('.') {
+            match part.parse::<u32>() {
+                Ok(number) if number > 0 => numbers.push(number),
+                _ => return Err(NoValue::new(wrong)),
+            }
+        }
+        match numbers[..] {
+            [increment, ref rest @ ..] if rest.len() <= 2 => Ok(At {
+                increment,
+                major: rest.first().copied(),
+                minor: rest.get(1).copied(),
+            }),
+            _ => Err(NoValue::new(wrong)),
+        }
+    }
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.increment)?;
+        for part in [self.major, self.minor].into_iter().flatten() {
+            write!(f, ".{part}")?;
+        }
+        Ok(())
+    }
+}
+
+impl At {
+    /// Whether the place is the end of this minor iteration.
+    fn is(&self, event: &Event) -> bool {
+        let at = event.position;
+        let here = at.increment == self.increment && self.major.is_none_or(|m| m == at.major);
+        here && match (self.major, self.minor) {
+            (None, _) => matches!(event.outcome, Outcome::Increment { .. }),
+            (_, None) => ends_major(&event.outcome),
+            (_, Some(minor)) => minor == at.minor,
+        }
+    }
+
+    /// Whether no later minor iteration can be the place.
+    fn is_past(&self, event: &Event) -> bool {
+        let at = event.position;
+        at.increment == self.increment
+            && (matches!(event.outcome, Outcome::Increment { .. })
+                || (Some(at.major) == self.major && ends_major(&event.outcome)))
+    }
+}
+
+fn ends_major(outcome: &Outcome) -> bool {
+    matches!(
+        outcome,
+        Outcome::Major { .. }
+            | Outcome::Refused { .. }
+            | Outcome::Increment { .. }
+            | Outcome::Failed(
+                Failure::MajorLimit { .. }
+                    | Failure::MajorCycle(_)
+                    | Failure::Diverged { .. }
+                    | Failure::Refused(_)
+            )
+    )
+}
+
+/// Why a place was not reached.
+pub enum Missed {
+    Failed(Failure),
+    Interrupted,
+    /// There is no such place in this run.
+    Absent,
+}
+
+/// Steps to a place, with a look at each minor iteration; the number of them that it took.
+pub fn seek(
+    stepper: &mut Stepper,
+    at: At,
+    interrupt: &Interrupt,
+    see: &mut dyn FnMut(&Stepper),
+) -> Result<u64, Missed> {
+    let mut steps = 0;
+    let end = stepper.drive(Until::end(), |stepper| {
+        steps += 1;
+        see(stepper);
+        if interrupt.came() {
+            return ControlFlow::Break(Err(Missed::Interrupted));
+        }
+        let event = stepper.event();
+        let failed = matches!(event.outcome, Outcome::Failed(_));
+        if at.is(event) {
+            ControlFlow::Break(Ok(()))
+        } else if at.is_past(event) && !failed {
+            ControlFlow::Break(Err(Missed::Absent))
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    match end {
+        RunEnd::Stopped(place) => place.map(|()| steps),
+        RunEnd::Failed(failure) => Err(Missed::Failed(failure)),
+        RunEnd::Finished | RunEnd::Spent | RunEnd::Interrupted => Err(Missed::Absent),
+    }
+}
+
+pub fn tell_missed(scene: &Scene, stepper: &Stepper, at: At, missed: Missed) -> Exit {
+    let (event, name) = (stepper.event(), &scene.name);
+    match missed {
+        Missed::Failed(failure) => {
+            let told = report::failure(
+                &scene.model,
+                stepper.state(),
+                event.position,
+                event.load_factor,
+                &failure,
+            );
+            tell(&format!("{name}: {at} is not reached: {told}"));
+            Exit::Unconverged
+        }
+        Missed::Interrupted => {
+            let reached = names::position(event.position);
+            tell(&format!("{name}: interrupted after {reached}"));
+            Exit::Interrupted
+        }
+        Missed::Absent => {
+            let reached = report::outcome(&scene.model, event);
+            tell(&format!("{name}: there is no {at}: {reached}"));
+            Exit::Bad
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_read_as_they_print() {
+        for text in ["7", "12.2", "12.2.3"] {
+            assert_eq!(text.parse::<At>().unwrap().to_string(), text);
+        }
+        for text in ["", "0", "1.0", "1.2.3.4", "1.", "-1", "a", "99999999999"] {
+            assert!(text.parse::<At>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! What to do about a failure: the one place from which `run`'s message, the diagnosis, a session's replies (and so its
+//! story) and the list of remedies take it.
+//!
+//! Advice is what can help against a failure of this kind, best first by what is known of the kind alone. The diagnosis
+//! tries what can be tried ([`super::examination`]), and puts first what did help.
+
+use super::remedy::{Kind, Remedy};
+use crate::linear::singular::Singular;
+use crate::model::{AtCycle, BoundUpdate, Geometry, Jumps, Mode, Model, ResidualMethod, Strategy};
+use crate::step::event::Failure;
+use crate::step::state::State;
+
+/// Most pieces of advice in a message of one line.
+const IN_A_LINE: usize = 3;
+
+/// Something to do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Advice {
+    /// It can be tried from the state.
+    Remedy(Remedy),
+    /// It is done in the scene's file, or by hand.
+    ByHand(&'static str),
+}
+
+/// What to do about a failure, best first.
+pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
+    let remedies = kinds(state, failure)
+        .into_iter()
+        .filter_map(|kind| Remedy::of(kind, model, state))
+        .map(Advice::Remedy);
+    let by_hand = by_hand(model, state, failure).iter().copied();
+    let by_hand = by_hand.map(Advice::ByHand);
+    // Nothing that can be tried does what a support, or another load, does.
+    let scene_first = matches!(
+        failure,
+        Failure::Singular(Singular::Rigid { .. })
+            | Failure::NoAnswer { .. }
+            | Failure::RoundOff { .. }
+            | Failure::OverConstrained { .. }
+            | Failure::Leapt { .. }
+    );
+    match scene_first {
+        true => by_hand.chain(remedies).collect(),
+        false => remedies.chain(by_hand).collect(),
+    }
+}
+
+/// The first of it, for a message of one line.
+pub fn in_a_line(model: &Model, state: &State, failure: &Failure) -> String {
+    let told = advice(model, state, failure);
+    let words = told.iter().filter_map(|advice| match advice {
+        Advice::ByHand(text) => Some((*text).to_owned()),
+        Advice::Remedy(remedy) => {
+            let option = remedy.how.option()?;
+            Some(format!("{} ({option})", remedy.label))
+        }
+    });
+    words.take(IN_A_LINE).collect::<Vec<_>>().join(", or ")
+}
+
+/// What can be tried, best first; what would change nothing is left out later.
+fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
+    let settings = &state.controls.settings;
+    let climbs = settings.strategy == Strategy::Ladder;
+    // The ladder has tried the halves itself.
+    let parts: &[Kind] = match climbs {
+        true => &[Kind::Part(0.37), Kind::Part(0.1)],
+        false => &[
+            Kind::Strategy(Strategy::Ladder),
+            Kind::Part(0.5),
+            Kind::Part(0.1),
+        ],
+    };
+    let mut all = Vec::new();
+    let mut add = |wanted: bool, kinds: &[Kind]| {
+        if wanted {
+            all.extend_from_slice(kinds);
+        }
+    };
+    let lags = settings.t_max == BoundUpdate::Lagged;
+    let frozen = settings.geometry == Geometry::Frozen;
+    match failure {
+        Failure::Cycle(_) => {
+            add(!climbs, &[Kind::Strategy(Strategy::Ladder)]);
+            add(lags, &[Kind::ConsistentLimit]);
+            add(settings.at_cycle != AtCycle::Damp, &[Kind::Damp]);
+            add(true, &[Kind::Part(0.5), Kind::Part(0.1)]);
+        }
+        Failure::MinorLimit { .. } => {
+            add(lags, &[Kind::ConsistentLimit]);
+            add(true, &[Kind::MoreMinors]);
+            add(true, parts);
+        }
+        Failure::MajorCycle(_) => {
+            add(frozen, &[Kind::ConsistentGeometry]);
+            add(true, parts);
+            add(true, &[Kind::TouchAtStart]);
+        }
+        Failure::MajorLimit { .. } => {
+            add(frozen, &[Kind::ConsistentGeometry]);
+            let accumulates = settings.residual == ResidualMethod::Accumulate;
+            add(accumulates, &[Kind::OtherResidual]);
+            add(true, &[Kind::MoreMajors]);
+            add(true, parts);
+        }
+        Failure::Singular(Singular::Rigid { .. }) => {
+            add(
+                true,
+                &[Kind::Start(Mode::Fixed), Kind::Start(Mode::Sliding)],
+            );
+        }
+        Failure::Singular(Singular::Unexplained) | Failure::Diverged { .. } => {
+            add(true, parts);
+        }
+        Failure::LadderEnded { .. } | Failure::NotFound(_) => {
+            add(true, parts);
+            let others = [Strategy::Newton, Strategy::Block];
+            add(climbs, &others.map(Kind::Strategy));
+        }
+        Failure::Refused(_) => {
+            add(true, parts);
+            add(true, &[Kind::TouchAtStart, Kind::ConsistentLimit]);
+        }
+        Failure::NoAnswer { .. }
+        | Failure::Leapt { .. }
+        | Failure::RoundOff { .. }
+        | Failure::OverConstrained { .. } => {}
+    }
+    all
+}
+
+/// What is done in the scene's file, or by hand.
+fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'static str] {
+    match failure {
+        Failure::Cycle(_) => &["the debugger, to force one of the nodes to its third mode (m)"],
+        Failure::MinorLimit { .. } => &["the debugger, to see which nodes still change (t)"],
+        Failure::MajorCycle(_) => &[
+            "a finer master, whose kinks are smaller (refine=2)",
+            "an arc where the kink is a corner of the body",
+        ],
+        Failure::MajorLimit { .. } => {
+            &["the debugger, to see which forces are left (the residuals' pane)"]
+        }
+        Failure::NoAnswer { .. } => &[
+            "other loads or friction",
+            "a prescribed displacement instead of a load",
+        ],
+        Failure::LadderEnded { .. } => &[
+            "a smaller history.least",
+            "the debugger, to see where it stands",
+        ],
+        Failure::NotFound(_) => &["the debugger, to see where it stands"],
+        Failure::Singular(Singular::Rigid { .. }) => {
+            match state.nodes.iter().any(|node| node.mode == Mode::Free) {
+                true => &[
+                    "a support against that motion",
+                    "slave nodes that start sliding or fixed (slaves, start)",
+                    "a prescribed displacement instead of the load, until there is a first touch",
+                ],
+                false => &[
+                    "a support against that motion",
+                    "slave nodes that start fixed (slaves, start)",
+                ],
+            }
+        }
+        Failure::Singular(Singular::Unexplained) => {
+            &["past a limit point, a prescribed displacement instead of the load"]
+        }
+        Failure::Diverged { .. } => &["the debugger, to see what moves"],
+        Failure::Refused(_) => &[
+            "a smaller history.least",
+            "another mesh of the surface (refine=2)",
+        ],
+        Failure::Leapt { .. } => match model.jumps {
+            Jumps::Stop => &[
+                "history.jumps=cut, to go on on the other branch",
+                "a prescribed displacement instead of the load",
+            ],
+            _ => &["a prescribed displacement instead of the load"],
+        },
+        Failure::RoundOff { .. } => &[
+            "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid",
+        ],
+        Failure::OverConstrained { .. } => &[
+            "to move the node out of the surface",
+            "to free its support",
+            "to turn the surface (reverse)",
+        ],
+    }
+}

@@ -1,0 +1,380 @@
+//! The page of the diagnosis: what happened, which nodes and where, why, what was tried, and what to do, best first.
+//!
+//! A state that failed is asked why it did; any other one, which states of the frozen problem that is solved next are
+//! consistent. What takes long (trials of remedies, the load up to which there is an answer) comes after what does not, so
+//! that a reader sees the page grow.
+
+use super::advice::{Advice, advice};
+use super::attempt::Attempt;
+use super::examination::{DONE, Examination, NOT_CONDENSED, frozen};
+use super::judged;
+use super::loose::loose;
+use super::majors;
+use super::names;
+use super::number::{four, plain};
+use super::reach::reach;
+use super::remedies::{self, Trial, TrialEnd, attempt};
+use super::remedy::{Kind, Remedy};
+use super::report::{describe_failure, sound};
+use crate::linear::norms::Norms;
+use crate::linear::singular::Singular;
+use crate::model::{Body, BodyKind, Model};
+use crate::step::event::Failure;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
+
+/// Most remedies that are tried for a page; the list of remedies tries all.
+const MOST_TRIED: usize = 6;
+
+/// Makes the page of a state. `tell` sees it grow; `None` where it was stopped.
+pub fn page(
+    stepper: &mut Stepper,
+    state: &State,
+    stop: &dyn Fn() -> bool,
+    tell: &mut dyn FnMut(&Examination),
+) -> Option<Examination> {
+    let Status::Failed(failure) = &state.status else {
+        return Some(match state.status {
+            Status::Finished => Examination {
+                lines: vec![DONE.into()],
+                ..Examination::default()
+            },
+            _ => frozen(stepper, state),
+        });
+    };
+    let mut page = Page::of(stepper, state, failure, stop);
+    tell(&page.shown("trying what helps …"));
+    let remedies = page.remedies(stepper.model(), state, failure);
+    for remedy in &remedies {
+        tell(&page.shown(&format!("trying {} …", remedy.label)));
+        let trial = attempt(stepper, state, remedy, stop)?;
+        page.trials.push((remedy.clone(), trial));
+    }
+    if page.asks_how_far(failure) {
+        tell(&page.shown("looking how far smaller steps come …"));
+        let reached = reach(stepper, state, stop)?;
+        let far = format!("how far: {}", reached.words(stepper.model(), failure));
+        page.facts.push(far);
+    }
+    Some(page.shown(""))
+}
+
+/// What a failure's page says without trying anything, as `run` prints it.
+pub fn facts(
+    stepper: &mut Stepper,
+    state: &State,
+    failure: &Failure,
+    stop: &dyn Fn() -> bool,
+) -> Vec<String> {
+    let page = Page::of(stepper, state, failure, stop);
+    let mut lines = page.facts;
+    lines.extend(page.found.lines);
+    lines
+}
+
+/// A page as it is made.
+struct Page {
+    what: Vec<String>,
+    /// Where and why.
+    facts: Vec<String>,
+    /// What is to be done in the file, or by hand.
+    by_hand: Vec<&'static str>,
+    /// What was tried.
+    trials: Vec<(Remedy, Trial)>,
+    /// The frozen problem, where it has something to say.
+    found: Examination,
+}
+
+impl Page {
+    fn of(
+        stepper: &mut Stepper,
+        state: &State,
+        failure: &Failure,
+        stop: &dyn Fn() -> bool,
+    ) -> Page {
+        let mut page = Page {
+            what: Vec::new(),
+            facts: Vec::new(),
+            by_hand: Vec::new(),
+            trials: Vec::new(),
+            found: Examination::default(),
+        };
+        page.explain(stepper, state, failure, stop);
+        let model = stepper.model();
+        for piece in advice(model, state, failure) {
+            if let Advice::ByHand(text) = piece {
+                page.by_hand.push(text);
+            }
+        }
+        page.what.push(format!(
+            "what: increment {} to load {}: {}",
+            state.next.increment,
+            plain(state.load_factor),
+            describe_failure(model, failure)
+        ));
+        page.what.push(format!("{}.", sound(state.next, state)));
+        page
+    }
+
+    /// Where and why, by the kind of failure.
+    fn explain(
+        &mut self,
+        stepper: &mut Stepper,
+        state: &State,
+        failure: &Failure,
+        stop: &dyn Fn() -> bool,
+    ) {
+        match failure {
+            Failure::Singular(Singular::Rigid { motions }) => {
+                let told = loose(stepper, state, motions);
+                self.facts.extend(told.lines);
+                self.found.arrows = told.arrows;
+            }
+            Failure::MajorCycle(round) => {
+                self.found.nodes = round.members.iter().map(|member| member.0).collect();
+                match Attempt::again(stepper, state, failure, stop) {
+                    Some(attempt) => {
+                        let words = majors::cycle_words(stepper.model(), &attempt, round);
+                        self.facts.extend(words);
+                    }
+                    None => self.not_again(),
+                }
+            }
+            Failure::MajorLimit { .. } => match Attempt::again(stepper, state, failure, stop) {
+                Some(attempt) => {
+                    let settings = &state.controls.settings;
+                    self.facts.extend(majors::limit_words(settings, &attempt));
+                }
+                None => self.not_again(),
+            },
+            Failure::Diverged { .. } => match Attempt::again(stepper, state, failure, stop) {
+                Some(attempt) => {
+                    let told = majors::flight_words(stepper.model(), state, &attempt);
+                    self.facts.extend(told);
+                }
+                None => self.not_again(),
+            },
+            Failure::Cycle(_) | Failure::MinorLimit { .. } | Failure::NotFound(_) => {
+                self.look_at_frozen(stepper, state);
+            }
+            Failure::NoAnswer { first, .. } => {
+                self.look_at_frozen(stepper, state);
+                if let Some(first) = first {
+                    self.explain_first(stepper.model(), first);
+                }
+            }
+            Failure::LadderEnded { first, .. } => {
+                self.explain_first(stepper.model(), first);
+                self.look_at_frozen(stepper, state);
+            }
+            Failure::Refused(found) => {
+                self.found.nodes.extend(found.slave);
+                let model = stepper.model();
+                self.facts.push(format!(
+                    "where: {}",
+                    judged::place(model, &model.places(&state.u), found)
+                ));
+                self.facts.push(format!(
+                    "why: the iterations have converged, and positions and forces are against a law all the same: {} is {:.1e}, {:.1e} is allowed",
+                    found.law.name(), found.amount, found.allowed
+                ));
+            }
+            Failure::OverConstrained { slave, .. } => {
+                self.found.nodes.push(*slave);
+                self.facts.extend(over_constrained(stepper, state, *slave));
+            }
+            Failure::Singular(Singular::Unexplained) => {
+                self.facts.push(unexplained(stepper.model()).into());
+            }
+            Failure::Leapt { motion, predicted } => {
+                self.facts.push(format!(
+                    "why: {:.1} times the motion that tangent and last increments predict, and the least increment still does it: between the two states lies a part of the path that this load does not hold in equilibrium",
+                    motion / predicted.max(f64::MIN_POSITIVE)
+                ));
+            }
+            Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
+        }
+    }
+
+    fn not_again(&mut self) {
+        self.facts.push("its attempt, made again from its start, does not end like this: something was changed by hand on the way".into());
+    }
+
+    /// What Table 2 ended with before the ladder went on.
+    fn explain_first(&mut self, model: &Model, first: &Failure) {
+        let members: &[(usize, Vec<crate::model::Mode>)] = match first {
+            Failure::Cycle(cycle) => &cycle.members,
+            _ => &[],
+        };
+        self.found
+            .nodes
+            .extend(members.iter().map(|member| member.0));
+        self.facts.push(format!(
+            "where: Table 2 ended so: {}",
+            describe_failure(model, first)
+        ));
+    }
+
+    /// The diagnosis of the frozen problem, or its census.
+    fn look_at_frozen(&mut self, stepper: &mut Stepper, state: &State) {
+        let arrows = std::mem::take(&mut self.found.arrows);
+        let nodes = std::mem::take(&mut self.found.nodes);
+        self.found = frozen(stepper, state);
+        self.found.arrows = arrows;
+        self.found.nodes.extend(nodes);
+        if self.found.lines == [NOT_CONDENSED] {
+            self.facts.append(&mut self.found.lines);
+        }
+    }
+
+    /// What is tried for the page: the consistent states, and what helps against a failure of the kind.
+    fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
+        let mut all = Remedy::answers(model, &self.found);
+        all.truncate(2);
+        all.extend(
+            advice(model, state, failure)
+                .into_iter()
+                .filter_map(|piece| match piece {
+                    Advice::Remedy(remedy) => Some(remedy),
+                    Advice::ByHand(_) => None,
+                }),
+        );
+        all.truncate(MOST_TRIED);
+        all
+    }
+
+    /// Whether it is worth while to look how far smaller steps come: not where a trial has come to the load.
+    fn asks_how_far(&self, failure: &Failure) -> bool {
+        let helped = self.trials.iter().any(|(_, trial)| helps(trial));
+        let can = !matches!(
+            failure,
+            Failure::Singular(Singular::Rigid { .. })
+                | Failure::RoundOff { .. }
+                | Failure::OverConstrained { .. }
+        );
+        can && !helped
+    }
+
+    /// The page as far as it is made.
+    fn shown(&self, going_on: &str) -> Examination {
+        let mut lines = self.what.clone();
+        let mut facts = self.facts.iter();
+        let mut details = Vec::new();
+        // Where and why come before what to do, all else after it.
+        for fact in facts.by_ref() {
+            match HEADS.iter().any(|head| fact.starts_with(head)) {
+                true => lines.push(fact.clone()),
+                false => details.push(fact.clone()),
+            }
+        }
+        let mut found = self.found.lines.iter();
+        lines.extend(found.by_ref().take(1).cloned());
+        lines.extend(self.to_do());
+        lines.extend(details);
+        lines.extend(found.cloned());
+        Examination {
+            lines,
+            fails: true,
+            going_on: going_on.to_owned(),
+            ..self.found.clone()
+        }
+    }
+
+    /// What to do, best first: what helped, what is done by hand, and what did not help.
+    fn to_do(&self) -> Vec<String> {
+        let mut trials: Vec<&(Remedy, Trial)> = self
+            .trials
+            .iter()
+            .filter(|(_, trial)| helps(trial))
+            .collect();
+        trials.sort_by_key(|(remedy, trial)| {
+            let answer = matches!(remedy.kind, Kind::Answer(_));
+            (!answer, trial.factorizations, trial.minors)
+        });
+        let helped = trials.iter().map(|(remedy, trial)| {
+            format!(
+                "{}: {} (tried: converged, {} minors)",
+                remedy.label,
+                remedy.how.typed(),
+                trial.minors
+            )
+        });
+        let by_hand = self.by_hand.iter().map(|text| (*text).to_owned());
+        let mut lines: Vec<String> = helped
+            .chain(by_hand)
+            .enumerate()
+            .map(|(k, text)| format!("do: {}. {text}", k + 1))
+            .collect();
+        let vain: Vec<String> = self
+            .trials
+            .iter()
+            .filter(|(_, trial)| !helps(trial))
+            .map(|(remedy, trial)| {
+                format!("{} ({})", remedy.label, remedies::end_words(&trial.end))
+            })
+            .collect();
+        if !vain.is_empty() {
+            lines.push(format!("tried in vain: {}", vain.join(", ")));
+        }
+        lines
+    }
+}
+
+/// Why equations may be singular although no rigid motion of a body is free.
+fn unexplained(model: &Model) -> &'static str {
+    let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
+    match model.bodies.iter().any(given) {
+        true => {
+            "why: the tangent has a direction in which the forces do not change: the matrix of a body is singular and no contact makes up for it, or the load has come to its largest value on this branch (a limit point)"
+        }
+        false => {
+            "why: the tangent has a direction in which the forces do not change, with modes that hold every body: the load has come to its largest value on this branch (a limit point), or contacts repeat what supports do"
+        }
+    }
+}
+
+/// Where a node stands that can neither move nor have its surface moved.
+fn over_constrained(stepper: &mut Stepper, state: &State, slave: usize) -> Option<String> {
+    stepper.restore(state);
+    let over = stepper.kinematics(slave)?;
+    let model = stepper.model();
+    let contact = model.contacts.get(slave)?;
+    let [x, y] = model.place(&state.u, contact.node).map(four);
+    let [n_x, n_y] = over.normal.map(four);
+    Some(format!(
+        "where: {} at ({x}, {y}), its gap {} along the normal ({n_x}, {n_y}); supports or prescribed motions hold it along that normal, and what it touches is rigid",
+        names::slave(model, slave),
+        four(over.gap)
+    ))
+}
+
+/// Which body has the stiffest forces.
+fn stiffest(model: &Model) -> Option<String> {
+    let stiffness = |body: &Body| match &body.kind {
+        BodyKind::Beam(beam) => Some(("EA", beam.ea)),
+        BodyKind::Solid(solid) => {
+            let largest = solid.materials.iter().map(|m| m.young).fold(0.0, f64::max);
+            Some(("E", largest))
+        }
+        BodyKind::Linear(_) => None,
+    };
+    let all = model
+        .bodies
+        .iter()
+        .filter_map(|body| Some((body, stiffness(body)?)));
+    let (body, (word, value)) = all.max_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
+    Some(format!(
+        "why: body {} is the stiffest, {word} = {}: its forces are large numbers that cancel, and what their last digits leave is more than {:.0e} of the loads",
+        body.name,
+        four(value),
+        Norms::LOUDEST
+    ))
+}
+
+/// Beginnings of lines that come before what to do.
+const HEADS: [&str; 5] = ["where:", "why:", "what would", "since when:", "how far:"];
+
+/// Whether a trial came to the load with all laws kept.
+fn helps(trial: &Trial) -> bool {
+    trial.end == TrialEnd::Converged && trial.left.is_none_or(|left| left.held == 0)
+}

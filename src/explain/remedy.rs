@@ -1,0 +1,262 @@
+//! What can be tried against an increment that fails: every remedy by its full name, with what is typed to take it.
+//!
+//! A remedy is what is done before the first minor iteration (a consistent state of the census, a strategy or another
+//! setting, another increment, other modes to start from), and perhaps hysteresis, which corrects the verdict after each.
+//! [`super::remedies`] tries them; [`super::advice`] says which of them help against what.
+
+use super::examination::Examination;
+use super::names;
+use super::number;
+use crate::contact::projection::projection_at;
+use crate::model::{
+    AtCycle, BoundUpdate, Geometry, Mode, Model, ResidualMethod, Settings, Sticking, Strategy,
+    Touch,
+};
+use crate::step::intervene::{Intervention, Start};
+use crate::step::state::State;
+
+/// Limits of iterations are raised this many times.
+const MORE: u32 = 10;
+
+/// Something that can be tried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// Start from the consistent state of this number in the census.
+    Answer(usize),
+    /// Another strategy.
+    Strategy(Strategy),
+    /// T_max in the matrix.
+    ConsistentLimit,
+    /// The tangent knows how the geometry changes.
+    ConsistentGeometry,
+    /// The other residual method.
+    OtherResidual,
+    /// What a fixed node holds on to, the other way.
+    OtherSticking,
+    /// A node that touches is held where it was.
+    TouchAtStart,
+    /// A cycle aims at half the load first.
+    Damp,
+    /// This part of the increment.
+    Part(f64),
+    /// More minor iterations.
+    MoreMinors,
+    /// More major iterations.
+    MoreMajors,
+    /// The nodes that stand on a surface start in this mode; where none does, the one that is nearest to its surface.
+    Start(Mode),
+    /// A node keeps its mode while it misses its condition by little.
+    Hysteresis,
+}
+
+/// What is typed to take a remedy.
+#[derive(Debug, Clone, PartialEq)]
+pub enum How {
+    /// A setting, by path and value.
+    Set(&'static str, String),
+    /// An increment size.
+    Increment(f64),
+    /// A consistent state of the census, by its number from 0.
+    StartFrom(usize),
+    /// Only from the list of remedies.
+    Listed,
+}
+
+impl How {
+    /// What is typed in the debugger.
+    pub fn typed(&self) -> String {
+        match self {
+            How::Set(path, value) => format!(":set {path} {value}"),
+            How::Increment(size) => format!(":increment {}", number::plain(*size)),
+            How::StartFrom(answer) => format!(":start-from {}", answer + 1),
+            How::Listed => "r, then Enter on it".into(),
+        }
+    }
+
+    /// What the command line's `--set` takes; `None` where that cannot do it.
+    pub fn option(&self) -> Option<String> {
+        match self {
+            How::Set(path, value) => Some(format!("{path}={value}")),
+            How::Increment(size) => Some(format!("history.increment={}", number::plain(*size))),
+            How::StartFrom(_) | How::Listed => None,
+        }
+    }
+}
+
+/// Something to try from a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remedy {
+    /// What kind it is.
+    pub kind: Kind,
+    /// In a few words; the name of its branch.
+    pub label: String,
+    /// What is typed to take it.
+    pub how: How,
+    /// What is done before the first minor iteration.
+    pub first: Vec<Intervention>,
+}
+
+impl Remedy {
+    /// The remedy of a kind at a state; `None` where it would change nothing, or there is nothing to start from.
+    pub fn of(kind: Kind, model: &Model, state: &State) -> Option<Remedy> {
+        let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {
+            kind,
+            label: label.to_owned(),
+            how,
+            first,
+        };
+        match kind {
+            Kind::Answer(_) => None,
+            Kind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
+            Kind::Part(part) => {
+                let size = state.controls.increment * part;
+                let label = match part {
+                    0.5 => "half the increment".to_owned(),
+                    0.1 => "a tenth of the increment".to_owned(),
+                    part => format!("{part} of the increment"),
+                };
+                let first = vec![Intervention::Increment(size)];
+                Some(remedy(&label, How::Increment(size), first))
+            }
+            Kind::Start(mode) => {
+                let first = starts(model, state, mode);
+                let label = format!("start what touches {}", names::mode(mode));
+                (!first.is_empty()).then(|| remedy(&label, How::Listed, first))
+            }
+            _ => {
+                let mut settings = state.controls.settings;
+                let (label, path, value) = change(kind, &mut settings)?;
+                let first = vec![Intervention::Settings(settings)];
+                (settings != state.controls.settings)
+                    .then(|| remedy(label, How::Set(path, value), first))
+            }
+        }
+    }
+
+    /// Starting from each consistent state that was found.
+    pub fn answers(model: &Model, found: &Examination) -> Vec<Remedy> {
+        let count = found.census.as_ref().map_or(0, |c| c.answers.len());
+        let answer = |number: usize| {
+            let starts = found.starts(number)?;
+            const SHOWN: usize = 2;
+            let name =
+                |s: &Start| format!("{} {}", names::slave(model, s.slave), names::mode(s.mode));
+            let some: Vec<String> = starts.iter().take(SHOWN).map(name).collect();
+            let more = if starts.len() > SHOWN { ", …" } else { "" };
+            Some(Remedy {
+                kind: Kind::Answer(number),
+                label: format!("answer {}: {}{more}", number + 1, some.join(", ")),
+                how: How::StartFrom(number),
+                first: vec![Intervention::Assume(starts)],
+            })
+        };
+        (0..count).filter_map(answer).collect()
+    }
+}
+
+/// Changes the settings as a kind wants, and says so: label, path, and value.
+fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static str, String)> {
+    let told = match kind {
+        Kind::Strategy(strategy) => {
+            settings.strategy = strategy;
+            let label = match strategy {
+                Strategy::Ladder => "the ladder of strategies",
+                Strategy::Table2 => "Table 2 as printed",
+                Strategy::Sliding => "enter contact as sliding",
+                Strategy::Least => "one change at a time, least index",
+                Strategy::SlidingLeast => "enter as sliding, one change at a time",
+                Strategy::Block => "block changes, least-index fallback",
+                Strategy::Newton => "semismooth Newton",
+                Strategy::Lemke => "Lemke's pivoting",
+                Strategy::Census => "a census of all assignments",
+            };
+            (label, "settings.strategy", strategy.name().to_owned())
+        }
+        Kind::ConsistentLimit => {
+            settings.t_max = BoundUpdate::Consistent;
+            ("t_max consistent", "settings.t_max", "consistent".into())
+        }
+        Kind::ConsistentGeometry => {
+            settings.geometry = Geometry::Consistent;
+            let value = "consistent".into();
+            ("geometry consistent", "settings.geometry", value)
+        }
+        Kind::OtherResidual => {
+            let (method, label, value) = match settings.residual {
+                ResidualMethod::Stress => {
+                    let method = ResidualMethod::Accumulate;
+                    (method, "residual accumulate", "accumulate")
+                }
+                ResidualMethod::Accumulate => (ResidualMethod::Stress, "residual stress", "stress"),
+            };
+            settings.residual = method;
+            (label, "settings.residual", value.into())
+        }
+        Kind::OtherSticking => {
+            let (sticking, label, value) = match settings.sticking {
+                Sticking::Anchored => {
+                    let sticking = Sticking::Increments;
+                    (sticking, "sticking increments", "increments")
+                }
+                Sticking::Increments => (Sticking::Anchored, "sticking anchored", "anchored"),
+            };
+            settings.sticking = sticking;
+            (label, "settings.sticking", value.into())
+        }
+        Kind::TouchAtStart => {
+            settings.touch = Touch::Start;
+            ("touch at the start", "settings.touch", "start".into())
+        }
+        Kind::Damp => {
+            settings.at_cycle = AtCycle::Damp;
+            ("at_cycle damp", "settings.at_cycle", "damp".into())
+        }
+        Kind::MoreMinors => {
+            settings.minors = settings.minors.saturating_mul(MORE);
+            let value = settings.minors.to_string();
+            ("ten times the minors", "settings.minors", value)
+        }
+        Kind::MoreMajors => {
+            settings.majors = settings.majors.saturating_mul(MORE);
+            let value = settings.majors.to_string();
+            ("ten times the majors", "settings.majors", value)
+        }
+        Kind::Answer(_) | Kind::Part(_) | Kind::Start(_) | Kind::Hysteresis => return None,
+    };
+    Some(told)
+}
+
+/// Modes to start the increment again with: of the nodes that stand on their surface, or else of the nearest one.
+fn starts(model: &Model, state: &State, mode: Mode) -> Vec<Intervention> {
+    let places = model.places(&state.start.u);
+    let over = |slave: usize| {
+        let contact = &model.contacts[slave];
+        let spot = state.start.nodes[slave].spot?;
+        let found = projection_at(&model.surfaces, spot, &places, places[contact.node]);
+        Some((slave, found.gap))
+    };
+    let gaps: Vec<(usize, f64)> = (0..model.contacts.len()).filter_map(over).collect();
+    let touches = |gap: f64| gap <= TOUCHES * model.length;
+    let mut chosen: Vec<usize> = gaps
+        .iter()
+        .filter(|(_, gap)| touches(*gap))
+        .map(|(slave, _)| *slave)
+        .collect();
+    if chosen.is_empty() {
+        let nearest = gaps.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        chosen.extend(nearest.map(|(slave, _)| *slave));
+    }
+    let differs = |slave: &usize| state.start.nodes[*slave].mode != mode;
+    let force = |slave: usize| Intervention::Force {
+        slave,
+        mode,
+        hold: false,
+    };
+    let forced = chosen.into_iter().filter(differs).map(force);
+    let mut all = vec![Intervention::Increment(state.controls.increment)];
+    all.extend(forced);
+    if all.len() == 1 { Vec::new() } else { all }
+}
+
+/// A node this near to its surface, over the scene's length, stands on it.
+const TOUCHES: f64 = 1e-6;

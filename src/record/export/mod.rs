@@ -1,0 +1,121 @@
+//! Files made of a state, the kind by the extension: one list, [`KINDS`], and one file a kind.
+//!
+//! - [`frozen`]: the core of a cycle, or the whole frozen problem, as a scene, or in the form of Siconos.
+//! - [`picture`]: the deformed shape with modes, forces and gaps, and the timeline, as SVG and PNG.
+//! - [`written`]: the scene itself.
+//! - [`shown`]: what all of them are made of.
+//!
+//! A session as a film is made of a journal by who draws screens; the list has its name.
+
+pub mod frozen;
+pub mod picture;
+pub mod shown;
+pub mod written;
+
+mod timeline;
+
+use crate::step::stepper::Stepper;
+use shown::{NotMade, Shown};
+use std::path::Path;
+
+pub use frozen::{NoExport, Origin, Parted, compared, core, whole, writable};
+
+/// What a kind of file is made of.
+#[derive(Clone, Copy)]
+pub enum MadeOf {
+    /// A state; the stepper is of the same model, and may be left anywhere.
+    State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, NotMade>),
+    /// A whole session.
+    Journal,
+}
+
+/// A kind of file.
+pub struct Kind {
+    /// How names of such files end, without the dot.
+    pub extension: &'static str,
+    /// What is in it, for messages and the manual.
+    pub what: &'static str,
+    /// Whether it can hold the scene and the frozen problem, and who wants the latter must say so.
+    pub may_be_frozen: bool,
+    /// What it is made of, and by whom.
+    pub made_of: MadeOf,
+}
+
+/// Every kind that there is.
+pub const KINDS: &[Kind] = &[
+    Kind {
+        extension: "svg",
+        what: "the picture of a state",
+        may_be_frozen: false,
+        made_of: MadeOf::State(picture::svg),
+    },
+    Kind {
+        extension: "png",
+        what: "the same as a bitmap",
+        may_be_frozen: false,
+        made_of: MadeOf::State(picture::png),
+    },
+    Kind {
+        extension: "ron",
+        what: "the scene, or its frozen interface problem",
+        may_be_frozen: true,
+        made_of: MadeOf::State(written::ron),
+    },
+    Kind {
+        extension: "dat",
+        what: "the frozen interface problem for Siconos",
+        may_be_frozen: true,
+        made_of: MadeOf::State(written::dat),
+    },
+    Kind {
+        extension: "cast",
+        what: "a journal as a film for asciinema",
+        may_be_frozen: false,
+        made_of: MadeOf::Journal,
+    },
+];
+
+/// A name that ends as none of the kinds do.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: no file of that kind is made; these are: {}", known())]
+pub struct UnknownKind {
+    /// The name.
+    pub file: String,
+}
+
+fn known() -> String {
+    let told = KINDS
+        .iter()
+        .map(|k| format!(".{} ({})", k.extension, k.what));
+    told.collect::<Vec<_>>().join(", ")
+}
+
+/// The kind that the name of a file asks for.
+///
+/// # Errors
+/// If it ends as none of them does; the message lists them all.
+pub fn kind(file: &Path) -> Result<&'static Kind, UnknownKind> {
+    let own = file.extension().unwrap_or_default();
+    let found = KINDS
+        .iter()
+        .find(|kind| own.eq_ignore_ascii_case(kind.extension));
+    found.ok_or_else(|| UnknownKind {
+        file: file.display().to_string(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kind_is_known_by_its_extension_and_the_message_lists_all() {
+        assert_eq!(kind(Path::new("a/b.SVG")).unwrap().extension, "svg");
+        for wrong in ["a.bmp", "svg", "a.", "-"] {
+            let why = kind(Path::new(wrong)).err().unwrap().to_string();
+            for kind in KINDS {
+                assert!(why.contains(&format!(".{} ", kind.extension)), "{why}");
+            }
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! What files are made of: a state, and what there is to tell of it.
+
+use super::frozen::{NoExport, Origin};
+use crate::explain::examination::NOT_CONDENSED;
+use crate::history::strip::Strip;
+use crate::interface::problem::InterfaceProblem;
+use crate::scene::Scene;
+use crate::step::event::Event;
+use crate::step::state::{State, Status};
+use crate::step::stepper::Stepper;
+use crate::study::plot::PlotError;
+
+/// Minor iterations that a picture's timeline shows.
+pub const COLUMNS: usize = 60;
+
+/// A state, and what there is to tell of it.
+pub struct Shown<'a> {
+    /// The scene that led there.
+    pub scene: &'a Scene,
+    /// Where it is, and what was changed before.
+    pub origin: &'a Origin,
+    /// The state.
+    pub state: &'a State,
+    /// The last minor iteration; `None` at the start.
+    pub event: Option<&'a Event>,
+    /// The minor iterations before and with it, the last ones at least ([`COLUMNS`]).
+    pub strips: &'a [Strip],
+    /// The state in which the last major iteration began; where the history is done, its problem is the one to be frozen.
+    pub last_major: Option<&'a State>,
+    /// How it ended, in words, where it did not go well; else empty.
+    pub ended: String,
+    /// Whether the frozen problem is wanted, where the kind leaves a choice.
+    pub frozen: bool,
+}
+
+/// Why a file was not made.
+#[derive(Debug, thiserror::Error)]
+pub enum NotMade {
+    /// It cannot be drawn.
+    #[error(transparent)]
+    Drawn(#[from] PlotError),
+    /// The history is done, and nothing is known of its last problem.
+    #[error("the history is done; nothing is solved next from here")]
+    Finished,
+    /// The bodies cannot be condensed to the interface here.
+    #[error("{NOT_CONDENSED}")]
+    NotCondensed,
+    /// No file can say what the problem says.
+    #[error(transparent)]
+    NoExport(#[from] NoExport),
+    /// The scene cannot be written as text.
+    #[error("the scene cannot be written as text: {0}")]
+    Unwritable(String),
+}
+
+/// The interface problem that is frozen at a state: the one that is solved next, or, where nothing is, the one that was
+/// solved last; with the state that it is of.
+pub(super) fn problem<'a>(
+    shown: &Shown<'a>,
+    stepper: &mut Stepper,
+) -> Result<(InterfaceProblem, &'a State), NotMade> {
+    let state = match (&shown.state.status, shown.last_major) {
+        (Status::Finished, None) => return Err(NotMade::Finished),
+        (Status::Finished, Some(last)) => last,
+        _ => shown.state,
+    };
+    stepper.restore(state);
+    let problem = stepper.interface_problem().ok_or(NotMade::NotCondensed)?;
+    Ok((problem, state))
+}

@@ -1,0 +1,310 @@
+//! How the slave nodes stand over their surfaces before anything is solved: the gaps that a scene starts with, what is
+//! doubtful about them, and what `settings.initial_gaps` makes of them.
+
+use crate::contact::projection::{SurfacePoint, project, projection_at};
+use crate::fem::lagrange;
+use crate::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
+
+/// Gaps below this part of the scene's length are none.
+const NONE: f64 = 1e-9;
+/// Most names in a warning.
+const MOST: usize = 5;
+/// Cosine between the outward sides of a slave's body and of its surface from which on both look the same way.
+const SAME_WAY: f64 = 0.5;
+
+/// The start gaps of the slave nodes that stand over a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StartGaps {
+    /// Number of the surface.
+    pub surface: usize,
+    /// How many slave nodes stand over it.
+    pub nodes: usize,
+    /// Least and largest gap (length); negative is inside.
+    pub range: [f64; 2],
+    /// Slave numbers of those that start inside.
+    pub inside: Vec<usize>,
+}
+
+/// Where each slave node stands over its surfaces, with its gap (length); `None` past the ends of all of them.
+fn stands(
+    nodes: &[Node],
+    surfaces: &[Surface],
+    contacts: &[Contact],
+) -> Vec<Option<(SurfacePoint, f64)>> {
+    let places: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
+    let stand = |contact: &Contact| {
+        let at = places[contact.node];
+        let spot = project(at, surfaces, &contact.surfaces, &places, None)?;
+        Some((spot, projection_at(surfaces, spot, &places, at).gap))
+    };
+    contacts.iter().map(stand).collect()
+}
+
+/// The start gaps of each surface that slave nodes stand over.
+pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
+    let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
+    let of = |surface: usize| {
+        let over = stands.iter().enumerate().filter_map(|(slave, stand)| {
+            let (spot, gap) = (*stand)?;
+            (spot.surface == surface).then_some((slave, gap))
+        });
+        let over: Vec<(usize, f64)> = over.collect();
+        let gaps = || over.iter().map(|(_, gap)| *gap);
+        let least = gaps().fold(f64::INFINITY, f64::min);
+        let largest = gaps().fold(f64::NEG_INFINITY, f64::max);
+        let inside = over.iter().filter(|(_, gap)| *gap < -NONE * model.length);
+        (!over.is_empty()).then(|| StartGaps {
+            surface,
+            nodes: over.len(),
+            range: [least, largest],
+            inside: inside.map(|(slave, _)| *slave).collect(),
+        })
+    };
+    (0..model.surfaces.len()).filter_map(of).collect()
+}
+
+/// The start gaps of each surface in a few words, as `check` and the debugger's first screen show them.
+pub fn words(model: &Model) -> Vec<String> {
+    let line = |found: StartGaps| {
+        let name = &model.surfaces[found.surface].name;
+        let [least, largest] = found
+            .range
+            .map(|gap| match gap.abs() <= NONE * model.length {
+                true => 0.0,
+                false => gap,
+            });
+        let range = match least == largest {
+            true => format!("{least:.4}"),
+            false => format!("{least:.4} to {largest:.4}"),
+        };
+        let inside = match found.inside.len() {
+            0 => String::new(),
+            n => format!(", {n} of {} inside", found.nodes),
+        };
+        format!("{name} {range}{inside}")
+    };
+    start_gaps(model).into_iter().map(line).collect()
+}
+
+/// What is doubtful about the start, a sentence each, the worst first; empty where nothing is.
+pub fn warnings(model: &Model) -> Vec<String> {
+    let mut all = turned(model);
+    let gaps = start_gaps(model);
+    for found in gaps.iter().filter(|found| !found.inside.is_empty()) {
+        let names = some(model, &found.inside);
+        let name = &model.surfaces[found.surface].name;
+        let count = found.inside.len();
+        let deepest = -found.range[0];
+        let next = match model.settings.initial_gaps {
+            InitialGaps::Keep => {
+                "the first increment pushes them out; settings.initial_gaps=adjust moves them onto the surface without stress, ramp pushes them out over the first leg"
+            }
+            InitialGaps::Ramp => "they are pushed out over the first leg of the path",
+            InitialGaps::Adjust => "their surface moved with them: its own nodes are slaves, too",
+        };
+        let start = if count == 1 { "starts" } else { "start" };
+        all.push(format!(
+            "{count} of {} slave nodes {start} inside surface {name}, by {deepest:.3e} at most ({names}): {next}",
+            found.nodes
+        ));
+    }
+    all.extend(unheld(model));
+    all.extend(overlapping(model));
+    all
+}
+
+/// Surfaces whose outward side looks the same way as that of all bodies whose nodes they are to hold.
+fn turned(model: &Model) -> Vec<String> {
+    let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
+    let outward = outward(model);
+    let looks = |surface: usize| {
+        let over = stands
+            .iter()
+            .zip(&model.contacts)
+            .filter_map(|(stand, contact)| {
+                let (spot, _) = (*stand)?;
+                let own = outward[contact.node]?;
+                (spot.surface == surface).then(|| {
+                    let n = normal(
+                        &model.surfaces[surface].elements[spot.element],
+                        &model.nodes,
+                        spot.xi,
+                    );
+                    own[0] * n[0] + own[1] * n[1]
+                })
+            });
+        let over: Vec<f64> = over.collect();
+        !over.is_empty() && over.iter().all(|cosine| *cosine > SAME_WAY)
+    };
+    (0..model.surfaces.len())
+        .filter(|&surface| looks(surface))
+        .map(|surface| {
+            let name = &model.surfaces[surface].name;
+            format!(
+                "surface {name} looks away from all its slave nodes: its outward side, on the right of its walk, is the one that their bodies' own outsides look to, so they start behind it; turn it (reverse, or walk it the other way)"
+            )
+        })
+        .collect()
+}
+
+/// Unit normal on the right of an element's walk.
+fn normal(element: &[usize], nodes: &[Node], xi: f64) -> [f64; 2] {
+    let shape = lagrange::shape(element.len(), xi);
+    let mut slope = [0.0; 2];
+    for (&node, d) in element.iter().zip(shape.d) {
+        slope[0] += d * nodes[node].at[0];
+        slope[1] += d * nodes[node].at[1];
+    }
+    let size = slope[0].hypot(slope[1]).max(f64::MIN_POSITIVE);
+    [slope[1] / size, -slope[0] / size]
+}
+
+/// For each node on the outline of a solid the mean outward direction there (not of length one at a corner).
+fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
+    let mut all: Vec<Option<[f64; 2]>> = vec![None; model.nodes.len()];
+    for body in &model.bodies {
+        let BodyKind::Solid(solid) = &body.kind else {
+            continue;
+        };
+        for edge in &solid.edges {
+            let count = edge.len().saturating_sub(1).max(1);
+            for (k, &node) in edge.iter().enumerate() {
+                let xi = -1.0 + 2.0 * k as f64 / count as f64;
+                let n = normal(edge, &model.nodes, xi);
+                let sum = all[node].get_or_insert([0.0; 2]);
+                *sum = [sum[0] + n[0], sum[1] + n[1]];
+            }
+        }
+    }
+    for sum in all.iter_mut().flatten() {
+        let size = sum[0].hypot(sum[1]).max(f64::MIN_POSITIVE);
+        *sum = sum.map(|x| x / size);
+    }
+    all
+}
+
+/// Bodies that have neither a support or prescribed motion nor a contact.
+fn unheld(model: &Model) -> Vec<String> {
+    let held = |node: usize| {
+        let first = model.dofs.first[node];
+        (first..first + usize::from(model.dofs.count[node]))
+            .any(|dof| model.dofs.equation[dof].is_none())
+    };
+    let joined = |body: &Body| {
+        let others = model.bodies.iter().filter(|other| other.name != body.name);
+        others
+            .flat_map(|other| &other.nodes)
+            .any(|node| body.nodes.contains(node))
+    };
+    let touches = |body: &Body| {
+        model.contacts.iter().any(|contact| {
+            let masters = contact.surfaces.iter().map(|&k| &model.surfaces[k]);
+            body.nodes.contains(&contact.node)
+                || masters
+                    .flat_map(|surface| surface.elements.iter().flatten())
+                    .any(|node| body.nodes.contains(node))
+        })
+    };
+    let mesh = |body: &&Body| !matches!(body.kind, BodyKind::Linear(_));
+    model
+        .bodies
+        .iter()
+        .filter(mesh)
+        .filter(|body| !body.nodes.iter().any(|&node| held(node)))
+        .filter(|body| !joined(body) && !touches(body))
+        .map(|body| {
+            format!(
+                "body {} has neither a support nor a contact: nothing can hold it",
+                body.name
+            )
+        })
+        .collect()
+}
+
+/// Solids one of whose nodes lies inside another's outline.
+fn overlapping(model: &Model) -> Vec<String> {
+    let solids = model.bodies.iter().filter_map(|body| match &body.kind {
+        BodyKind::Solid(solid) => Some((body, outline(model, &solid.edges))),
+        _ => None,
+    });
+    let solids: Vec<(&Body, Vec<[[f64; 2]; 2]>)> = solids.collect();
+    let mut all = Vec::new();
+    for (a, (body, sides)) in solids.iter().enumerate() {
+        for (other, _) in solids
+            .iter()
+            .enumerate()
+            .filter(|(b, _)| *b != a)
+            .map(|(_, s)| s)
+        {
+            let deep = |node: &&usize| {
+                !body.nodes.contains(node)
+                    && is_inside(model.nodes[**node].at, sides, NONE.sqrt() * model.length)
+            };
+            if let Some(&node) = other.kind.lines().iter().flatten().find(deep) {
+                all.push(format!(
+                    "bodies {} and {} overlap: {} of the second lies inside the first",
+                    body.name, other.name, model.nodes[node].name
+                ));
+            }
+        }
+    }
+    all
+}
+
+/// The sides of a closed outline, straight from node to node.
+fn outline(model: &Model, edges: &[Vec<usize>]) -> Vec<[[f64; 2]; 2]> {
+    edges
+        .iter()
+        .flat_map(|edge| edge.windows(2))
+        .map(|pair| [model.nodes[pair[0]].at, model.nodes[pair[1]].at])
+        .collect()
+}
+
+/// Whether a place lies inside an outline, by more than `near` from each of its sides: a ray from it meets the outline an
+/// odd number of times.
+fn is_inside(at: [f64; 2], sides: &[[[f64; 2]; 2]], near: f64) -> bool {
+    let mut inside = false;
+    for [a, b] in sides {
+        let (along, to) = ([b[0] - a[0], b[1] - a[1]], [at[0] - a[0], at[1] - a[1]]);
+        let size = along[0] * along[0] + along[1] * along[1];
+        let part =
+            ((along[0] * to[0] + along[1] * to[1]) / size.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        if (to[0] - part * along[0]).hypot(to[1] - part * along[1]) <= near {
+            return false;
+        }
+        if (a[1] > at[1]) != (b[1] > at[1]) && at[0] < a[0] + (at[1] - a[1]) / along[1] * along[0] {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+fn some(model: &Model, slaves: &[usize]) -> String {
+    let name = |&slave: &usize| model.nodes[model.contacts[slave].node].name.as_str();
+    let names: Vec<&str> = slaves.iter().take(MOST).map(name).collect();
+    let more = if slaves.len() > MOST { ", …" } else { "" };
+    names.join(", ") + more
+}
+
+/// Moves slave nodes that start inside, or at most `within` away (length), onto their surfaces.
+pub(super) fn adjust(nodes: &mut [Node], surfaces: &[Surface], contacts: &[Contact], within: f64) {
+    for contact in contacts {
+        // One after the other, since a master's nodes may be slaves, too.
+        let places: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
+        let at = places[contact.node];
+        if let Some(spot) = project(at, surfaces, &contact.surfaces, &places, None) {
+            let over = projection_at(surfaces, spot, &places, at);
+            if over.gap <= within {
+                nodes[contact.node].at = over.foot;
+            }
+        }
+    }
+}
+
+/// Notes how deep the slave nodes start inside, so that it is closed over the first leg.
+pub(super) fn ramp(nodes: &[Node], surfaces: &[Surface], contacts: &mut [Contact]) {
+    let stands = stands(nodes, surfaces, contacts);
+    for (contact, stand) in contacts.iter_mut().zip(stands) {
+        contact.overlap = stand.map_or(0.0, |(_, gap)| (-gap).max(0.0));
+    }
+}

@@ -1,0 +1,100 @@
+//! An axis of numbers over several powers of ten, fitted to what is drawn over it.
+
+/// An axis in powers of ten.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LogAxis {
+    /// Logarithm of the number at its beginning.
+    low: f64,
+    /// Logarithm of the number at its end.
+    high: f64,
+}
+
+/// Air at either end, as a part of the range; and the least range of an axis, in decades.
+const AIR: f64 = 0.06;
+const LEAST: f64 = 0.5;
+
+impl LogAxis {
+    /// The axis that holds some numbers above zero, with a little air.
+    pub fn of(values: impl Iterator<Item = f64>) -> LogAxis {
+        let values = values.filter(|v| v.is_finite() && *v > 0.0);
+        let range = values.fold(None, |range: Option<(f64, f64)>, v| {
+            let v = v.log10();
+            Some(range.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
+        });
+        let (low, high) = range.unwrap_or((0.0, 1.0));
+        let missing = 0.5 * (LEAST - (high - low)).max(0.0);
+        let air = AIR * (high - low).max(LEAST) + missing;
+        LogAxis {
+            low: low - air,
+            high: high + air,
+        }
+    }
+
+    /// Where a number lies, from 0 to 1.
+    pub fn part(self, value: f64) -> f64 {
+        let value = value.max(f64::MIN_POSITIVE).log10();
+        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+    }
+
+    /// Round numbers along it, about so many at most: powers of ten, or where these are few also their multiples.
+    pub fn ticks(self, most: usize) -> Vec<f64> {
+        const STEPS: [&[f64]; 3] = [
+            &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
+            &[1.0, 2.0, 5.0],
+            &[1.0],
+        ];
+        let found = STEPS.iter().map(|steps| self.multiples(steps, 1));
+        let mut all = found.chain((2..100).map(|every| self.multiples(&[1.0], every)));
+        all.find(|ticks| ticks.len() <= most.max(2))
+            .unwrap_or_default()
+    }
+
+    fn multiples(self, steps: &[f64], every: i32) -> Vec<f64> {
+        let decades = self.low.floor() as i32..=self.high.ceil() as i32;
+        let decades = decades.filter(|decade| decade.rem_euclid(every) == 0);
+        let all = decades.flat_map(|decade| steps.iter().map(move |step| (step, decade)));
+        // Written and read, so that it is the number that it says.
+        let all = all.filter_map(|(step, decade)| format!("{step}e{decade}").parse::<f64>().ok());
+        all.filter(|v| (self.low..=self.high).contains(&v.log10()))
+            .collect()
+    }
+}
+
+/// A number of an axis for a person.
+pub fn written(value: f64) -> String {
+    match (1e-3..1e5).contains(&value) {
+        true => format!("{value}"),
+        false => format!("{value:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_holds_what_it_is_made_of_and_little_more() {
+        let values = [3e-3, 0.2];
+        let axis = LogAxis::of(values.into_iter().chain([f64::INFINITY, 0.0]));
+        let parts = values.map(|v| axis.part(v));
+        assert!(0.02 < parts[0] && parts[0] < 0.1, "{parts:?}");
+        assert!(0.9 < parts[1] && parts[1] < 0.98, "{parts:?}");
+        let one = LogAxis::of([1.0].into_iter());
+        assert!((one.part(1.0) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn there_are_ticks_on_short_and_on_long_axes() {
+        let ticks = |low: f64, high: f64| LogAxis::of([low, high].into_iter()).ticks(9);
+        assert_eq!(ticks(1.1e-2, 3e-2), [0.01, 0.015, 0.02, 0.03]);
+        assert_eq!(ticks(1e-3, 1.0), [1e-3, 1e-2, 0.1, 1.0]);
+        for (low, high) in [(1.0, 1.0), (0.9, 8.0), (1e-12, 1.0), (1e-300, 1e300)] {
+            let ticks = ticks(low, high);
+            assert!((2..=9).contains(&ticks.len()), "{low} to {high}: {ticks:?}");
+        }
+        assert_eq!(
+            [1e-4, 2e-3, 0.5, 300.0, 2e6].map(written),
+            ["1e-4", "0.002", "0.5", "300", "2e6"]
+        );
+    }
+}

@@ -1,0 +1,34 @@
+//! What monitors are measured in: those of one kind can be compared, and have one scale.
+
+use crate::model::{Model, Watched};
+use serde::{Deserialize, Serialize};
+
+/// What a monitor is: those of one kind have one scale.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename = "Kind")]
+pub enum MonitorKind {
+    /// A displacement or gap.
+    Length,
+    /// An angle, radians.
+    Rotation,
+    /// A force.
+    Force,
+    /// A length that is a measure of error, and is not compared.
+    Drift,
+}
+
+/// What a monitor is.
+pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
+    match watched {
+        Watched::Displacement { dof } => {
+            // The rotation is the third of a node.
+            let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
+            match (0..model.nodes.len()).any(turns) {
+                true => MonitorKind::Rotation,
+                false => MonitorKind::Length,
+            }
+        }
+        Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
+        Watched::Drift { .. } => MonitorKind::Drift,
+    }
+}

@@ -1,0 +1,152 @@
+//! Places for labels in a drawing, so that none lies over another, over a marker, or outside.
+
+/// A rectangle on a sheet; pixels, y downwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Patch {
+    /// Its upper left corner.
+    pub from: (f64, f64),
+    /// Its lower right corner.
+    pub to: (f64, f64),
+}
+
+impl Patch {
+    /// The patch of a size about a point.
+    pub fn about((x, y): (f64, f64), (width, height): (f64, f64)) -> Patch {
+        Patch {
+            from: (x - 0.5 * width, y - 0.5 * height),
+            to: (x + 0.5 * width, y + 0.5 * height),
+        }
+    }
+
+    /// Whether two have more than a border in common.
+    pub fn meets(&self, other: &Patch) -> bool {
+        self.from.0 < other.to.0
+            && other.from.0 < self.to.0
+            && self.from.1 < other.to.1
+            && other.from.1 < self.to.1
+    }
+
+    fn holds(&self, other: &Patch) -> bool {
+        self.from.0 <= other.from.0
+            && self.from.1 <= other.from.1
+            && self.to.0 >= other.to.0
+            && self.to.1 >= other.to.1
+    }
+
+    /// Its middle.
+    pub fn middle(&self) -> (f64, f64) {
+        (
+            0.5 * (self.from.0 + self.to.0),
+            0.5 * (self.from.1 + self.to.1),
+        )
+    }
+}
+
+/// What is taken of a window already.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placing {
+    window: Patch,
+    taken: Vec<Patch>,
+}
+
+/// Directions in which a label is tried: beside, then above and below.
+const DIRECTIONS: [(f64, f64); 8] = [
+    (1.0, -1.0),
+    (1.0, 1.0),
+    (-1.0, -1.0),
+    (-1.0, 1.0),
+    (1.0, 0.0),
+    (-1.0, 0.0),
+    (0.0, -1.0),
+    (0.0, 1.0),
+];
+
+impl Placing {
+    /// Nothing is taken of a window yet.
+    pub fn within(window: Patch) -> Placing {
+        Placing {
+            window,
+            taken: Vec::new(),
+        }
+    }
+
+    /// Takes a patch, whatever lies there.
+    pub fn take(&mut self, patch: Patch) {
+        self.taken.push(patch);
+    }
+
+    /// Takes what a line covers, in pieces.
+    pub fn take_line(&mut self, from: (f64, f64), to: (f64, f64)) {
+        const PIECE: f64 = 8.0;
+        let length = (to.0 - from.0).hypot(to.1 - from.1);
+        if !length.is_finite() {
+            return;
+        }
+        let pieces = (length / PIECE).ceil().clamp(1.0, 400.0) as usize;
+        for k in 0..=pieces {
+            let part = k as f64 / pieces as f64;
+            let at = (
+                from.0 + part * (to.0 - from.0),
+                from.1 + part * (to.1 - from.1),
+            );
+            self.take(Patch::about(at, (3.0, 3.0)));
+        }
+    }
+
+    /// Finds and takes a place for a label of a size beside a point, no farther from it than `reach`; the nearest that is
+    /// free. `None` where all is taken.
+    pub fn place(&mut self, at: (f64, f64), size: (f64, f64), reach: f64) -> Option<Patch> {
+        /// Air between a point and its label, and between two tries.
+        const AIR: f64 = 7.0;
+        let mut away = AIR;
+        while away <= reach {
+            for (right, down) in DIRECTIONS {
+                let middle = (
+                    at.0 + right * (away + 0.5 * size.0),
+                    at.1 + down * (away + 0.5 * size.1 - 0.3 * AIR),
+                );
+                let patch = Patch::about(middle, size);
+                let free = || !self.taken.iter().any(|other| other.meets(&patch));
+                if self.window.holds(&patch) && free() {
+                    self.take(patch);
+                    return Some(patch);
+                }
+            }
+            away += AIR;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_label_lies_over_another_or_outside() {
+        let window = Patch {
+            from: (0.0, 0.0),
+            to: (300.0, 200.0),
+        };
+        let mut placing = Placing::within(window);
+        let points: Vec<(f64, f64)> = (0..12)
+            .map(|k| (20.0 + 3.0 * f64::from(k), 100.0))
+            .collect();
+        for &point in &points {
+            placing.take(Patch::about(point, (8.0, 8.0)));
+        }
+        let mut found: Vec<Patch> = Vec::new();
+        for &point in &points {
+            let patch = placing.place(point, (40.0, 12.0), 200.0).unwrap();
+            assert!(window.holds(&patch));
+            assert!(found.iter().all(|other| !other.meets(&patch)), "{patch:?}");
+            assert!(
+                points
+                    .iter()
+                    .all(|p| !Patch::about(*p, (8.0, 8.0)).meets(&patch))
+            );
+            found.push(patch);
+        }
+        assert_eq!(placing.place((150.0, 100.0), (400.0, 12.0), 1e3), None);
+    }
+}

@@ -1,0 +1,235 @@
+//! A journal as a film: the debugger's screens after each entry, in the form of asciicast v2.
+//!
+//! The times are made up, so that the same journal gives the same bytes: a screen stays as long as it takes to read what
+//! is said on it. What was done is a marker at which a player can stop. Only the rows that change are written.
+
+use crate::model::Model;
+use crate::outside::shown;
+use crate::record::journal::{Entry, JournalError, Record};
+use crate::record::story;
+use crate::session::Session;
+use crate::tui::app::App;
+use crate::tui::screen;
+use crate::tui::theme::Theme;
+use crate::tui::view::View;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Modifier};
+use std::fmt::Write;
+
+/// Columns and rows of the film.
+pub const SIZE: (u16, u16) = (120, 36);
+/// Seconds that a screen stays, and for each letter of what is said on it; at most so many in all.
+const STAY: f64 = 1.5;
+const LETTER: f64 = 0.04;
+const LONGEST: f64 = 6.0;
+/// Seconds that the first screen stays.
+const FIRST: f64 = 2.5;
+
+/// The film of a journal, which is replayed for it.
+///
+/// # Errors
+/// If the journal's scene is unsound, or it does not lead to the same states again.
+pub fn film(record: &Record) -> Result<String, JournalError> {
+    let model = record.scene()?.model;
+    let mut film = Film::new(&record.header.name);
+    let session = record.replay_seen(&mut |session, entry| film.show(session, &model, entry))?;
+    film.end(&session);
+    Ok(film.text)
+}
+
+struct Film {
+    app: App,
+    text: String,
+    time: f64,
+    before: Buffer,
+}
+
+impl Film {
+    fn new(title: &str) -> Film {
+        let area = Rect::new(0, 0, SIZE.0, SIZE.1);
+        let title = format!("stickslip {}", shown::cut(title, 80));
+        let text = format!(
+            "{{\"version\": 2, \"width\": {}, \"height\": {}, \"title\": {}, \"env\": {{\"TERM\": \"xterm-256color\"}}}}\n",
+            SIZE.0,
+            SIZE.1,
+            quoted(&title)
+        );
+        Film {
+            app: App::new(Theme::colour(), Vec::new()),
+            text,
+            time: 0.0,
+            before: Buffer::empty(area),
+        }
+    }
+
+    /// The screen after an entry, or before the first.
+    fn show(&mut self, session: &Session, model: &Model, entry: Option<&Entry>) {
+        let view = View::of(session);
+        match entry {
+            None => self.output("\u{1b}[2J\u{1b}[?25l"),
+            Some(entry) => {
+                let done = story::done(model, entry);
+                self.line('m', &shown::cut(&done, 200));
+                self.app.say(entry.said.as_str());
+            }
+        }
+        let mut now = Buffer::empty(self.before.area);
+        screen::draw(&mut now, self.before.area, &self.app, Some(&view));
+        let changed = rows(&self.before, &now);
+        self.output(&changed);
+        self.before = now;
+        self.time += match entry {
+            None => FIRST,
+            Some(entry) => {
+                let letters = entry.said.chars().count() as f64;
+                (STAY + LETTER * letters).min(LONGEST)
+            }
+        };
+    }
+
+    /// The last screen stays, and the cursor comes back.
+    fn end(&mut self, _: &Session) {
+        let below = format!("\u{1b}[0m\u{1b}[{};1H\u{1b}[?25h", SIZE.1);
+        self.output(&below);
+    }
+
+    fn output(&mut self, text: &str) {
+        if !text.is_empty() {
+            self.line('o', text);
+        }
+    }
+
+    fn line(&mut self, kind: char, text: &str) {
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            self.text,
+            "[{:.3}, \"{kind}\", {}]",
+            self.time,
+            quoted(text)
+        );
+    }
+}
+
+/// What a terminal must be told so that its rows become others.
+fn rows(before: &Buffer, now: &Buffer) -> String {
+    let mut text = String::new();
+    let area = now.area;
+    for y in area.top()..area.bottom() {
+        let cells = |buffer: &Buffer| -> Vec<Cell> {
+            (area.left()..area.right())
+                .map(|x| buffer[(x, y)].clone())
+                .collect()
+        };
+        let row = cells(now);
+        if row == cells(before) {
+            continue;
+        }
+        let _ = write!(text, "\u{1b}[{};1H", y + 1);
+        let mut style = String::new();
+        let mut hidden = 0;
+        for cell in &row {
+            // The cell behind a wide letter is covered by it.
+            if hidden > 0 {
+                hidden -= 1;
+                continue;
+            }
+            let wanted = sgr(cell);
+            if wanted != style {
+                text.push_str(&wanted);
+                style = wanted;
+            }
+            text.push_str(cell.symbol());
+            hidden = unicode_width::UnicodeWidthStr::width(cell.symbol()).saturating_sub(1);
+        }
+        text.push_str("\u{1b}[0m");
+    }
+    text
+}
+
+/// The order that sets a cell's colours and weights, and nothing else.
+fn sgr(cell: &Cell) -> String {
+    let mut codes = vec!["0".to_owned()];
+    let weights = [
+        (Modifier::BOLD, "1"),
+        (Modifier::DIM, "2"),
+        (Modifier::ITALIC, "3"),
+        (Modifier::UNDERLINED, "4"),
+        (Modifier::REVERSED, "7"),
+    ];
+    let set = weights
+        .iter()
+        .filter(|(weight, _)| cell.modifier.contains(*weight));
+    codes.extend(set.map(|(_, code)| (*code).to_owned()));
+    codes.extend(colour(cell.fg, 30));
+    codes.extend(colour(cell.bg, 40));
+    format!("\u{1b}[{}m", codes.join(";"))
+}
+
+/// A colour's code; `base` is 30 for letters and 40 for what is behind them.
+fn colour(colour: Color, base: u8) -> Option<String> {
+    let dark = |k: u8| Some((base + k).to_string());
+    let light = |k: u8| Some((base + 60 + k).to_string());
+    match colour {
+        Color::Reset => None,
+        Color::Black => dark(0),
+        Color::Red => dark(1),
+        Color::Green => dark(2),
+        Color::Yellow => dark(3),
+        Color::Blue => dark(4),
+        Color::Magenta => dark(5),
+        Color::Cyan => dark(6),
+        Color::Gray => dark(7),
+        Color::DarkGray => light(0),
+        Color::LightRed => light(1),
+        Color::LightGreen => light(2),
+        Color::LightYellow => light(3),
+        Color::LightBlue => light(4),
+        Color::LightMagenta => light(5),
+        Color::LightCyan => light(6),
+        Color::White => light(7),
+        Color::Indexed(k) => Some(format!("{};5;{k}", base + 8)),
+        Color::Rgb(r, g, b) => Some(format!("{};2;{r};{g};{b}", base + 8)),
+    }
+}
+
+/// A text as JSON has it.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' => quoted.push_str("\\\""),
+            '\\' => quoted.push_str("\\\\"),
+            c if c.is_control() => {
+                let _ = write!(quoted, "\\u{:04x}", c as u32);
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ratatui::style::Style;
+
+    #[test]
+    fn only_rows_that_change_are_written_and_styles_end_with_their_row() {
+        let area = Rect::new(0, 0, 4, 3);
+        let before = Buffer::empty(area);
+        let mut now = before.clone();
+        now.set_string(1, 1, "ab", Style::new().fg(Color::Cyan));
+        assert_eq!(
+            rows(&before, &now),
+            "\u{1b}[2;1H\u{1b}[0m \u{1b}[0;36mab\u{1b}[0m \u{1b}[0m"
+        );
+        assert_eq!(rows(&now, &now), "");
+    }
+
+    #[test]
+    fn texts_are_json() {
+        assert_eq!(quoted("a\"\\\u{1b}é"), "\"a\\\"\\\\\\u001bé\"");
+    }
+}

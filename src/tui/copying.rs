@@ -1,0 +1,148 @@
+//! What `Y` copies: what is selected in the pane with the focus, as text for the terminal's clipboard.
+
+use crate::action::Copied;
+use crate::explain::remedies;
+use crate::history::verdicts::{self, summaries};
+use crate::history::watches::{Watch, WatchQuantity};
+use crate::outside::shown;
+use crate::tui::app::{App, Effect};
+use crate::tui::layout::Pane;
+use crate::tui::screen;
+use crate::tui::theme;
+use crate::tui::view::View;
+
+/// Most bytes that are copied: terminals take no more than about this in one order.
+const MOST: usize = 50_000;
+/// Most characters of it that the message shows.
+const SHOWN: usize = 60;
+
+/// A text, and what to call it.
+type Called = (String, String);
+
+impl App {
+    /// Copies something, and says what.
+    pub(super) fn copy(&mut self, what: Option<Copied>, view: Option<&View>) -> Option<Effect> {
+        let copied = match (what, view) {
+            (Some(Copied::Keys), _) => Ok(("the keys".into(), self.keymap.text())),
+            (Some(Copied::Command), _) => self.last_line(),
+            (_, None) => Err("open a scene first".into()),
+            (Some(Copied::Row), Some(view)) => self.row(view),
+            (Some(Copied::Number(quantity)), Some(view)) => self.value(quantity, view),
+            (None, Some(view)) => self.selected_text(view),
+        };
+        match copied {
+            Ok((_, text)) if text.len() > MOST => {
+                self.complain(format!(
+                    "that is {} bytes, and terminals take no more than {MOST} at once",
+                    text.len()
+                ));
+                None
+            }
+            Ok((name, text)) => {
+                let shown = shown::cut(&text.replace(['\t', '\n'], " "), SHOWN);
+                self.say(format!("copied {name}: {shown}"));
+                Some(Effect::Copy(text))
+            }
+            Err(why) => {
+                self.complain(why);
+                None
+            }
+        }
+    }
+
+    fn last_line(&self) -> Result<Called, String> {
+        let line = self.history.last().cloned();
+        let line = line.ok_or("no command was typed yet; : types one")?;
+        Ok(("the command".into(), line))
+    }
+
+    /// What is selected in the pane with the focus.
+    fn selected_text(&self, view: &View) -> Result<Called, String> {
+        if screen::is_hidden(self.focus, self, view) {
+            return Err("that is hidden until you have said what follows".into());
+        }
+        match self.focus {
+            Pane::Nodes | Pane::Shape | Pane::Lesson => self.row(view),
+            Pane::Decision => self.value(WatchQuantity::Margin, view),
+            Pane::Residual => self.value(WatchQuantity::Residual, view),
+            Pane::Curve => self.monitored(view),
+            Pane::Timeline => Ok(("a command".into(), format!("goto {}", view.cursor))),
+            Pane::Branches => {
+                let all = view.tree.map(summaries).unwrap_or_default();
+                let order = verdicts::order(&all);
+                let row = order.get(self.branch).or(order.first());
+                let (number, _) = row.ok_or("there is no branch")?;
+                Ok(("a command".into(), format!("branch b{}", number + 1)))
+            }
+            Pane::Remedies => {
+                let tried = view.background.and_then(|background| background.tried());
+                let trials = tried.map_or(&[][..], |tried| &tried.trials);
+                let at = self.remedy.min(trials.len().saturating_sub(1));
+                let trial = trials
+                    .get(at)
+                    .ok_or("no remedy is tried yet; r tries them all")?;
+                let mut cells = vec![trial.label.clone()];
+                cells.extend(remedies::row(trial));
+                Ok(("the remedy".into(), cells.join("\t")))
+            }
+            Pane::Diagnosis => {
+                let found = view.examination().flatten();
+                let found = found.ok_or("nothing is found out yet; d looks")?;
+                Ok(("the diagnosis".into(), found.lines.join("\n")))
+            }
+        }
+    }
+
+    /// The selected slave node and all of its numbers, parted by tabs.
+    fn row(&self, view: &View) -> Result<Called, String> {
+        let count = view.model.contacts.len();
+        let slave = self.selected.min(count.saturating_sub(1));
+        if count == 0 {
+            return Err("this scene has no slave nodes".into());
+        }
+        let next = match self.hides(view, slave) {
+            true => "?",
+            false => theme::word(view.mode(slave)),
+        };
+        let name = view.slave(slave);
+        let before = theme::word(view.mode_before(slave));
+        let mut cells = vec![name.to_owned(), before.into(), next.into()];
+        if let Some(found) = view.record(slave) {
+            let numbers = [found.gap, found.f_n, found.f_t, found.t_max, found.slip];
+            cells.extend(numbers.map(|number| format!("{number:e}")));
+        }
+        Ok((format!("the row of {name}"), cells.join("\t")))
+    }
+
+    fn value(&self, quantity: WatchQuantity, view: &View) -> Result<Called, String> {
+        let count = view.model.contacts.len();
+        let slave = self.selected.min(count.saturating_sub(1));
+        if quantity.is_nodal() && count == 0 {
+            return Err("this scene has no slave nodes".into());
+        }
+        if quantity == WatchQuantity::Margin && self.hides(view, slave) {
+            return Err("that is hidden until you have said what follows".into());
+        }
+        let watch = Watch::new(view.model, quantity, slave);
+        let value = watch.value(view.frame());
+        let value = value.ok_or_else(|| format!("nothing is solved for {} here", watch.name))?;
+        Ok((watch.name, format!("{value:e}")))
+    }
+
+    /// The load and the shown monitor's value at the last accepted increment.
+    fn monitored(&self, view: &View) -> Result<Called, String> {
+        let monitor = view.model.monitors.get(self.monitor);
+        let monitor = monitor.ok_or("this scene has no monitors")?;
+        let frames = &view.frames[..=view.cursor];
+        let frame = frames.iter().rev().find(|frame| frame.monitors.is_some());
+        let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(self.monitor).copied());
+        let (Some(frame), Some(value)) = (frame, value) else {
+            return Err("no increment is done yet".into());
+        };
+        let load = frame.state.start.load_factor;
+        Ok((
+            format!("load and {}", monitor.name),
+            format!("{load:e}\t{value:e}"),
+        ))
+    }
+}

@@ -1,0 +1,142 @@
+//! The mouse: a click selects what it is on, the wheel scrolls what it is over. Nothing can be done with it alone.
+
+use crate::action::{Action, Step, Ui};
+use crate::record::command::Command;
+use crate::tui::ahead::Typed;
+use crate::tui::app::{App, Effect, Overlay};
+use crate::tui::layout::Pane;
+use crate::tui::panes::{branches, nodes, remedies, shape, timeline};
+use crate::tui::screen;
+use crate::tui::view::View;
+use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
+use ratatui::layout::{Position, Rect};
+
+/// Lines that a turn of the wheel scrolls a page of text.
+const LINES: usize = 3;
+
+impl App {
+    /// What the mouse does on the screen as it was drawn last.
+    pub fn mouse(&mut self, event: &MouseEvent, view: Option<&View>) -> Option<Effect> {
+        let at = Position::new(event.column, event.row);
+        match event.kind {
+            MouseEventKind::Down(MouseButton::Left) => self.click(at, view),
+            MouseEventKind::ScrollUp => self.wheel(at, true, view),
+            MouseEventKind::ScrollDown => self.wheel(at, false, view),
+            _ => None,
+        }
+    }
+
+    /// The pane at a place of the screen, if nothing lies over it.
+    fn pane_at(&self, at: Position, view: &View) -> Option<(Pane, Rect)> {
+        if !matches!(self.overlay, Overlay::None) {
+            return None;
+        }
+        let places = screen::places(self, Some(view), self.area);
+        places.panes.into_iter().find(|(_, area)| area.contains(at))
+    }
+
+    fn click(&mut self, at: Position, view: Option<&View>) -> Option<Effect> {
+        let view = view?;
+        let (pane, area) = self.pane_at(at, view)?;
+        self.say("");
+        let hidden = screen::is_hidden(pane, self, view);
+        // Where things stand before the focus moves, which can move them.
+        let row = match pane {
+            Pane::Branches if !hidden => branches::row_at(area, self, view, at),
+            Pane::Remedies => remedies::row_at(area, self, view, at),
+            _ => None,
+        };
+        let slave = match pane {
+            Pane::Nodes => nodes::slave_at(area, self, view, at),
+            Pane::Shape => shape::slave_at(area, self, view, at),
+            Pane::Timeline if !hidden => timeline::slave_at(area, self, view, at),
+            _ => None,
+        };
+        let step = match pane {
+            Pane::Timeline if !hidden => timeline::step_at(area, view, at),
+            _ => None,
+        };
+        if pane != Pane::Lesson {
+            self.look_at(pane);
+        }
+        match (pane, row) {
+            (Pane::Branches, Some(row)) => self.branch = row,
+            (Pane::Remedies, Some(row)) if !hidden => self.remedy = row,
+            _ => {}
+        }
+        if let Some(slave) = slave {
+            self.attempt(Ok(Action::Ui(Ui::Select(slave))), None, Some(view));
+        }
+        let step = step.filter(|step| *step != view.cursor)?;
+        let action = Action::Session(Command::Goto { step });
+        match self.awaits(&action, Some(view)) {
+            _ if self.ahead.is_any() => None,
+            Some(awaited) => {
+                let line = Typed::Line(format!("goto {step}"));
+                self.ahead.push(line, Some(awaited));
+                None
+            }
+            None => self.attempt(Ok(action), None, Some(view)),
+        }
+    }
+
+    fn wheel(&mut self, at: Position, up: bool, view: Option<&View>) -> Option<Effect> {
+        let key = if up { "Up" } else { "Down" };
+        match &mut self.overlay {
+            Overlay::None => {}
+            Overlay::Help(_) => {
+                for _ in 0..LINES {
+                    self.help_key(key, view);
+                }
+                return None;
+            }
+            Overlay::Manual(reader) => {
+                for _ in 0..LINES {
+                    reader.scroll(up);
+                }
+                return None;
+            }
+            Overlay::Chart(page) => {
+                page.key(key);
+                return None;
+            }
+            Overlay::Chooser(_) if self.loading.is_none() => {
+                return self.chooser_key(key, view);
+            }
+            _ => return None,
+        }
+        let view = view?;
+        let (pane, _) = self.pane_at(at, view)?;
+        let step = match (pane, up) {
+            (Pane::Shape, true) => {
+                self.camera = self.camera.zoomed(1.25);
+                return None;
+            }
+            (Pane::Shape, false) => {
+                self.camera = self.camera.zoomed(0.8);
+                return None;
+            }
+            (Pane::Diagnosis, _) => {
+                let found = view.examination().flatten();
+                let last = found.map_or(0, |found| found.lines.len());
+                self.scroll = match up {
+                    true => self.scroll.saturating_sub(LINES),
+                    false => (self.scroll + LINES).min(last),
+                };
+                return None;
+            }
+            // Along a history that is being made there is nowhere to go.
+            (Pane::Timeline, _) if view.running || self.ahead.is_any() => return None,
+            (Pane::Timeline, true) => Step::Left,
+            (Pane::Timeline, false) => Step::Right,
+            (Pane::Residual | Pane::Curve | Pane::Lesson, _) => return None,
+            (_, true) => Step::Up,
+            (_, false) => Step::Down,
+        };
+        // As a key would in that pane, which need not have the focus.
+        let focus = std::mem::replace(&mut self.focus, pane);
+        let effect = self.attempt(Ok(Action::Ui(Ui::Move(step))), None, Some(view));
+        self.focus = focus;
+        effect
+    }
+}

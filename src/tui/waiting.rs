@@ -1,0 +1,84 @@
+//! Who waits, and for what: keys and lines that ask something of a session that is at work are put off, and done in their turn.
+
+use crate::action::{Action, Page, Step, Ui};
+use crate::tui::ahead::{Awaited, Typed};
+use crate::tui::app::{App, Effect, Opens, Overlay};
+use crate::tui::keys;
+use crate::tui::layout::Pane;
+use crate::tui::view::View;
+
+impl App {
+    /// What any key waits for, whatever it means: a page that is about to come is the one that it is meant for.
+    pub(super) fn awaits_all(&self) -> Option<Awaited> {
+        let replaced = match (self.loading, &self.overlay) {
+            (Some(Opens::Page), _) => true,
+            (Some(Opens::Scene), overlay) => matches!(overlay, Overlay::Chooser(_)),
+            (None, _) => false,
+        };
+        replaced.then_some(Awaited::Reading)
+    }
+
+    /// What an action waits for at this moment; `None` if it can be done at once.
+    pub(super) fn awaits(&self, action: &Action, view: Option<&View>) -> Option<Awaited> {
+        if self.loading.is_some() && !action.outlives_the_scene() {
+            return Some(Awaited::Reading);
+        }
+        let view = view?;
+        if view.running && (action.asks() || self.goes_along(action)) {
+            return Some(Awaited::Run);
+        }
+        let chooses = matches!(action, Action::Ui(Ui::Move(_) | Ui::Repeat));
+        let remedies = match action {
+            Action::Ui(Ui::Apply(_)) => true,
+            // Those that are being tried from here are shown at once.
+            Action::Ui(Ui::Page(Page::Remedies)) => !view.tries_here(),
+            _ => chooses && self.focus == Pane::Remedies,
+        };
+        if view.is_trying() && remedies {
+            return Some(Awaited::Trying);
+        }
+        let finding = matches!(view.examination(), Some(None));
+        let diagnosis = matches!(action, Action::Ui(Ui::StartFrom(_)))
+            || (chooses && self.focus == Pane::Diagnosis);
+        (finding && diagnosis).then_some(Awaited::Finding)
+    }
+
+    /// Whether an action goes along the timeline, which is the session's to do.
+    fn goes_along(&self, action: &Action) -> bool {
+        let along = !matches!(action, Action::Ui(Ui::Move(Step::Up | Step::Down)));
+        self.focus == Pane::Timeline && matches!(action, Action::Ui(Ui::Move(_))) && along
+    }
+
+    /// Lets a key wait that has a meaning, behind its count.
+    pub(super) fn put_off_key(&mut self, name: &str, count: Option<u32>, awaited: Awaited) {
+        let digits = count.map_or(String::new(), |count| count.to_string());
+        let names = digits.chars().map(String::from).chain([name.to_owned()]);
+        for key in names.filter_map(|name| keys::press(&name)) {
+            self.ahead.push(Typed::Key(key), Some(awaited));
+        }
+    }
+
+    /// Does the first of what waits. `None` if nothing waits, or if it still must.
+    pub fn resume(&mut self, view: Option<&View>) -> Option<Option<Effect>> {
+        if self.awaits_all().is_some() {
+            return None;
+        }
+        let (first, rest) = self.ahead.take_first()?;
+        let said = self.message.clone();
+        let effect = match first {
+            Typed::Key(key) => self.take_key(&key, view),
+            Typed::Line(line) => self.take_line(&line, view),
+            Typed::Paste(text) => {
+                self.take_paste(&text);
+                None
+            }
+        };
+        let waits = self.ahead.is_any();
+        self.ahead.put_back(rest);
+        if waits {
+            self.message = said;
+            return None;
+        }
+        Some(effect)
+    }
+}

@@ -1,0 +1,220 @@
+//! What the command line says where something else was meant, and with which code it ends.
+
+use crate::program::{code, err, out, program, well};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Output, Stdio};
+
+const OSC: &str = "osc-inclined-cantilever";
+
+fn ran(directory: &Path, arguments: &[&str]) -> Output {
+    program(directory, arguments).output().unwrap()
+}
+
+fn top(file: &str) -> String {
+    format!("{}/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn a_file_of_another_kind_is_told_with_the_command_that_reads_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let copy = |from: &str, to: &str| std::fs::copy(top(from), here.join(to)).unwrap();
+    copy("snapshots/02-rough-at-the-end.ron", "snapshot.ron");
+    copy("tests/journals/up-the-ladder.journal", "a.journal");
+    copy("problems/lessons/1-modes.ron", "lesson.ron");
+    copy("problems/studies/geometry-01.ron", "study.ron");
+    copy("problems/osc-snap.ron", "scene.ron");
+    std::fs::write(
+        here.join("chart.csv"),
+        "scene,series,run,status,error,seconds\na,b,c,whole,1e-3,1\n",
+    )
+    .unwrap();
+    std::fs::write(here.join("film.cast"), "{\"version\": 2}\n").unwrap();
+    let kinds = [
+        (
+            "snapshot.ron",
+            "a snapshot; `stickslip replay snapshot.ron`",
+        ),
+        ("a.journal", "a journal; `stickslip resume a.journal`"),
+        ("lesson.ron", "a lesson; `stickslip lesson lesson.ron`"),
+        ("study.ron", "a study; `stickslip study study.ron`"),
+        ("scene.ron", "a scene; `stickslip run scene.ron`"),
+        (
+            "chart.csv",
+            "the table of a work-precision chart; `stickslip chart --from chart.csv`",
+        ),
+        (
+            "film.cast",
+            "a session to be played in a terminal; `asciinema play film.cast`",
+        ),
+    ];
+    // The words of each reader, and the files that it reads itself.
+    let readers: &[(&[&str], &[&str])] = &[
+        (&["run"], &["scene.ron"]),
+        (&["check"], &["scene.ron"]),
+        (&["core"], &["scene.ron"]),
+        (&["remedies"], &["scene.ron"]),
+        (&["record", "--at", "1"], &["scene.ron"]),
+        (&["map"], &["scene.ron"]),
+        (&["study"], &["scene.ron", "study.ron"]),
+        (&["chart"], &["scene.ron"]),
+        (&["chart", "--from"], &["chart.csv"]),
+        (&["lesson", "--check"], &["lesson.ron"]),
+        (&["replay"], &["snapshot.ron"]),
+        (&["diff", "snapshot.ron"], &["snapshot.ron"]),
+        (&["audit"], &["scene.ron", "snapshot.ron"]),
+        (&["story"], &["a.journal"]),
+        (&["resume", "--check"], &["a.journal"]),
+        (&["map", "osc-snap", "--resume"], &[]),
+    ];
+    let mut told = 0;
+    for (words, own) in readers {
+        for (file, is) in kinds.iter().filter(|(file, _)| !own.contains(file)) {
+            let output = ran(here, &[words, &[*file][..]].concat());
+            assert_eq!(code(&output), 2, "{words:?} {file}: {}", err(&output));
+            let wanted = format!("this is {is} reads it");
+            assert!(
+                err(&output).contains(&wanted),
+                "{words:?} {file}: {}",
+                err(&output)
+            );
+            assert_eq!(err(&output).lines().count(), 1, "{}", err(&output));
+            told += 1;
+        }
+    }
+    assert!(told > 80, "{told}");
+}
+
+#[test]
+fn a_mistyped_subcommand_or_scene_gets_the_one_that_was_meant() {
+    let here = Path::new(".");
+    for (words, meant) in [
+        (&["rnu", "x"][..], "run"),
+        (&["rnu"], "run"),
+        (&["exprt", "a.ron", "-o", "b.svg"], "export"),
+        (&["remdies", OSC], "remedies"),
+        (&["osc-snpa"], "osc-snap"),
+        (&["osc-snpa", "--set", "a=1"], "osc-snap"),
+    ] {
+        let output = ran(here, words);
+        assert_eq!(code(&output), 2, "{words:?}");
+        let wanted = format!("did you mean {meant:?}?");
+        assert!(
+            err(&output).contains(&wanted),
+            "{words:?}: {}",
+            err(&output)
+        );
+    }
+    // Where nothing is near, nothing is proposed; a flag that is wrong is clap's.
+    assert!(!err(&ran(here, &["qqqqqq", "x"])).contains("did you mean"));
+    assert!(err(&ran(here, &["run", OSC, "--cvs"])).contains("'--cvs'"));
+}
+
+#[test]
+fn the_help_has_the_subcommands_in_groups() {
+    let help = well(&ran(Path::new("."), &["--help"]));
+    let heads: Vec<&str> = help
+        .lines()
+        .filter(|line| line.ends_with(':') && !line.starts_with(' '))
+        .collect();
+    let wanted = [
+        "Solve:",
+        "Debug:",
+        "Record:",
+        "Sweep:",
+        "Learn:",
+        "Files:",
+        "Arguments:",
+        "Options:",
+    ];
+    assert_eq!(heads, wanted);
+    for word in ["run", "export", "story", "map"] {
+        let line = format!("  {word} ");
+        assert_eq!(
+            help.lines().filter(|l| l.starts_with(&line)).count(),
+            1,
+            "{word}"
+        );
+    }
+    assert!(
+        help.lines().all(|line| line.chars().count() <= 100),
+        "{help}"
+    );
+}
+
+#[test]
+fn remedies_say_by_their_code_whether_any_works() {
+    let here = Path::new(".");
+    let output = ran(here, &["remedies", OSC]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    assert!(out(&output).contains("converged"), "{}", out(&output));
+    let directory = tempfile::tempdir().unwrap();
+    // Loads on a body that nothing holds.
+    let scene = well(&ran(here, &["show", OSC]));
+    let held = "supports: [(node: \"beam.start\", fix: [x, y, rotation])]";
+    let loose = scene.replace(held, "supports: []");
+    assert_ne!(loose, scene);
+    std::fs::write(directory.path().join("loose.ron"), loose).unwrap();
+    let output = ran(directory.path(), &["remedies", "loose.ron"]);
+    assert_eq!(code(&output), 3, "{}{}", out(&output), err(&output));
+}
+
+/// With a second place for results, a reader that leaves does not end the run.
+#[test]
+fn what_else_is_written_is_whole_though_the_reader_of_one_table_left() {
+    let directory = tempfile::tempdir().unwrap();
+    let arguments = [
+        "run",
+        "02-two-cantilevers-rough",
+        "--set",
+        "history.increment=0.001",
+        "--csv",
+        "-",
+        "--snapshot",
+        "end.ron",
+    ];
+    let mut child = program(directory.path(), &arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    assert!(lines.next().unwrap().unwrap().starts_with("increment,"));
+    drop(lines);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let snapshot = std::fs::read_to_string(directory.path().join("end.ron")).unwrap();
+    assert!(snapshot.contains("status: Finished"), "the run was cut");
+}
+
+#[test]
+fn a_run_of_a_scene_without_monitors_tells_modes_and_forces() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = well(&ran(
+        Path::new("."),
+        &["show", "01-pinned-beam-rough-floor"],
+    ));
+    let start = scene.find("    monitors: [").unwrap();
+    let end = start + scene[start..].find("\n    ],\n").unwrap() + "\n    ],\n".len();
+    let without = format!("{}{}", &scene[..start], &scene[end..]);
+    std::fs::write(directory.path().join("a.ron"), without).unwrap();
+    let arguments = ["run", "a.ron", "--set", "history.path[2]=0.2"];
+    let output = ran(directory.path(), &arguments);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let told = err(&output);
+    let head = told.lines().find(|line| line.contains("F_n")).expect(&told);
+    let row = told
+        .lines()
+        .find(|line| line.contains("beam.5"))
+        .expect(&told);
+    assert_eq!(
+        head.split_whitespace().collect::<Vec<_>>(),
+        ["node", "mode", "gap", "F_n", "F_t"]
+    );
+    let cells: Vec<&str> = row.split_whitespace().collect();
+    assert!(["fixed", "sliding"].contains(&cells[1]), "{row}");
+    assert!(cells[3].parse::<f64>().unwrap() > 0.0, "{row}");
+    let quiet = ran(directory.path(), &[&arguments[..], &["-q"]].concat());
+    assert_eq!(err(&quiet), "");
+}

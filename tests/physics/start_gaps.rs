@@ -1,0 +1,152 @@
+//! Gaps that a scene starts with: shown, warned of, adjusted without stress, or closed like a press fit.
+
+use crate::common::{self, run, scene};
+use stickslip::scene::Scene;
+use stickslip::scene::gaps::{start_gaps, warnings};
+use stickslip::step::event::Outcome;
+
+/// A bar of length 2 and EA = 10 between a fixed end and a floor that its other end starts `depth` inside of.
+fn bar(depth: f64, settings: &str, path: &str) -> Scene {
+    let text = format!(
+        r#"(
+    title: "A bar that starts inside a floor",
+    nodes: [
+        Line(id: "bar", from: (0.0, {top}), to: (0.0, {bottom}), elements: 2, per_element: 3),
+        Line(id: "floor", from: (1.0, 0.0), to: (-1.0, 0.0), elements: 1, per_element: 2),
+    ],
+    materials: [Section(id: "rod", EA: 10.0, EI: 1.0)],
+    bodies: [Beam(id: "bar", along: "bar", material: "rod")],
+    surfaces: [(id: "floor", along: "floor")],
+    slaves: [(nodes: ["bar.end"], on: ["floor"])],
+    friction: (angle: 20.0),
+    supports: [(node: "bar.start", fix: [x, y, rotation])],
+    loads: [],
+    history: (path: {path}, increment: 0.25),
+    settings: ({settings}),
+    monitors: [(name: "F_n", of: Contact(component: y))],
+)"#,
+        top = 2.0 - depth,
+        bottom = -depth,
+    );
+    Scene::from_text("bar.ron", &text, &[]).unwrap()
+}
+
+fn forces(scene: &Scene) -> Vec<(f64, f64)> {
+    let run = run(scene);
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let of = |a: &common::Accepted| (a.load, a.monitors["F_n"]);
+    run.accepted.iter().map(of).collect()
+}
+
+/// Force of a bar of length 2 and EA = 10 that is shortened by `by`: EA by the engineering strain, which the beams of the
+/// paper have.
+fn shortened(by: f64) -> f64 {
+    10.0 * by / 2.0
+}
+
+#[test]
+fn a_bar_that_starts_inside_is_pushed_out_by_the_first_increment_unless_told_otherwise() {
+    let kept = forces(&bar(0.1, "", "[0.0, 1.0]"));
+    for (load, force) in kept {
+        assert!((force - shortened(0.1)).abs() < 1e-9, "{load}: {force}");
+    }
+}
+
+#[test]
+fn a_press_fit_is_closed_over_the_first_leg_in_proportion_and_stays_closed_afterwards() {
+    let ramped = forces(&bar(0.1, "initial_gaps: ramp", "[0.0, 1.0, 0.0]"));
+    assert_eq!(ramped.len(), 8);
+    for (k, (load, force)) in ramped.iter().enumerate() {
+        let part = if k < 4 { *load } else { 1.0 };
+        let expected = shortened(0.1 * part);
+        assert!(
+            (force - expected).abs() < 1e-9,
+            "{k}: {load}: {force} for {expected}"
+        );
+    }
+}
+
+#[test]
+fn the_states_of_a_press_fit_are_judged_and_no_law_is_broken_on_the_way() {
+    let run = run(&bar(0.1, "initial_gaps: ramp", "[0.0, 1.0]"));
+    for accepted in &run.accepted {
+        let Outcome::Increment { marked, .. } = &accepted.event.outcome else {
+            panic!("accepted");
+        };
+        assert_eq!(*marked, None);
+    }
+}
+
+#[test]
+fn an_adjusted_node_stands_on_its_surface_without_stress() {
+    let scene = bar(0.1, "initial_gaps: adjust", "[0.0, 1.0]");
+    let found = start_gaps(&scene.model);
+    assert_eq!(found[0].range, [0.0, 0.0]);
+    assert!(warnings(&scene.model).is_empty());
+    for (load, force) in forces(&scene) {
+        assert!(force.abs() < 1e-12, "{load}: {force}");
+    }
+}
+
+#[test]
+fn nodes_are_adjusted_up_to_the_gap_that_is_stated_and_no_further() {
+    for (within, gap) in [(0.04, 0.05), (0.06, 0.0)] {
+        let settings = format!("initial_gaps: adjust, adjust_gap: {within:?}");
+        let scene = bar(-0.05, &settings, "[0.0, 1.0]");
+        let found = start_gaps(&scene.model)[0].range[0];
+        assert!((found - gap).abs() < 1e-15, "{within}: {found}");
+    }
+}
+
+#[test]
+fn a_strip_on_a_floor_that_is_drawn_the_other_way_round_is_warned_of() {
+    let strip = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/failures/nothing-holds.ron"
+    );
+    let sound = scene(strip, &[]);
+    assert_eq!(warnings(&sound.model), [""; 0]);
+    let turned = scene(strip, &[("surfaces.floor.reverse", "true")]);
+    let told = warnings(&turned.model);
+    assert!(
+        told[0].contains("looks away from all its slave nodes"),
+        "{told:?}"
+    );
+    assert!(told[0].contains("reverse"), "{told:?}");
+    let text = std::fs::read_to_string(strip).unwrap();
+    let lower = text
+        .replace("to: (-3.0, 0.0)", "to: (-3.0, 0.1)")
+        .replace("from: (9.0, 0.0)", "from: (9.0, 0.1)");
+    let inside = Scene::from_text("inside.ron", &lower, &[]).unwrap();
+    let told = warnings(&inside.model);
+    assert!(
+        told[0].starts_with("61 of 61 slave nodes start inside surface floor"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn bodies_without_any_hold_and_bodies_that_overlap_are_warned_of() {
+    let text = r#"(
+    title: "Two blocks",
+    nodes: [
+        Block(id: "a", corners: [(0, 0), (1, 0), (1, 1), (0, 1)], elements: (2, 2)),
+        Block(id: "b", corners: [(0.4, 0.5), (2, 0.5), (2, 1.5), (0.4, 1.5)], elements: (2, 2)),
+        Line(id: "floor", from: (9.0, 0.0), to: (-3.0, 0.0), elements: 1, per_element: 2),
+    ],
+    materials: [Elastic(id: "rubber", E: 100.0, nu: 0.3)],
+    bodies: [Solid(id: "a", mesh: "a", material: "rubber"), Solid(id: "b", mesh: "b", material: "rubber")],
+    surfaces: [(id: "floor", along: "floor")],
+    slaves: [(nodes: ["a.bottom"], on: ["floor"])],
+    supports: [(node: "a.top", fix: [x, y])],
+    loads: [],
+    history: (path: [0.0, 1.0], increment: 0.1),
+)"#;
+    let scene = Scene::from_text("blocks.ron", text, &[]).unwrap();
+    let told = warnings(&scene.model).join("\n");
+    assert!(
+        told.contains("body b has neither a support nor a contact"),
+        "{told}"
+    );
+    assert!(told.contains("bodies a and b overlap"), "{told}");
+}

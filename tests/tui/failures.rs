@@ -1,0 +1,153 @@
+//! Every way in which an increment can fail has its page: what happened, where, why, what was tried, what to do.
+
+use stickslip::explain::examination::Examination;
+use stickslip::scene::Scene;
+use stickslip::session::Session;
+use stickslip::step::event::Failure;
+use stickslip::step::state::Status;
+use stickslip::tui::Debugger;
+use stickslip::tui::theme::Theme;
+
+/// A scene of tests/failures, or a built-in one, that fails; what is set in it; and whether a failure is the one meant.
+struct Case {
+    name: &'static str,
+    scene: &'static str,
+    set: &'static [(&'static str, &'static str)],
+    is_meant: fn(&Failure) -> bool,
+}
+
+const CASES: [Case; 13] = [
+    Case {
+        name: "cycle",
+        scene: "osc-inclined-cantilever",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::Cycle(_)),
+    },
+    Case {
+        name: "minor-limit",
+        scene: "osc-slowlag",
+        set: &[("settings.minors", "20")],
+        is_meant: |failure| matches!(failure, Failure::MinorLimit { .. }),
+    },
+    Case {
+        name: "major-cycle",
+        scene: "punch-sharp-edge",
+        set: &[
+            ("friction.angle", "5"),
+            ("history.increment", "0.5"),
+            ("settings.strategy", "table2"),
+        ],
+        is_meant: |failure| matches!(failure, Failure::MajorCycle(_)),
+    },
+    Case {
+        name: "major-limit",
+        scene: "osc-p5-slow",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::MajorLimit { .. }),
+    },
+    Case {
+        name: "loose",
+        scene: "nothing-holds",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::Singular(_)),
+    },
+    Case {
+        name: "singular",
+        scene: "singular",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::Singular(_)),
+    },
+    Case {
+        name: "diverged",
+        scene: "osc-snap",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::Diverged { .. }),
+    },
+    Case {
+        name: "no-answer",
+        scene: "osc-coh-none",
+        set: &[("settings.strategy", "ladder")],
+        is_meant: |failure| matches!(failure, Failure::NoAnswer { .. }),
+    },
+    Case {
+        name: "ladder-ended",
+        scene: "avoidable-848",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::LadderEnded { .. }),
+    },
+    Case {
+        name: "not-found",
+        scene: "singular",
+        set: &[("settings.strategy", "lemke")],
+        is_meant: |failure| matches!(failure, Failure::NotFound(_)),
+    },
+    Case {
+        name: "leapt",
+        scene: "block-over-its-edge",
+        set: &[("history.jumps", "stop")],
+        is_meant: |failure| matches!(failure, Failure::Leapt { .. }),
+    },
+    Case {
+        name: "round-off",
+        scene: "wrong-EA1e16",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::RoundOff { .. }),
+    },
+    Case {
+        name: "over-constrained",
+        scene: "held-inside",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::OverConstrained { .. }),
+    },
+];
+
+fn open(case: &Case) -> Session {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/failures/").to_owned();
+    let file = format!("{file}{}.ron", case.scene);
+    let set: Vec<(String, String)> = case
+        .set
+        .iter()
+        .map(|(path, value)| ((*path).to_owned(), (*value).to_owned()))
+        .collect();
+    let name = match std::path::Path::new(&file).exists() {
+        true => file.as_str(),
+        false => case.scene,
+    };
+    let mut scene = Scene::open(name, &set).unwrap();
+    scene.name = case.scene.to_owned();
+    Session::new(scene)
+}
+
+/// The debugger at the failure, with its page open and made.
+fn at_failure(case: &Case) -> Debugger {
+    let mut debugger = Debugger::new(Theme::colour(), vec![], Some(open(case)));
+    debugger.type_keys("c d");
+    debugger
+}
+
+fn found(debugger: &Debugger) -> Examination {
+    let session = debugger.session.as_ref().unwrap();
+    let found = session.background().examination(session.place());
+    found.flatten().expect("the page is made").clone()
+}
+
+#[test]
+fn every_way_to_fail_has_a_page_that_says_what_why_and_what_to_do() {
+    for case in &CASES {
+        let debugger = at_failure(case);
+        let session = debugger.session.as_ref().unwrap();
+        let Status::Failed(failure) = session.frame().state.status.clone() else {
+            panic!("{}: it does not fail", case.name);
+        };
+        assert!((case.is_meant)(&failure), "{}: {failure:?}", case.name);
+        let found = found(&debugger);
+        for head in ["what: ", "do: 1. "] {
+            let any = found.lines.iter().any(|line| line.starts_with(head));
+            assert!(any, "{}: {head}: {:#?}", case.name, found.lines);
+        }
+        for (width, height) in [(80, 24), (120, 40), (200, 60)] {
+            let name = format!("{}-{width}x{height}", case.name);
+            insta::assert_snapshot!(name, debugger.text(width, height));
+        }
+    }
+}
