@@ -105,7 +105,7 @@ fn unknown_and_ambiguous_names_are_told() {
     );
     assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
     assert_eq!(read("re"), Err(
-        "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, redraw".into()
+        "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, reread, redraw".into()
     ));
 }
 
@@ -367,7 +367,7 @@ fn completion_knows_names_nodes_paths_and_values() {
         ["break leaves beam.4 sliding"]
     );
     assert_eq!(ask("watch f_"), ["watch f_n", "watch f_t"]);
-    assert_eq!(ask("open "), ["open 01-pinned"]);
+    assert_eq!(ask("open 01"), ["open 01-pinned"]);
     assert!(ask("nonsense ").is_empty());
 }
 
