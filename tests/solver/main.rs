@@ -32,3 +32,4 @@ mod jumps;
 mod scales;
 // The examples of the library run, and write what they promise.
 mod examples;
+mod families;
