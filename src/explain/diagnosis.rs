@@ -10,7 +10,7 @@ use crate::explain::names;
 use crate::explain::proven;
 use crate::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
 use crate::interface::minor_history::Cycle;
-use crate::interface::problem::{Assumed, Condition, InterfaceProblem};
+use crate::interface::problem::{Assumed, Condition, InterfaceProblem, NodeAnswer};
 use crate::interface::trials::Trials;
 use crate::model::{BoundUpdate, SlipCount};
 use crate::model::{Mode, Model};
@@ -519,7 +519,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
         (n, false) => format!("census: of {all} assignments at least {n} are consistent"),
     }];
     match (census.visited, census.exact) {
-        (0, _) => {}
+        (0, true) => {}
         (n, true) => lines.push(format!(
             "  branch and bound: {n} branches rule all others out"
         )),
@@ -533,7 +533,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             .nodes
             .iter()
             .enumerate()
-            .map(|(place, node)| format!("{} {}", name(place), assumed_words(node.assumed)))
+            .map(|(place, node)| format!("{} {}", name(place), answer_words(node)))
             .collect();
         let margin = found
             .answer
@@ -608,6 +608,14 @@ pub fn assumed_words(assumed: Assumed) -> &'static str {
         Assumed::Fixed => "fixed",
         Assumed::Plus => "sliding with F_t > 0",
         Assumed::Minus => "sliding with F_t < 0",
+    }
+}
+
+/// What a node does in a state, in words: without friction, sliding has no direction.
+pub fn answer_words(node: &NodeAnswer) -> &'static str {
+    match node.assumed.mode() {
+        Mode::Sliding if node.limit == 0.0 && node.f_n != 0.0 => "sliding",
+        _ => assumed_words(node.assumed),
     }
 }
 

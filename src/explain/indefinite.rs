@@ -4,7 +4,7 @@
 //! Small negative eigenvalues are set to zero, and the problem is solved again with all that the ladder has. What it finds
 //! is looked at in the matrix as it was given.
 
-use super::diagnosis::condition_words;
+use super::diagnosis::{answer_words, condition_words};
 use super::number::four;
 use crate::interface::census::search;
 use crate::interface::definite::Compliance;
@@ -273,9 +273,6 @@ fn does<'a>(answer: &Answer, name: &impl Fn(usize) -> &'a str) -> String {
         return answer.letters();
     }
     let nodes = answer.nodes.iter().enumerate();
-    let words = nodes.map(|(place, node)| {
-        let does = super::diagnosis::assumed_words(node.assumed);
-        format!("{} {does}", name(place))
-    });
+    let words = nodes.map(|(place, node)| format!("{} {}", name(place), answer_words(node)));
     words.collect::<Vec<_>>().join(", ")
 }

@@ -118,6 +118,9 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     };
     let away = spiral.distance;
     match spiral.fate {
+        Fate::Cycles if *radius <= AT_ONCE => {
+            format!("the modes go round for ever, {round}, and T_max is the same in each")
+        }
         Fate::Cycles => format!(
             "T_max spirals into the cycle by a factor of {radius:.4} {round} ({away:.3e} away after {} iterations); {more}, \
              but the modes go round for ever",
@@ -173,6 +176,9 @@ pub fn slow_words<'a>(problem: &InterfaceProblem, name: &impl Fn(usize) -> &'a s
         return Vec::new();
     };
     let mut lines = vec![spiral_words(problem, &found)];
+    if found.radius <= AT_ONCE {
+        return lines;
+    }
     lines.extend(fixed_words(&found, name));
     let factors = found
         .places

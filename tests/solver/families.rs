@@ -160,24 +160,20 @@ fn a_matrix_that_is_indefinite_by_rounding_is_solved_once_it_is_made_semidefinit
         let (_, margin) = solved.as_given.unwrap().worst().unwrap();
         assert!((margin.value + by).abs() < 1e-9, "{margin:?}");
         // What is said of the tolerance holds for the scene.
-        println!("{by}: {tolerance:?}");
         let failed = run(&rounded(by, &[]));
         let (_, failure) = failed.failure.expect("no state obeys");
         let mut stepper = failed.stepper;
         let state = stepper.state().clone();
         let told = page::facts(&mut stepper, &state, &failure, &|| false).join("\n");
-        println!("{told}");
         assert!(told.contains("indefinite, perhaps by rounding"), "{told}");
         assert!(told.contains("made semidefinite"), "{told}");
-        if let Some((tolerance, _)) = tolerance {
-            let value = format!("{tolerance:e}");
-            assert!(
-                told.contains(&format!("settings.tolerance={value}")),
-                "{told}"
-            );
-            let coarse = run(&rounded(by, &[("settings.tolerance", &value)]));
-            assert!(coarse.failure.is_none(), "{:?}", coarse.failure);
-        }
+        let (tolerance, _) = tolerance.expect("one of the size of the rounding");
+        assert_eq!(tolerance, by);
+        let value = format!("{tolerance:e}");
+        let option = format!("settings.tolerance={value}");
+        assert!(told.contains(&option), "{told}");
+        let coarse = run(&rounded(by, &[("settings.tolerance", &value)]));
+        assert!(coarse.failure.is_none(), "{:?}", coarse.failure);
     }
 }
 
