@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Keys that are no letters, as help calls them.
-const NAMED: [&str; 14] = [
+const NAMED: [&str; 15] = [
     "Space",
     "Shift-Tab",
     "Enter",
@@ -33,6 +33,7 @@ const NAMED: [&str; 14] = [
     "PageUp",
     "PageDown",
     "Delete",
+    "Backspace",
 ];
 /// Actions that keep their keys, whatever else does not answer.
 const FIXED: [&str; 3] = ["interrupt", "suspend", "redraw"];

@@ -316,11 +316,14 @@ impl Page {
             (!answer, trial.factorizations, trial.minors)
         });
         let helped = trials.iter().map(|(remedy, trial)| {
+            let minors = match trial.minors {
+                1 => "1 minor iteration".to_owned(),
+                n => format!("{n} minor iterations"),
+            };
             format!(
-                "{}: {} (tried: converged, {} minors)",
+                "{}: {} (tried: it converges, {minors})",
                 remedy.label,
                 remedy.how.typed(),
-                trial.minors
             )
         });
         let by_hand = self.by_hand.iter().map(|text| (*text).to_owned());

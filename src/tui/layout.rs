@@ -99,6 +99,8 @@ const TALL_DECISION: u16 = 17;
 const LESSON: u16 = 62;
 /// Width from which on most outcomes fit into a line.
 const WIDE: u16 = 110;
+/// Height from which on there is room for an outcome of two lines.
+const ROOMY: u16 = 30;
 /// Fewest rows of a lesson, border included.
 const LEAST_LESSON: u16 = 4;
 /// Fewest rows of a page between the table and a lesson.
@@ -115,8 +117,8 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         0..=5 => 1.min(area.height),
         6..=15 => 2,
         16..=23 => 3,
-        // A narrow screen has room for an outcome of two lines.
-        _ if area.width < WIDE => 4,
+        // A narrow screen needs two lines for most outcomes, and a high one has them.
+        _ if area.width < WIDE || area.height >= ROOMY => 4,
         _ => 3,
     };
     let footer = u16::from(area.height > 6);

@@ -16,6 +16,7 @@ pub mod chartpage;
 pub mod choosing;
 pub mod commandline;
 mod copying;
+pub mod debugger;
 pub mod keys;
 pub mod layout;
 mod learning;
@@ -35,7 +36,8 @@ pub mod view;
 mod waiting;
 
 pub use app::{App, Effect};
-pub use run::{Debugger, Error, resume, run, run_lesson, screen};
+pub use debugger::Debugger;
+pub use run::{Error, resume, run, run_lesson, screen};
 pub use screen::picture;
 pub use terminal::width;
 pub use view::View;

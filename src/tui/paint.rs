@@ -52,9 +52,10 @@ pub fn cut(text: &str, width: usize) -> String {
 }
 
 /// Writes lines over what stands there already.
-pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
+pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
     for (row, line) in area.rows().zip(lines) {
         Clear.render(row, buffer);
+        buffer.set_style(row, theme.ground);
         line.render(row, buffer);
     }
 }

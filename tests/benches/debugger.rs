@@ -15,7 +15,7 @@ use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
-use stickslip::tui::run::Debugger;
+use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{keys, screen};
 

@@ -7,8 +7,8 @@ use stickslip::session::Session;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::Debugger;
 use stickslip::tui::choosing;
+use stickslip::tui::debugger::Outside;
 use stickslip::tui::keys;
-use stickslip::tui::run::Outside;
 use stickslip::tui::theme::Theme;
 
 /// The debugger without a scene, with what the program itself offers.

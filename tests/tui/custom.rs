@@ -9,8 +9,8 @@ use std::fs;
 use stickslip::action::{Colours, Keymap};
 use stickslip::scene::Scene;
 use stickslip::session;
+use stickslip::tui::debugger::Outside;
 use stickslip::tui::layout::Pane;
-use stickslip::tui::run::Outside;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{Debugger, keys, screen};
 use tempfile::TempDir;
@@ -34,7 +34,8 @@ fn text(debugger: &Debugger) -> String {
 fn place(debugger: &Debugger, heading: &str, wanted: &str) -> (u16, u16) {
     let text = text(debugger);
     let rows: Vec<&str> = text.lines().collect();
-    let first = rows.iter().position(|row| row.contains(heading)).unwrap();
+    let first = rows.iter().position(|row| row.contains(heading));
+    let first = first.unwrap_or_else(|| panic!("no {heading}\n{text}"));
     for (y, row) in rows.iter().enumerate().skip(first) {
         if let Some(byte) = row.find(wanted) {
             return (row[..byte].chars().count() as u16, y as u16);

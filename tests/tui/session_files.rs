@@ -240,7 +240,7 @@ fn draws_on_nothing() {
     let ignored: Arc<AtomicBool> = Arc::default();
     signal_hook::flag::register(signal_hook::consts::SIGHUP, ignored).unwrap();
     let mut terminal = tui::terminal::Terminal::enter().unwrap();
-    let app = App::new(Theme::mono(), tui::run::offers());
+    let app = App::new(Theme::mono(), tui::debugger::offers());
     terminal.draw(&app, None).unwrap();
     let gone = patiently(|| {
         // The test waits for something to be drawn.

@@ -32,7 +32,7 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
         height,
         ..places.footer
     };
-    paint::over(buffer, area, &lines);
+    paint::over(buffer, area, &lines, &app.theme);
 }
 
 fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec<Line<'static>> {

@@ -41,7 +41,7 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
     lines.extend(told.into_iter().take(OUTCOME));
     let below = (places.message.y.saturating_sub(area.bottom())) / 3;
     let height = area.height + (more as u16).saturating_sub(area.height).min(below);
-    paint::over(buffer, Rect { height, ..area }, &lines);
+    paint::over(buffer, Rect { height, ..area }, &lines, &app.theme);
 }
 
 /// Most lines that the last iteration's outcome takes.

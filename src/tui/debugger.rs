@@ -1,0 +1,540 @@
+//! The debugger without its terminal: an app, a session, and what waits for the solver. Keys in, screens out.
+
+use crate::action::ChartOf;
+use crate::explain::report;
+use crate::outside::shown;
+use crate::record::command::Command;
+use crate::session::{Reply, Session};
+use crate::study::measuring::Measuring;
+use crate::teach::progress::{self, Keeper, Progress};
+use crate::teach::{Lesson, Tutor};
+use crate::tui::app::{App, Effect, Opens, Overlay, Reading};
+use crate::tui::chartpage::{ChartPage, NoPage};
+use crate::tui::choosing::{self, Looking, Offer};
+use crate::tui::keys;
+use crate::tui::layout::Pane;
+use crate::tui::loading::{Loaded, Loading};
+use crate::tui::terminal;
+use crate::tui::theme::Theme;
+use crate::tui::view::View;
+use crossterm::event::{Event, KeyEvent};
+use std::collections::VecDeque;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long a step may take for the next key to wait for it, so that quick steps neither flicker nor pile up.
+const QUICK: Duration = Duration::from_millis(30);
+
+/// What there is to choose from, with what was done of the lessons.
+pub fn offers() -> Vec<Offer> {
+    let progress = progress::place().and_then(|file| Progress::read(&file).ok());
+    choosing::offers(&progress.unwrap_or_default())
+}
+
+/// What only the event loop can do.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outside {
+    /// Leave.
+    Quit,
+    /// Go back to the shell for a while.
+    Suspend,
+    /// Draw the whole screen anew.
+    Redraw,
+    /// Copy a text to the terminal's clipboard.
+    Copy(String),
+    /// Heed the mouse, or leave it to the terminal.
+    Mouse(bool),
+}
+
+/// The debugger without its terminal: keys in, screens out.
+pub struct Debugger {
+    /// What the terminal alone knows.
+    pub app: App,
+    /// The session; `None` before a scene is chosen.
+    pub session: Option<Session>,
+    /// What keys that had to wait ask of the event loop.
+    pub(super) outside: VecDeque<Outside>,
+    /// When the solver began with what it is at.
+    begun: Instant,
+    /// Frames of the session when the screen was last drawn.
+    frames: usize,
+    /// Whether scenes that are opened here get a journal.
+    pub(super) keeps: bool,
+    /// A chart that is being measured.
+    measuring: Option<Measuring>,
+    /// A file that is being read.
+    pub(super) loading: Option<Loading>,
+    /// An offer that is looked at.
+    pub(super) looking: Looking,
+    /// How far the user came in the lessons, kept.
+    progress: Keeper,
+    /// Whether offers are listed anew, with what is in the folder, when they are shown.
+    lists: bool,
+}
+
+impl Debugger {
+    /// A debugger on a session, or one that offers scenes.
+    pub fn new(theme: Theme, offers: Vec<Offer>, session: Option<Session>) -> Self {
+        let mut app = App::new(theme, offers);
+        match &session {
+            Some(session) => greet(&mut app, session),
+            None => app.choose(),
+        }
+        Debugger {
+            app,
+            session,
+            outside: VecDeque::new(),
+            begun: Instant::now(),
+            frames: 0,
+            keeps: false,
+            measuring: None,
+            loading: None,
+            looking: Looking::default(),
+            progress: Keeper::default(),
+            lists: false,
+        }
+    }
+
+    /// From here on progress in lessons is kept, and offers are what is there.
+    pub(super) fn in_the_world(&mut self) {
+        self.progress = Keeper::new(progress::place());
+        self.lists = true;
+    }
+
+    /// Keeps progress in lessons in this file.
+    pub fn keep_progress_in(&mut self, file: PathBuf) {
+        self.progress = Keeper::new(Some(file));
+    }
+
+    fn keep_progress(&mut self) {
+        let kept = self
+            .app
+            .lesson
+            .as_ref()
+            .map(|tutor| self.progress.follow(tutor));
+        if let Some(Err(why)) = kept {
+            self.app.complain(why);
+        }
+    }
+
+    /// Looks at the offer that is selected. Returns whether there is anything new to draw.
+    fn preview(&mut self) -> bool {
+        let chooser = match &self.app.overlay {
+            Overlay::Chooser(chooser) => Some(chooser),
+            _ => None,
+        };
+        let known = self.app.preview.as_ref();
+        let found = self.looking.follow(chooser, &self.app.offers, known);
+        let any = found.is_some();
+        self.app.preview = found.or(self.app.preview.take());
+        any
+    }
+
+    /// Says in a line where the journal is, or that there is none any more, to whoever started the program.
+    pub(super) fn part(&self) {
+        let Some(session) = &self.session else { return };
+        let told = match (session.journal(), session.lost_journal()) {
+            (Some(path), _) => {
+                let path = path.display();
+                format!("journal: {path} (`stickslip resume {path}` goes on with it)")
+            }
+            (None, Some(why)) => format!("no journal: {why}"),
+            (None, None) => return,
+        };
+        // There may be nobody any more.
+        let _ = writeln!(io::stderr(), "{}", shown::line(&told));
+    }
+
+    /// What the panes show.
+    pub fn view(&self) -> Option<View<'_>> {
+        self.session.as_ref().map(View::of)
+    }
+
+    /// Whether the solver is at work.
+    pub fn is_busy(&self) -> bool {
+        self.session.as_ref().is_some_and(Session::is_running)
+    }
+
+    /// Takes in what came from the terminal.
+    pub fn event(&mut self, event: &Event) -> Option<Outside> {
+        match event {
+            Event::Key(key) => {
+                let mut last = None;
+                for key in keys::apart(key) {
+                    last = self.key(&key).or(last);
+                }
+                last
+            }
+            Event::Paste(text) => {
+                self.app.paste(text);
+                None
+            }
+            Event::Mouse(mouse) if self.app.mouse => {
+                let view = self.session.as_ref().map(View::of);
+                let effect = self.app.mouse(mouse, view.as_ref())?;
+                self.carry_out(effect)
+            }
+            _ => None,
+        }
+    }
+
+    /// Takes in a key.
+    pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
+        let view = self.session.as_ref().map(View::of);
+        let chose = matches!(self.app.overlay, Overlay::Chooser(_));
+        let effect = self.app.key(key, view.as_ref());
+        self.keep_progress();
+        if self.lists && !chose && matches!(self.app.overlay, Overlay::Chooser(_)) {
+            self.app.offers = offers();
+        }
+        self.carry_out(effect?)
+    }
+
+    /// Does what a key asks of the world outside the app, as far as that is not the event loop's.
+    fn carry_out(&mut self, effect: Effect) -> Option<Outside> {
+        match effect {
+            Effect::Quit => return Some(Outside::Quit),
+            Effect::Suspend => return Some(Outside::Suspend),
+            Effect::Redraw => return Some(Outside::Redraw),
+            Effect::Copy(text) => return Some(Outside::Copy(text)),
+            Effect::Mouse(on) => return Some(Outside::Mouse(on)),
+            Effect::Submit(command) => self.submit(command),
+            Effect::Interrupt => self.interrupt(),
+            Effect::Open(scene) => self.load(Loading::scene(&scene), Opens::Scene, &scene),
+            Effect::Chart(of) => self.chart(of),
+            Effect::Lesson(name) => self.load(Loading::lesson(&name), Opens::Scene, &name),
+        }
+        None
+    }
+
+    /// Does what waited, as far as it need not wait any longer. Returns whether there was anything.
+    fn resume(&mut self) -> bool {
+        let mut any = false;
+        while !self.is_busy() {
+            let view = self.session.as_ref().map(View::of);
+            let Some(effect) = self.app.resume(view.as_ref()) else {
+                break;
+            };
+            any = true;
+            let outside = effect.and_then(|effect| self.carry_out(effect));
+            if let Some(outside) = outside {
+                self.outside.push_back(outside);
+                break;
+            }
+        }
+        any
+    }
+
+    fn load(&mut self, loading: Loading, opens: Opens, name: &str) {
+        self.loading = Some(loading);
+        self.app.loading = Some(opens);
+        self.app.say(format!("reading {name}; Ctrl-C gives it up"));
+    }
+
+    /// Shows what was read, once nothing lies over the panes but the list of scenes. Returns whether there was anything.
+    fn follow_loading(&mut self) -> bool {
+        if !self.app.is_open_to_pages() {
+            return false;
+        }
+        let Some(loaded) = self.loading.as_ref().and_then(Loading::result) else {
+            return false;
+        };
+        (self.loading, self.app.loading) = (None, None);
+        match loaded {
+            Loaded::Scene(Ok(session)) => self.open(*session),
+            Loaded::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
+            Loaded::Chart(Ok(page)) => {
+                self.app.say("");
+                self.app.overlay = Overlay::Chart(page);
+            }
+            Loaded::Scene(Err(why)) | Loaded::Lesson(Err(why)) => self.app.complain(why),
+            Loaded::Chart(Err(why)) => self.app.complain(why),
+        }
+        true
+    }
+
+    /// Types keys by their names, parted by blanks, and waits for the solver after each. For tests and pictures.
+    pub fn type_keys(&mut self, names: &str) {
+        for key in names.split_whitespace().filter_map(keys::press) {
+            self.key(&key);
+            self.settle();
+        }
+    }
+
+    /// Types a text, letter by letter.
+    pub fn type_text(&mut self, text: &str) {
+        for letter in text.chars() {
+            if let Some(key) = keys::press(&letter.to_string()) {
+                self.key(&key);
+            }
+        }
+    }
+
+    /// Waits until the solver has nothing left to do, and nothing waits for it.
+    pub fn settle(&mut self) {
+        loop {
+            let moved = self.advance();
+            if self.is_busy() {
+                if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
+                    self.tell(reply);
+                }
+                continue;
+            }
+            let open = self.app.is_open_to_pages();
+            // Under another page these would wait for ever.
+            if open && (self.loading.is_some() || self.measuring.is_some()) {
+                std::thread::sleep(Duration::from_millis(1));
+                continue;
+            }
+            while self.looking.is_busy() {
+                std::thread::sleep(Duration::from_millis(1));
+                self.advance();
+            }
+            match &mut self.session {
+                Some(session) if session.background().is_busy() => session.wait_for_background(),
+                _ if moved && self.app.ahead.is_any() => {}
+                _ => return,
+            }
+        }
+    }
+
+    /// The screen as plain text.
+    pub fn text(&self, width: u16, height: u16) -> String {
+        crate::tui::screen::text(&self.app, self.view().as_ref(), width, height)
+    }
+
+    fn submit(&mut self, command: Command) {
+        let Some(session) = &mut self.session else {
+            return;
+        };
+        self.begun = Instant::now();
+        // The page itself says that it is being looked for.
+        let shown = match command {
+            Command::Census(_) => self.app.focus == Pane::Diagnosis,
+            Command::Remedies => self.app.focus == Pane::Remedies,
+            _ => false,
+        };
+        match session.submit(command) {
+            Ok(_) if shown => {}
+            Ok(reply) => self.tell(reply),
+            Err(message) => {
+                if let Some(tutor) = &mut self.app.lesson {
+                    tutor.failed();
+                }
+                self.app.complain(message);
+            }
+        }
+    }
+
+    /// Says what a command led to, unless the status at the top says the same.
+    fn tell(&mut self, Reply(text): Reply) {
+        let known = self.session.as_ref().and_then(|session| {
+            match (session.is_running(), &session.frame().event) {
+                (true, _) => Some(text.clone()),
+                (false, Some(event)) => Some(report::outcome(session.model(), event)),
+                (false, None) => None,
+            }
+        });
+        // Neither must this line tell what is still to be predicted.
+        let view = self.session.as_ref().map(View::of);
+        let hidden = view.is_some_and(|view| !view.running && self.app.hides_any(&view));
+        // What the outcome says is above already.
+        let new = match &known {
+            Some(known) => text.strip_prefix(known.as_str()).unwrap_or(&text),
+            None => &text,
+        };
+        let new = new.trim_start_matches("; ").to_owned();
+        let said = if hidden { String::new() } else { new };
+        let idle = self
+            .session
+            .as_ref()
+            .filter(|session| !session.is_running());
+        if let (Some(tutor), Some(session)) = (&mut self.app.lesson, idle) {
+            tutor.settled(session.cursor(), session.frame());
+        }
+        self.keep_progress();
+        self.app.say(said);
+    }
+
+    fn chart(&mut self, of: ChartOf) {
+        let over = match of {
+            ChartOf::File(file) => return self.load(Loading::chart(&file), Opens::Page, &file),
+            ChartOf::Scene => Vec::new(),
+            ChartOf::Settings(over) => over,
+        };
+        let Some(session) = &self.session else {
+            return self.app.complain("there is no scene to measure; :open one");
+        };
+        let measuring = Measuring::start(session.scene(), over);
+        self.app.measuring = Some(measuring.progress());
+        self.measuring = Some(measuring);
+        self.app
+            .say("measuring beside all else, and shown when it is done; Ctrl-C stops it");
+    }
+
+    fn show_chart(&mut self, page: Result<ChartPage, NoPage>) {
+        match page {
+            Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
+            Err(error) => self.app.complain(error),
+        }
+    }
+
+    /// Follows a chart that is being measured, and shows it once nothing else lies over the panes. Returns whether there is
+    /// something new to draw.
+    fn follow_chart(&mut self) -> bool {
+        let Some(measuring) = &self.measuring else {
+            return false;
+        };
+        let progress = Some(measuring.progress());
+        let grown = std::mem::replace(&mut self.app.measuring, progress) != progress;
+        if !matches!(self.app.overlay, Overlay::None) {
+            return grown;
+        }
+        let Some(result) = measuring.result() else {
+            return grown;
+        };
+        (self.measuring, self.app.measuring) = (None, None);
+        self.app.say("");
+        let page = result.map_err(|why| NoPage::from(Box::new(why)));
+        self.show_chart(page.and_then(ChartPage::of_chart));
+        true
+    }
+
+    fn interrupt(&mut self) {
+        self.app.loading = None;
+        if self.loading.take().is_some() {
+            return self.app.say("not read");
+        }
+        if let Some(measuring) = &self.measuring {
+            measuring.interrupt();
+        }
+        if let Some(tutor) = &mut self.app.lesson {
+            // What the lesson wanted is not done.
+            tutor.failed();
+        }
+        if let Some(session) = &self.session {
+            session.interrupt();
+            session.background().interrupt();
+            self.app.say(match (&self.measuring, session.is_running()) {
+                (Some(_), false) => "stopping the chart",
+                _ => "stopping after this minor iteration",
+            });
+        }
+    }
+
+    fn open(&mut self, mut session: Session) {
+        let resumed = session.journal().is_some();
+        // A journal that was opened goes on itself.
+        if self.keeps && !resumed {
+            session.keep_at_default_place();
+        }
+        (self.measuring, self.app.measuring) = (None, None);
+        self.app.opened();
+        match resumed {
+            true => self.app.say("resumed from its journal, which goes on"),
+            false => greet(&mut self.app, &session),
+        }
+        self.session = Some(session);
+    }
+
+    /// Begins a lesson at the start of its scene.
+    pub fn teach(&mut self, lesson: Lesson) {
+        let session = Session::new(lesson.scene.clone());
+        self.take_lesson(lesson, session);
+    }
+
+    fn take_lesson(&mut self, lesson: Lesson, session: Session) {
+        let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
+        self.session = Some(session);
+        (self.measuring, self.app.measuring) = (None, None);
+        self.app.opened();
+        self.app.lesson = Some(tutor);
+        self.app.reading = Reading::default();
+        self.app.say("");
+    }
+
+    /// Gathers what the solver did and does what waited for that. Returns whether there is something new to draw.
+    pub fn advance(&mut self) -> bool {
+        let gathered = self.gather();
+        let resumed = self.resume();
+        let idle = !self.is_busy() && !self.app.ahead.is_any();
+        let looked = idle && self.look();
+        gathered | resumed | looked
+    }
+
+    fn gather(&mut self) -> bool {
+        let measured = self.follow_loading() | self.follow_chart() | self.preview();
+        self.keep_progress();
+        let Some(session) = &mut self.session else {
+            return measured;
+        };
+        let was_busy = session.is_running();
+        self.app.unkept = session.lost_journal().is_some();
+        let seen = session.gather_background();
+        match session.exported() {
+            Some(Ok(Reply(told))) => self.app.say(told),
+            Some(Err(why)) => self.app.complain(why),
+            None => {}
+        }
+        let reply = session.poll();
+        let said = reply.is_some();
+        if let Some(reply) = reply {
+            self.tell(reply);
+        }
+        let Some(session) = &self.session else {
+            return said;
+        };
+        let (frames, busy) = (session.frames().len(), session.is_running());
+        let grown = frames != std::mem::replace(&mut self.frames, frames);
+        if busy && grown {
+            self.app.tick += 1;
+        }
+        let panicked = terminal::panic_elsewhere();
+        let failed = panicked.is_some();
+        if let Some(message) = panicked {
+            self.app.complain(format!(
+                "the solver broke down, please report this: {message}"
+            ));
+        }
+        measured || seen || said || grown || failed || was_busy != busy
+    }
+
+    /// Asks for what the panes would tell of the shown iteration and the selected node. Returns whether anything new is
+    /// asked.
+    fn look(&mut self) -> bool {
+        let Some(session) = &mut self.session else {
+            return false;
+        };
+        let before = session.background().is_busy();
+        session.look(self.app.selected);
+        session.background().is_busy() != before
+    }
+
+    /// Waits a moment for what just began, so that keys typed fast are not told to wait.
+    pub(super) fn breathe(&mut self) {
+        let entered = Instant::now();
+        let quick = |debugger: &Debugger| {
+            let solves = debugger.is_busy() && debugger.begun.elapsed() < QUICK;
+            solves || debugger.loading.is_some() && entered.elapsed() < QUICK
+        };
+        while quick(self) {
+            std::thread::sleep(Duration::from_micros(500));
+            self.advance();
+        }
+    }
+}
+
+/// What is said when a scene opens: what is doubtful about its start, or else which key goes on.
+fn greet(app: &mut App, session: &Session) {
+    match session.doubts() {
+        [] => app.say("s is one minor iteration; ? lists the keys"),
+        [doubt] => app.complain(doubt),
+        [doubt, others @ ..] => app.complain(format!(
+            "{doubt} (and {} more: stickslip check {} tells all)",
+            others.len(),
+            session.scene_name()
+        )),
+    }
+}
