@@ -3,6 +3,7 @@
 use crate::census::{drawn, survey};
 use crate::common::{self, run, scene};
 use std::sync::Arc;
+use stickslip::explain::core::cycle;
 use stickslip::explain::page;
 use stickslip::explain::proven::factor;
 use stickslip::interface::census::census;
@@ -241,4 +242,19 @@ fn the_page_of_a_cycle_that_t_max_spirals_into_says_the_rate_and_the_fixed_point
         "{lines}"
     );
     assert!(lines.contains("its fixed point: T_max = "), "{lines}");
+}
+
+#[test]
+fn a_cycle_that_runs_long_on_the_same_modes_is_found_from_wherever_one_starts() {
+    let mut problem = first("osc-slowlag", &[]);
+    problem.settings.minors = 20;
+    let mut nodes = problem.states();
+    let mut trials = Trials::new(&problem).unwrap();
+    let mut from = problem.clone();
+    for start in 0..45 {
+        from.nodes[0].state = nodes[0];
+        let cycle = cycle(&from).unwrap_or_else(|| panic!("{start}"));
+        assert_eq!(cycle.period, 39, "{start}");
+        trials.minor(&mut nodes, method(Strategy::Table2)).unwrap();
+    }
 }
