@@ -42,7 +42,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         tell(&format!("  {line}"));
     }
     let mut trials = Vec::new();
-    for remedy in remedies::all(&mut stepper, &state) {
+    for remedy in remedies::all(&mut stepper, &state, &|| false) {
         trials.extend(remedies::attempt(&mut stepper, &state, &remedy, &|| false));
     }
     remedies::sort(&mut trials);

@@ -7,9 +7,10 @@ use crate::contact::table2::{Rule, Tested};
 use crate::explain::core::{Core, core, cycle};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::names;
-use crate::interface::census::{self, Census, MOST, search};
+use crate::explain::proven;
+use crate::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
 use crate::interface::minor_history::Cycle;
-use crate::interface::problem::{Assumed, Condition, InterfaceProblem};
+use crate::interface::problem::{Assumed, Condition, InterfaceProblem, NodeAnswer};
 use crate::interface::trials::Trials;
 use crate::model::{BoundUpdate, SlipCount};
 use crate::model::{Mode, Model};
@@ -20,6 +21,8 @@ use crate::strategy::method;
 pub const MOST_NODES: usize = 200;
 /// Branches that are looked at to count the states of a cycle that has no small core.
 const BRANCHES: usize = census::BUDGET / 10;
+/// Nodes with which all of them are looked at; with more, fewer, by the square.
+const AT_FULL: f64 = 20.0;
 /// Most consistent states that are told one by one.
 const MOST_TOLD: usize = 12;
 /// Most iterations of a period that are told one by one.
@@ -34,8 +37,8 @@ pub struct Diagnosis {
     pub phases: Vec<Phase>,
     /// The fewest nodes that still cycle; `None` if that cannot be told.
     pub core: Option<Core>,
-    /// The problem of all nodes that take part, or of the core where those are too many for a census; the other nodes go
-    /// on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
+    /// The problem of all nodes that take part, or of those whose modes change where those are too many to try all that they
+    /// can do, or else of the core; the other nodes go on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
     /// few enough.
     pub problem: InterfaceProblem,
     /// What is consistent in it; `None` if even the core is too large.
@@ -99,8 +102,8 @@ pub enum Way {
 
 impl Diagnosis {
     /// Diagnoses a problem whose nodes' states start a cycle; `None` if they do not, or if it has more than
-    /// [`MOST_NODES`] nodes.
-    pub fn of(problem: &InterfaceProblem) -> Option<Diagnosis> {
+    /// [`MOST_NODES`] nodes. The count of states ends where `stop` says so.
+    pub fn of(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option<Diagnosis> {
         if problem.nodes.len() > MOST_NODES {
             return None;
         }
@@ -110,23 +113,35 @@ impl Diagnosis {
         let members: Vec<usize> = cycle.members.iter().map(|member| member.0).collect();
         let changes = |member: &&(usize, Vec<Mode>)| member.1.iter().any(|m| *m != member.1[0]);
         let changing = cycle.members.iter().filter(changes).map(|member| member.0);
-        let mut studied = match &core {
-            Some(core) if members.len() > MOST => core.problem.clone(),
-            None if members.len() > MOST && changing.clone().next().is_some() => {
-                problem.reduced(&changing.collect::<Vec<_>>())?
-            }
-            _ => problem.reduced(&members)?,
+        let changing: Vec<usize> = changing.collect();
+        let mut studied = match members.len() > MOST && !changing.is_empty() {
+            true => problem.reduced(&changing)?,
+            false => problem.reduced(&members)?,
         };
-        let counted = |problem: &InterfaceProblem| search(problem, BRANCHES, &|| false).ok();
+        let counted = |problem: &InterfaceProblem| {
+            let few = (AT_FULL / (problem.nodes.len() as f64).max(AT_FULL)).powi(2);
+            search(problem, (BRANCHES as f64 * few) as usize, stop).ok()
+        };
         let mut found = counted(&studied);
+        // Of too many nodes nothing is known, or no more than that none was found so far.
+        let unknown = |found: &Census| found.answers.is_empty() && !found.exact;
+        if found.as_ref().is_none_or(unknown)
+            && let Some(core) = &core
+            && core.problem.nodes.len() < studied.nodes.len()
+        {
+            studied = core.problem.clone();
+            found = counted(&studied);
+        }
         // What is inconsistent with what the others do may be consistent with something else that they could do.
         let all = undecided(problem);
         let none = found.as_ref().is_some_and(|found| found.answers.is_empty());
         if none
-            && (studied.nodes.len() + 1..=MOST).contains(&all.len())
+            && (studied.nodes.len() + 1..=MOST_SEARCHED).contains(&all.len())
             && let Some(wider) = problem.reduced(&all)
+            && let Some(of_all) = counted(&wider)
+            && (of_all.exact || !of_all.answers.is_empty())
         {
-            found = counted(&wider);
+            found = Some(of_all);
             studied = wider;
         }
         let census = found;
@@ -358,6 +373,7 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
         let more = diagnosis.phases.len() - MOST_PHASES;
         lines.push(format!("and so on for {more} more minor iterations"));
     }
+    lines.extend(proven::cycle_words(problem, &name));
     if let Some(core) = &diagnosis.core
         && core.places.len() < diagnosis.cycle.members.len()
     {
@@ -370,7 +386,9 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
         ));
     }
     if let Some(census) = &diagnosis.census {
+        lines.extend(of_which_words(problem, diagnosis));
         lines.extend(census_words(census, &studied));
+        lines.extend(proven::family_words(&diagnosis.problem, census, &studied));
     }
     lines.extend(
         diagnosis
@@ -379,6 +397,31 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
             .map(|&(way, settles)| way_words(way, settles)),
     );
     lines
+}
+
+/// Over which nodes states are counted, where those are fewer than take part.
+fn of_which_words(problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Option<String> {
+    let (counted, part) = (&diagnosis.problem.nodes, diagnosis.cycle.members.len());
+    if counted.len() >= part {
+        return None;
+    }
+    let of = |place: usize| problem.nodes[place].slave;
+    let in_core = |core: &Core| {
+        core.places.len() == counted.len()
+            && core
+                .places
+                .iter()
+                .zip(counted)
+                .all(|(&place, node)| of(place) == node.slave)
+    };
+    let which = match diagnosis.core.as_ref().is_some_and(in_core) {
+        true => "nodes of the core",
+        false => "whose modes change",
+    };
+    Some(format!(
+        "of {part} nodes that take part, the states of the {} {which} are counted; all others go on with what they do",
+        counted.len()
+    ))
 }
 
 fn list(names: &[&str]) -> String {
@@ -476,7 +519,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
         (n, false) => format!("census: of {all} assignments at least {n} are consistent"),
     }];
     match (census.visited, census.exact) {
-        (0, _) => {}
+        (0, true) => {}
         (n, true) => lines.push(format!(
             "  branch and bound: {n} branches rule all others out"
         )),
@@ -490,7 +533,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             .nodes
             .iter()
             .enumerate()
-            .map(|(place, node)| format!("{} {}", name(place), assumed_words(node.assumed)))
+            .map(|(place, node)| format!("{} {}", name(place), answer_words(node)))
             .collect();
         let margin = found
             .answer
@@ -565,6 +608,14 @@ pub fn assumed_words(assumed: Assumed) -> &'static str {
         Assumed::Fixed => "fixed",
         Assumed::Plus => "sliding with F_t > 0",
         Assumed::Minus => "sliding with F_t < 0",
+    }
+}
+
+/// What a node does in a state, in words: without friction, sliding has no direction.
+pub fn answer_words(node: &NodeAnswer) -> &'static str {
+    match node.assumed.mode() {
+        Mode::Sliding if node.limit == 0.0 && node.f_n != 0.0 => "sliding",
+        _ => assumed_words(node.assumed),
     }
 }
 

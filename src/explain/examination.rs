@@ -9,6 +9,7 @@ use super::smaller::smaller;
 use crate::interface::census::{BUDGET, Census, MOST_SEARCHED, search};
 use crate::interface::minor_history::Cycle;
 use crate::interface::problem::InterfaceProblem;
+use crate::interface::trials::Trials;
 use crate::interface::uniqueness::uniqueness;
 use crate::model::Model;
 use crate::step::drive::{RunEnd, Until};
@@ -16,6 +17,7 @@ use crate::step::event::{Failure, Outcome};
 use crate::step::intervene::Start;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
+use crate::strategy::method;
 use std::ops::ControlFlow;
 
 /// What is said at the end of the history.
@@ -74,8 +76,9 @@ fn nothing(why: &str) -> Examination {
     }
 }
 
-/// What is known of the frozen problem that is solved next from a state: the diagnosis of its cycle, or else its census.
-pub fn frozen(stepper: &mut Stepper, state: &State) -> Examination {
+/// What is known of the frozen problem that is solved next from a state: the diagnosis of its cycle, or else its census,
+/// which ends where `stop` says so.
+pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Examination {
     if state.status == Status::Finished {
         return nothing(DONE);
     }
@@ -89,7 +92,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State) -> Examination {
     };
     let model = stepper.model();
     if let Some((problem, cycle)) = round
-        && let Some(diagnosis) = Diagnosis::of(&problem)
+        && let Some(diagnosis) = Diagnosis::of(&problem, stop)
     {
         let mut lines = diagnosis::words(model, &problem, &diagnosis);
         if diagnosis.cause == Cause::NoAnswer {
@@ -109,6 +112,11 @@ pub fn frozen(stepper: &mut Stepper, state: &State) -> Examination {
     let mut proven = Vec::new();
     if problem.nodes.len() <= MOST_NODES {
         proven = proven::slow_words(&problem, &name);
+        if let Status::Failed(Failure::MinorLimit { .. }) = state.status
+            && let Some(first) = proven.first_mut()
+        {
+            first.insert_str(0, "why: ");
+        }
         proven.push(proven::uniqueness_words(uniqueness(&problem), &name));
     }
     if undecided.len() > MOST_SEARCHED {
@@ -121,7 +129,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State) -> Examination {
         return nothing("The frozen interface problem is singular here.");
     };
     let head = "The minor iterations do not cycle from here.";
-    let mut found = counted(model, &studied, head);
+    let mut found = counted(model, &studied, head, stop);
     found.lines.extend(proven);
     if found
         .census
@@ -135,8 +143,13 @@ pub fn frozen(stepper: &mut Stepper, state: &State) -> Examination {
     found
 }
 
-/// Census of these slave nodes at a state, all others going on with what they do.
-pub fn examine_nodes(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> Examination {
+/// Census of these slave nodes at a state, all others going on with what they do; it ends where `stop` says so.
+pub fn examine_nodes(
+    stepper: &mut Stepper,
+    state: &State,
+    slaves: &[usize],
+    stop: &dyn Fn() -> bool,
+) -> Examination {
     if state.status == Status::Finished {
         return nothing(DONE);
     }
@@ -153,18 +166,24 @@ pub fn examine_nodes(stepper: &mut Stepper, state: &State, slaves: &[usize]) -> 
     let names = slaves.iter().map(|&slave| names::slave(model, slave));
     let names = names.collect::<Vec<_>>().join(", ");
     let head = format!("Of {names}, all other nodes going on with what they do:");
-    counted(model, &studied, &head)
+    counted(model, &studied, &head, stop)
 }
 
 /// What a census finds.
-fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Examination {
-    let census = match search(studied, BUDGET, &|| false) {
+fn counted(
+    model: &Model,
+    studied: &InterfaceProblem,
+    head: &str,
+    stop: &dyn Fn() -> bool,
+) -> Examination {
+    let census = match search(studied, BUDGET, stop) {
         Err(why) => return nothing(&why.to_string()),
         Ok(census) => census,
     };
     let name = |place: usize| names::slave(model, studied.nodes[place].slave);
     let mut lines = vec![head.to_owned()];
     lines.extend(diagnosis::census_words(&census, &name));
+    lines.extend(proven::family_words(studied, &census, &name));
     Examination {
         lines,
         census: Some(census),
@@ -174,7 +193,7 @@ fn counted(model: &Model, studied: &InterfaceProblem, head: &str) -> Examination
 }
 
 /// The problem that goes round in a cycle from a state that the stepper stands at, and the cycle by slave number; none
-/// where there is no cycle. A large problem is stepped on to its cycle, so that only those nodes are looked at that take
+/// where there is no cycle. The states of the problem are where the cycle starts. A large problem is stepped on to its cycle, so that only those nodes are looked at that take
 /// part.
 ///
 /// # Errors
@@ -193,7 +212,7 @@ pub fn going_round(
         ..cycle
     };
     if problem.nodes.len() <= MOST_NODES {
-        return Ok(cycle(problem).map(|cycle| (problem.clone(), by_slave(cycle))));
+        return Ok(cycle(problem).map(|cycle| (at_start(problem, &cycle), by_slave(cycle))));
     }
     let known = match &state.status {
         Status::Failed(Failure::Cycle(cycle)) => Some(cycle.clone()),
@@ -207,6 +226,22 @@ pub fn going_round(
         Some(problem) => Ok(Some((problem, cycle))),
         None => Err(Untold::TooMany(too_many(&cycle))),
     }
+}
+
+/// The problem with its nodes' states where its cycle starts.
+fn at_start(problem: &InterfaceProblem, cycle: &Cycle) -> InterfaceProblem {
+    let mut nodes = problem.states();
+    if let Some(mut trials) = Trials::new(problem) {
+        for _ in 1..cycle.start {
+            // It can be solved up to the cycle, since that was found.
+            let _ = trials.minor(&mut nodes, method(problem.settings.strategy));
+        }
+    }
+    let mut started = problem.clone();
+    for (node, state) in started.nodes.iter_mut().zip(nodes) {
+        node.state = state;
+    }
+    started
 }
 
 fn step_to_cycle(stepper: &mut Stepper) -> Option<Cycle> {

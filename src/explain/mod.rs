@@ -4,7 +4,8 @@
 //! - [`names`]: the words for things; [`number`]: numbers for a person; [`round_off`]: which of them are nothing; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
 //! - [`influence`]: who pushed whom; [`core`]: the fewest nodes that still cycle; [`diagnosis`]: why a cycle goes round;
 //!   [`smaller`]: whether a smaller increment has a consistent state, where one has none.
-//! - [`proven`]: what a matrix proves: one state at most, and where T_max goes while the modes repeat.
+//! - [`proven`]: what a matrix proves: one state at most, and where T_max goes while the modes repeat; [`indefinite`]: whether
+//!   it is indefinite by rounding, and what comes of it without.
 //! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
 //! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
 //!   where nothing holds it; [`reach`]: up to which load there is an answer.
@@ -17,6 +18,7 @@ pub mod audit;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;
+pub mod indefinite;
 pub mod influence;
 pub mod judged;
 pub mod loose;

@@ -6,7 +6,9 @@
 
 use super::advice::{Advice, advice};
 use super::attempt::Attempt;
+use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, NOT_CONDENSED, frozen};
+use super::indefinite::{self, indefinite};
 use super::judged;
 use super::loose::loose;
 use super::majors;
@@ -39,7 +41,14 @@ pub fn page(
                 lines: vec![DONE.into()],
                 ..Examination::default()
             },
-            _ => frozen(stepper, state),
+            _ => {
+                let found = frozen(stepper, state, stop);
+                if stop() {
+                    tell(&found);
+                    return None;
+                }
+                found
+            }
         });
     };
     let mut page = Page::of(stepper, state, failure, stop);
@@ -155,17 +164,17 @@ impl Page {
                 None => self.not_again(),
             },
             Failure::Cycle(_) | Failure::MinorLimit { .. } | Failure::NotFound(_) => {
-                self.look_at_frozen(stepper, state);
+                self.look_at_frozen(stepper, state, stop);
             }
             Failure::NoAnswer { first, .. } => {
-                self.look_at_frozen(stepper, state);
+                self.look_at_frozen(stepper, state, stop);
                 if let Some(first) = first {
                     self.explain_first(stepper.model(), first);
                 }
             }
             Failure::LadderEnded { first, .. } => {
                 self.explain_first(stepper.model(), first);
-                self.look_at_frozen(stepper, state);
+                self.look_at_frozen(stepper, state, stop);
             }
             Failure::Refused(found) => {
                 self.found.nodes.extend(found.slave);
@@ -216,12 +225,20 @@ impl Page {
     }
 
     /// The diagnosis of the frozen problem, or its census.
-    fn look_at_frozen(&mut self, stepper: &mut Stepper, state: &State) {
+    fn look_at_frozen(&mut self, stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) {
         let arrows = std::mem::take(&mut self.found.arrows);
         let nodes = std::mem::take(&mut self.found.nodes);
-        self.found = frozen(stepper, state);
+        self.found = frozen(stepper, state, stop);
         self.found.arrows = arrows;
         self.found.nodes.extend(nodes);
+        stepper.restore(state);
+        if let Some(problem) = stepper.interface_problem()
+            && let Some(problem) = problem.reduced(&undecided(&problem))
+            && let Some(told) = indefinite(&problem, stop)
+        {
+            let name = |place: usize| names::slave(stepper.model(), problem.nodes[place].slave);
+            self.facts.extend(indefinite::words(&told, &name));
+        }
         if self.found.lines == [NOT_CONDENSED] {
             self.facts.append(&mut self.found.lines);
         }
@@ -267,11 +284,18 @@ impl Page {
                 false => details.push(fact.clone()),
             }
         }
-        let mut found = self.found.lines.iter();
-        lines.extend(found.by_ref().take(1).cloned());
+        // So does what explains in the frozen problem, or else what comes first there.
+        let all = &self.found.lines;
+        let explains = |line: &&String| HEADS.iter().any(|head| line.starts_with(head));
+        let first = match all.iter().any(|line| explains(&line)) {
+            true => all.iter().filter(explains).collect(),
+            false => all.iter().take(1).collect::<Vec<_>>(),
+        };
+        lines.extend(first.iter().map(|line| (*line).clone()));
         lines.extend(self.to_do());
         lines.extend(details);
-        lines.extend(found.cloned());
+        let rest = all.iter().filter(|line| !first.contains(line));
+        lines.extend(rest.cloned());
         Examination {
             lines,
             fails: true,

@@ -1,7 +1,9 @@
 //! What the matrix of a frozen problem proves, in words: that there is one state at most, and where T_max goes while the
 //! modes repeat.
 
-use crate::interface::census::MOST_SEARCHED;
+use super::number::four;
+use crate::interface::census::{Census, MOST_SEARCHED};
+use crate::interface::family::{Family, families};
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::spiral::{Fate, Spiral, spiral};
 use crate::interface::uniqueness::{Inapplicable, Uniqueness};
@@ -9,7 +11,11 @@ use crate::strategy::method;
 
 /// Minor iterations that are run to see where T_max goes.
 const AHEAD: usize = 200;
-/// Most nodes whose factors are told.
+/// Most nodes of a cycle of which it is told where T_max goes.
+const MOST_OF_CYCLE: usize = 64;
+/// Factors below this are round-off: T_max is at its fixed point after one round.
+const AT_ONCE: f64 = 1e-9;
+/// Most nodes whose factors, or whose T_max, are told.
 const MOST_NAMED: usize = 3;
 
 /// What the matrix says of the number of states; `name` names a node by its place.
@@ -48,6 +54,52 @@ pub fn uniqueness_words<'a>(found: Uniqueness, name: &impl Fn(usize) -> &'a str)
     format!("the matrix alone says nothing of how many states there are: {why}")
 }
 
+/// The families of states that differ in their forces alone, a line each.
+pub fn family_words<'a>(
+    problem: &InterfaceProblem,
+    census: &Census,
+    name: &impl Fn(usize) -> &'a str,
+) -> Vec<String> {
+    let words = |family: &Family| {
+        let numbers: Vec<String> = family.states.iter().map(|k| (k + 1).to_string()).collect();
+        let which = match numbers.as_slice() {
+            [one] => format!("state {one} is one of them"),
+            many => format!("states {} belong to it", many.join(", ")),
+        };
+        let forces = family
+            .ranges
+            .iter()
+            .take(MOST_NAMED)
+            .map(|&(place, ranges)| {
+                let component = |(word, [low, high]): (&str, [f64; 2])| {
+                    (low < high).then(|| format!("{word} {} to {}", end(low), end(high)))
+                };
+                let both = ["F_n", "F_t"].into_iter().zip(ranges);
+                let told: Vec<String> = both.filter_map(component).collect();
+                format!("{} {}", name(place), told.join(", "))
+            });
+        let forces: Vec<String> = forces.collect();
+        let more = match family.ranges.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!("; and so on at {more} more"),
+        };
+        format!(
+            "forces are a family of dimension {}: the motions are the same, the forces are not unique ({which}): {}{more}",
+            family.dimension,
+            forces.join("; ")
+        )
+    };
+    families(problem, census).iter().map(words).collect()
+}
+
+fn end(value: f64) -> String {
+    match value.is_infinite() {
+        true if value < 0.0 => "−∞".into(),
+        true => "∞".into(),
+        false => four(value),
+    }
+}
+
 /// More nodes than a search is made over.
 pub fn too_many(nodes: usize) -> String {
     format!("States are counted of at most {MOST_SEARCHED} slave nodes, and {nodes} can touch.")
@@ -66,6 +118,9 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     };
     let away = spiral.distance;
     match spiral.fate {
+        Fate::Cycles if *radius <= AT_ONCE => {
+            format!("the modes go round for ever, {round}, and T_max is the same in each")
+        }
         Fate::Cycles => format!(
             "T_max spirals into the cycle by a factor of {radius:.4} {round} ({away:.3e} away after {} iterations); {more}, \
              but the modes go round for ever",
@@ -83,12 +138,48 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     }
 }
 
+/// Where T_max goes in a cycle that was found: nothing where it comes to rest at once.
+pub fn cycle_words<'a>(
+    problem: &InterfaceProblem,
+    name: &impl Fn(usize) -> &'a str,
+) -> Vec<String> {
+    if problem.nodes.len() > MOST_OF_CYCLE {
+        return Vec::new();
+    }
+    match spiral(problem, method(problem.settings.strategy), AHEAD) {
+        Some(found) if found.fate != Fate::Passes && found.radius > AT_ONCE => {
+            let mut lines = vec![spiral_words(problem, &found)];
+            lines.extend(fixed_words(&found, name));
+            lines
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// T_max at the fixed point, of the first nodes.
+fn fixed_words<'a>(found: &Spiral, name: &impl Fn(usize) -> &'a str) -> Option<String> {
+    let all = found.places.iter().zip(&found.fixed);
+    let told = all
+        .take(MOST_NAMED)
+        .map(|(&place, t_max)| format!("{t_max:.4e} at {}", name(place)));
+    let told = told.collect::<Vec<_>>().join(", ");
+    let more = match found.places.len().saturating_sub(MOST_NAMED) {
+        0 => String::new(),
+        more => format!(", and so on at {more} more"),
+    };
+    (!told.is_empty()).then(|| format!("  its fixed point: T_max = {told}{more}"))
+}
+
 /// Where T_max goes from a problem's states, and on what that depends: nothing where the minor iterations soon settle.
 pub fn slow_words<'a>(problem: &InterfaceProblem, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let Some(found) = spiral(problem, method(problem.settings.strategy), AHEAD) else {
         return Vec::new();
     };
     let mut lines = vec![spiral_words(problem, &found)];
+    if found.radius <= AT_ONCE {
+        return lines;
+    }
+    lines.extend(fixed_words(&found, name));
     let factors = found
         .places
         .iter()

@@ -106,12 +106,13 @@ const KINDS: [Kind; 19] = [
     Kind::Hysteresis,
 ];
 
-/// All that there is to try from a state: the consistent states, what helps against its failure, and everything else.
-pub fn all(stepper: &mut Stepper, state: &State) -> Vec<Remedy> {
+/// All that there is to try from a state: the consistent states, what helps against its failure, and everything else. The
+/// count of states ends where `stop` says so.
+pub fn all(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Vec<Remedy> {
     if state.status == Status::Finished {
         return Vec::new();
     }
-    let found = frozen(stepper, state);
+    let found = frozen(stepper, state, stop);
     let model = stepper.model();
     let mut all = Remedy::answers(model, &found);
     let mut add = |remedy: Remedy| {

@@ -161,8 +161,8 @@ pub struct Background {
     exported: Option<Result<String, NotWritten>>,
     tried: Option<Tried>,
     trying: bool,
-    /// Whether a page is being made that grows.
-    examining: bool,
+    /// Pages that are being made, or wait for it.
+    examining: usize,
 }
 
 impl Background {
@@ -191,7 +191,7 @@ impl Background {
             exported: None,
             tried: None,
             trying: false,
-            examining: false,
+            examining: 0,
         }
     }
 
@@ -221,9 +221,9 @@ impl Background {
         self.trying
     }
 
-    /// Whether a page is being made that grows.
+    /// Whether a page is being made.
     pub fn is_examining(&self) -> bool {
-        self.examining
+        self.examining > 0
     }
 
     /// Asks what pushed a node. One question at a time: while another waits, this one may be asked again later.
@@ -243,6 +243,7 @@ impl Background {
             self.examinations.insert(place, (nodes.to_vec(), None));
             let state = Box::new(state.clone());
             self.stop.store(false, Ordering::Relaxed);
+            self.examining += 1;
             self.send(Ask::Examination(place, state, nodes.to_vec()));
         }
     }
@@ -271,7 +272,7 @@ impl Background {
         self.send(Ask::Remedies(Box::new(state.clone())));
     }
 
-    /// Stops trying remedies, for the list or for a page, after the present minor iteration.
+    /// Stops trying remedies, for the list or for a page, after the present minor iteration, and counting states.
     pub fn interrupt(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -312,7 +313,7 @@ impl Background {
 
     /// The thread is gone: nothing is waited for.
     fn gone(&mut self) {
-        (self.waiting, self.trying, self.examining) = (0, false, false);
+        (self.waiting, self.trying, self.examining) = (0, false, 0);
     }
 
     fn take(&mut self, told: Told) {
@@ -341,7 +342,7 @@ impl Background {
                     },
                     _ => {}
                 }
-                self.examining = going_on;
+                self.examining -= usize::from(!going_on);
                 self.waiting -= usize::from(!going_on);
             }
             Told::Exported(result) => {
@@ -378,6 +379,7 @@ impl Drop for Background {
 
 /// Answers on the thread; `None` if nobody listens any more.
 fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
+    let stopped = || stop.load(Ordering::Relaxed);
     match ask {
         Ask::Pushes(place, slave, way) => {
             let found = pushes(stepper, slave, &way);
@@ -396,11 +398,20 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
                 [] => page(
                     stepper,
                     &state,
-                    &|| stop.load(Ordering::Relaxed),
+                    &stopped,
                     // That nobody listens any more shows at the end.
                     &mut |part| drop(send(Some(part.clone()), true)),
                 ),
-                some => Some(examine_nodes(stepper, &state, some)),
+                some => {
+                    let found = examine_nodes(stepper, &state, some, &stopped);
+                    match stopped() {
+                        false => Some(found),
+                        true => {
+                            drop(send(Some(found), true));
+                            None
+                        }
+                    }
+                }
             };
             send(found, false).ok()
         }
@@ -409,8 +420,8 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
             news.send(Told::Exported(done)).ok()
         }
         Ask::Remedies(state) => {
-            let all = remedies::all(stepper, &state);
-            let mut stopped = false;
+            let all = remedies::all(stepper, &state, &stopped);
+            let mut ended = false;
             for remedy in &all {
                 let now = remedy.label.clone();
                 news.send(Told::Trying {
@@ -418,15 +429,15 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
                     now,
                 })
                 .ok()?;
-                match remedies::attempt(stepper, &state, remedy, &|| stop.load(Ordering::Relaxed)) {
+                match remedies::attempt(stepper, &state, remedy, &stopped) {
                     Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
                     None => {
-                        stopped = true;
+                        ended = true;
                         break;
                     }
                 }
             }
-            news.send(Told::Done { stopped }).ok()
+            news.send(Told::Done { stopped: ended }).ok()
         }
     }
 }

@@ -188,7 +188,7 @@ fn no_remedy_that_ends_against_a_law_is_called_converged() {
             stepper.intervene(&force).unwrap();
         }
         let failed = stepper.state().clone();
-        for remedy in remedies::all(&mut stepper, &failed) {
+        for remedy in remedies::all(&mut stepper, &failed, &|| false) {
             let trial = remedies::attempt(&mut stepper, &failed, &remedy, &|| false).unwrap();
             let verdict = stepper.state().start.verdict;
             let broken = verdict.is_some_and(|verdict| verdict.broken().next().is_some());

@@ -3,9 +3,13 @@
 use crate::common::{self, run, scene};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
+use stickslip::explain::diagnosis::{Diagnosis, words};
+use stickslip::explain::examination::{examine_nodes, going_round};
+use stickslip::explain::page::page;
 use stickslip::format::condensed::Problem;
-use stickslip::interface::census::{BUDGET, by_blocks, census, search};
+use stickslip::interface::census::{BUDGET, MOST, by_blocks, census, search};
 use stickslip::interface::problem::InterfaceProblem;
+use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::event::Failure;
 use stickslip::step::stepper::Stepper;
@@ -147,6 +151,62 @@ fn a_search_that_is_stopped_or_out_of_budget_counts_at_least_what_it_found() {
     assert!(!half.exact && half.visited == whole.visited / 2);
     assert!(half.answers.len() <= whole.answers.len());
     assert_eq!(half, search(&problem, whole.visited / 2, &never).unwrap());
+}
+
+#[test]
+fn a_count_and_a_page_that_are_stopped_keep_what_was_found_and_say_that_it_is_not_done() {
+    let problem = survey(1, 3, 20..=20);
+    let scene = Scene::from_spec(&problem.title, problem.spec()).unwrap();
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let state = stepper.state().clone();
+    let all: Vec<usize> = (0..20).collect();
+    let counted = examine_nodes(&mut stepper, &state, &all, &|| true);
+    let words = counted.lines.join("\n");
+    assert!(words.contains("not done after 0 branches"), "{words}");
+    let mut parts = 0;
+    let whole = page(&mut stepper, &state, &|| true, &mut |_| parts += 1);
+    assert_eq!((whole, parts), (None, 1));
+}
+
+#[test]
+fn of_a_cycle_of_many_nodes_the_states_of_those_that_change_are_counted_and_that_is_said() {
+    let (mut of_changing, mut of_core) = (0, 0);
+    for k in 0..80 {
+        let problem = survey(4, k, 12..=14);
+        let scene = Scene::from_spec(&problem.title, problem.spec()).unwrap();
+        let scene = scene.with("settings.strategy", "table2").unwrap();
+        let mut stepper = Stepper::new(Arc::new(scene.model));
+        let (state, whole) = (
+            stepper.state().clone(),
+            stepper.interface_problem().unwrap(),
+        );
+        let Some((problem, cycle)) = going_round(&mut stepper, &state, &whole).unwrap() else {
+            continue;
+        };
+        let changes = |member: &&(usize, Vec<Mode>)| member.1.iter().any(|m| *m != member.1[0]);
+        let changing: Vec<usize> = cycle.members.iter().filter(changes).map(|m| m.0).collect();
+        if cycle.members.len() <= MOST || changing.is_empty() {
+            continue;
+        }
+        let diagnosis = Diagnosis::of(&problem, &never).unwrap();
+        let counted: Vec<usize> = diagnosis.problem.nodes.iter().map(|n| n.slave).collect();
+        let words = words(stepper.model(), &problem, &diagnosis).join("\n");
+        if counted == changing {
+            of_changing += 1;
+            let told = format!("the states of the {} whose modes change", changing.len());
+            assert_eq!(
+                words.contains(&told),
+                changing.len() < cycle.members.len(),
+                "{words}"
+            );
+        } else if counted.len() == whole.nodes.len() {
+            assert!(diagnosis.census.is_some_and(|census| census.exact));
+        } else {
+            of_core += 1;
+        }
+    }
+    println!("{of_changing} of the nodes that change, {of_core} of the core");
+    assert!(of_changing > 0 && of_core == 0);
 }
 
 /// Run by itself: `cargo test --release --test solver -- --ignored --nocapture thousand`.

@@ -32,3 +32,5 @@ mod jumps;
 mod scales;
 // The examples of the library run, and write what they promise.
 mod examples;
+// Forces that are not unique, and matrices that are indefinite by rounding.
+mod families;

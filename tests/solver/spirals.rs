@@ -1,8 +1,10 @@
 //! Where T_max goes while the modes repeat is told early, and only what is certain is called a cycle.
 
 use crate::census::{drawn, survey};
-use crate::common::{run, scene};
+use crate::common::{self, run, scene};
 use std::sync::Arc;
+use stickslip::explain::core::cycle;
+use stickslip::explain::page;
 use stickslip::explain::proven::factor;
 use stickslip::interface::census::census;
 use stickslip::interface::problem::InterfaceProblem;
@@ -195,5 +197,64 @@ fn a_cycle_that_t_max_spirals_into_slowly_is_reported_within_a_hundred_iteration
             let minors = failed.stepper.state().next.minor;
             assert!(minors <= 102, "{k}: {minors}");
         }
+    }
+}
+
+/// The page of the failure that a run ended with.
+fn page_of(failed: common::Run) -> Vec<String> {
+    let mut stepper = failed.stepper;
+    let state = stepper.state().clone();
+    let mut seen = |_: &_| ();
+    let page = page::page(&mut stepper, &state, &|| false, &mut seen);
+    page.unwrap().lines
+}
+
+#[test]
+fn on_the_page_of_a_minor_limit_the_rate_comes_before_what_to_do() {
+    let set = [
+        ("friction.angle", "35.75"),
+        ("settings.strategy", "table2"),
+        ("settings.minors", "60"),
+        ("history.least", "1"),
+    ];
+    let failed = run(&scene("osc-slowlag", &set));
+    let failure = failed.failure.as_ref().map(|(_, failure)| failure);
+    assert!(
+        matches!(failure, Some(Failure::MinorLimit { .. })),
+        "{failure:?}"
+    );
+    let lines = page_of(failed);
+    let place = |start: &str| lines.iter().position(|line| line.starts_with(start));
+    let why = place("why: the modes have settled; T_max converges by a factor of 0.94");
+    assert!(why.is_some() && why < place("do: 1."), "{lines:#?}");
+    assert!(place("  its fixed point: T_max = ").is_some(), "{lines:#?}");
+}
+
+#[test]
+fn the_page_of_a_cycle_that_t_max_spirals_into_says_the_rate_and_the_fixed_point() {
+    let problem = survey(1, 782, 1..=4);
+    let scene = Scene::from_spec(&problem.title, problem.spec()).unwrap();
+    let scene = scene.with("settings.strategy", "table2").unwrap();
+    let scene = scene.with("history.least", "1").unwrap();
+    let lines = page_of(run(&scene)).join("\n");
+    assert!(
+        lines.contains("T_max spirals into the cycle by a factor of 0."),
+        "{lines}"
+    );
+    assert!(lines.contains("its fixed point: T_max = "), "{lines}");
+}
+
+#[test]
+fn a_cycle_that_runs_long_on_the_same_modes_is_found_from_wherever_one_starts() {
+    let mut problem = first("osc-slowlag", &[]);
+    problem.settings.minors = 20;
+    let mut nodes = problem.states();
+    let mut trials = Trials::new(&problem).unwrap();
+    let mut from = problem.clone();
+    for start in 0..45 {
+        from.nodes[0].state = nodes[0];
+        let cycle = cycle(&from).unwrap_or_else(|| panic!("{start}"));
+        assert_eq!(cycle.period, 39, "{start}");
+        trials.minor(&mut nodes, method(Strategy::Table2)).unwrap();
     }
 }

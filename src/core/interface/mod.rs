@@ -7,10 +7,13 @@
 //! - [`census`] and [`lemke`]: what finds a consistent state, all nodes together; [`branches`] and [`feasible`]: what
 //!   cannot be consistent, which a census of many nodes leaves out.
 //! - [`spiral`]: where T_max goes while the modes repeat.
-//! - [`uniqueness`]: whether the matrix alone allows no second state.
+//! - [`uniqueness`]: whether the matrix alone allows no second state; [`family`]: states that differ in their forces alone;
+//!   [`definite`]: the eigenvalues of the compliance, and what is left of the problem without the negative ones.
 
 pub mod branches;
 pub mod census;
+pub mod definite;
+pub mod family;
 pub mod feasible;
 pub mod kinematics;
 pub mod lemke;

@@ -103,9 +103,10 @@ pub fn spiral(
         trail.push(nodes.clone());
         if minor == look || minor == most {
             look += look.div_ceil(4);
-            if let Some(period) = period(&trail)
-                && let Some(found) = of_round(&mut trials, method, &trail, period)
-            {
+            for period in periods(&trail) {
+                let Some(found) = of_round(&mut trials, method, &trail, period) else {
+                    continue;
+                };
                 match found.fate {
                     Fate::Passes => {}
                     // It may yet come to a longer round.
@@ -118,16 +119,22 @@ pub fn spiral(
     apart
 }
 
-/// The smallest number of iterations after which the modes at the end of a trail repeat, [`ROUNDS`] times.
-fn period(trail: &[Vec<ContactState>]) -> Option<usize> {
+/// The smallest numbers of iterations after which the modes at the end of a trail repeat, [`ROUNDS`] times: of all, and of
+/// those in which a mode changes, since a long round may end with many iterations that are alike.
+fn periods(trail: &[Vec<ContactState>]) -> Vec<usize> {
     let last = trail.len() - 1;
-    (1..=last / ROUNDS).find(|&period| {
-        let again = |at: usize| {
-            let pairs = trail[at].iter().zip(&trail[at - period]);
-            pairs.into_iter().all(|(a, b)| is_same(a, b))
-        };
-        (last + 1 - (ROUNDS - 1) * period..=last).all(again)
-    })
+    let alike = |a: usize, b: usize| trail[a].iter().zip(&trail[b]).all(|(a, b)| is_same(a, b));
+    let repeats = |period: &usize| {
+        let rest = last + 1 - (ROUNDS - 1) * period..=last;
+        rest.into_iter().all(|at| alike(at, at - period))
+    };
+    let all = last / ROUNDS;
+    let smallest = (1..=all).find(repeats);
+    let run = (0..=last).rev().take_while(|&at| alike(at, last)).count();
+    let changing = (run.max(1) + 1..=all).find(repeats);
+    let mut found: Vec<usize> = smallest.into_iter().chain(changing).collect();
+    found.dedup();
+    found
 }
 
 /// Whether two states have the same mode, direction of T_max and ratio.

@@ -1,0 +1,124 @@
+//! Eigenvalues of the compliance W of a frozen problem, and the problem with a W that is made semidefinite.
+//!
+//! The compliance of elastic bodies in a stable state is positive definite, or semidefinite where some forces move nothing. A
+//! matrix that was written with few digits may have small negative eigenvalues instead: forces that move their points against
+//! them. Then a problem that has an answer may have none, and pivoting may end on a ray.
+//!
+//! W = −(R⁻¹ + 1/k) of the components that can differ: those in which an unknown takes part, the tangential one only of
+//! rough nodes. Its symmetric part is looked at, and changed; the rest of W, and the motions without forces, stay.
+
+use crate::interface::problem::InterfaceProblem;
+use crate::interface::response::InterfaceResponse;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Eigenvalues below this part of the largest, times the size, are round-off of double precision.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The compliance of a problem.
+#[derive(Debug, Clone)]
+pub struct Compliance<'a> {
+    problem: &'a InterfaceProblem,
+    /// W of all components, length by force.
+    whole: DMatrix<f64>,
+    /// Numbers of the components that are looked at.
+    kept: Vec<usize>,
+    /// Eigenvalues and eigenvectors of the symmetric part.
+    parts: SymmetricEigen<f64, nalgebra::Dyn>,
+}
+
+impl<'a> Compliance<'a> {
+    /// The compliance. `None` where a body is loose, so that there is none, and where no component can differ.
+    pub fn of(problem: &'a InterfaceProblem) -> Option<Self> {
+        let relation = &problem.relation;
+        let count = relation.count();
+        let response = DMatrix::from_column_slice(count, count, &relation.response);
+        let mut whole = -response.try_inverse()?;
+        for k in 0..count {
+            whole[(k, k)] -= 1.0 / relation.stiffness;
+        }
+        let mut kept = Vec::new();
+        for (place, node) in problem.nodes.iter().enumerate() {
+            let [normal, tangential] = node.moves();
+            if normal {
+                kept.push(2 * place);
+            }
+            if tangential && !node.friction.is_smooth() {
+                kept.push(2 * place + 1);
+            }
+        }
+        if kept.is_empty() || whole.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let both =
+            |i: usize, j: usize| (whole[(kept[i], kept[j])] + whole[(kept[j], kept[i])]) / 2.0;
+        let symmetric = DMatrix::from_fn(kept.len(), kept.len(), both);
+        let parts = SymmetricEigen::try_new(symmetric, f64::EPSILON, 0)?;
+        Some(Compliance {
+            problem,
+            whole,
+            kept,
+            parts,
+        })
+    }
+
+    /// Smallest and largest eigenvalue of the symmetric part (length by force).
+    pub fn ends(&self) -> [f64; 2] {
+        let values = &self.parts.eigenvalues;
+        [values.min(), values.max()]
+    }
+
+    /// Size below which an eigenvalue is round-off of double precision (length by force).
+    pub fn round_off(&self) -> f64 {
+        let spring = 1.0 / self.problem.relation.stiffness;
+        let largest = self.parts.eigenvalues.amax().max(spring);
+        ROUND_OFF * self.kept.len() as f64 * largest
+    }
+
+    /// Number of eigenvalues of the symmetric part that are no larger than `size`.
+    pub fn within(&self, size: f64) -> usize {
+        let values = self.parts.eigenvalues.iter();
+        values.filter(|value| value.abs() <= size).count()
+    }
+
+    /// The problem with all eigenvalues that are less than `below` set to `to` (length by force). `None` if its W + 1/k is
+    /// singular then.
+    pub fn raised(&self, below: f64, to: f64) -> Option<InterfaceProblem> {
+        let relation = &self.problem.relation;
+        let values = self
+            .parts
+            .eigenvalues
+            .map(|x| if x < below { to - x } else { 0.0 });
+        let vectors = &self.parts.eigenvectors;
+        let change = vectors * DMatrix::from_diagonal(&values) * vectors.transpose();
+        let mut whole = self.whole.clone();
+        for (i, &row) in self.kept.iter().enumerate() {
+            for (j, &column) in self.kept.iter().enumerate() {
+                whole[(row, column)] += change[(i, j)];
+            }
+        }
+        // Without springs there is no response to a singular W.
+        let stiffness = match relation.stiffness.is_finite() {
+            true => relation.stiffness,
+            false => self.problem.spring,
+        };
+        let count = relation.count();
+        for k in 0..count {
+            whole[(k, k)] += 1.0 / stiffness;
+        }
+        let response = -whole.try_inverse()?;
+        // The motions without forces are −R⁻¹ start.
+        let had = DMatrix::from_column_slice(count, count, &relation.response);
+        let start = &response * had.try_inverse()? * DVector::from_column_slice(&relation.start);
+        if response.iter().chain(&start).any(|x| !x.is_finite()) {
+            return None;
+        }
+        Some(InterfaceProblem {
+            relation: InterfaceResponse {
+                stiffness,
+                start: start.iter().copied().collect(),
+                response: response.iter().copied().collect(),
+            },
+            ..self.problem.clone()
+        })
+    }
+}

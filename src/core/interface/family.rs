@@ -1,0 +1,249 @@
+//! States of a frozen problem that differ in their forces alone.
+//!
+//! Where the compliance W is singular on the nodes that touch, some forces d move nothing: W d = 0 (a body on more contacts
+//! than it needs, two nodes on one spring). With a consistent state F, every F + d is consistent that keeps to F_n ≥ 0 and to
+//! the friction limit, and for nodes that slip is on it: the motions are the same, the forces are a **family**, a convex set.
+//! The census finds its corners, since there as few forces act as determine each other; a state between them solves equations
+//! that are singular, and is counted among those.
+//!
+//! W need not be formed. No motion comes of d where (I + R / k) d = 0, R the response of the interface to z with springs of
+//! stiffness k ([`crate::interface::response`]); that is k W d / (k W + 1), and finite for loose bodies, too.
+//!
+//! What stays as it is: forces of nodes that do not touch, those that supports carry, and those of a node with cohesion that
+//! is not pressed, since it would jump.
+
+use crate::interface::census::{Census, Consistent};
+use crate::interface::feasible::Forms;
+use crate::interface::problem::InterfaceProblem;
+use nalgebra::DMatrix;
+
+/// Gaps and slips, relative to the problem's length, that are the same or zero.
+const SAME: f64 = 1e-9;
+/// Forces d whose motions are below this part of those of other forces move nothing.
+const MOVES_NOTHING: f64 = 1e-9;
+/// Forces that are the same, relative to the largest of a state.
+const SAME_FORCE: f64 = 1e-6;
+/// Forces, relative to the largest of a state, as far as which a family is followed.
+const REACH: f64 = 1e4;
+/// Slack of the conditions.
+const SLACK: f64 = 1e-10;
+
+/// States with the same motions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Family {
+    /// The consistent states of the census that belong to it, by number from 0.
+    pub states: Vec<usize>,
+    /// Number of directions in which forces can change, at least 1.
+    pub dimension: usize,
+    /// Of the nodes whose forces differ, by place: lowest and highest F_n, and F_t; both the same where it does not differ,
+    /// infinite where nothing bounds it.
+    pub ranges: Vec<(usize, [[f64; 2]; 2])>,
+}
+
+/// The families that the states of a census belong to.
+pub fn families(problem: &InterfaceProblem, census: &Census) -> Vec<Family> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (number, state) in census.answers.iter().enumerate() {
+        let with = |group: &&mut Vec<usize>| moves_alike(problem, state, &census.answers[group[0]]);
+        match groups.iter_mut().find(with) {
+            Some(group) => group.push(number),
+            None => groups.push(vec![number]),
+        }
+    }
+    let found = groups.into_iter().filter_map(|states| {
+        let all: Vec<&Consistent> = states.iter().map(|&k| &census.answers[k]).collect();
+        let (dimension, ranges) = Around::of(problem, &all)?.family()?;
+        Some(Family {
+            states,
+            dimension,
+            ranges,
+        })
+    });
+    found.collect()
+}
+
+fn moves_alike(problem: &InterfaceProblem, a: &Consistent, b: &Consistent) -> bool {
+    let near = |a: f64, b: f64| a == b || (a - b).abs() <= SAME * problem.length;
+    let mut pairs = a.answer.nodes.iter().zip(&b.answer.nodes);
+    pairs.all(|(a, b)| near(a.gap, b.gap) && near(a.slip, b.slip))
+}
+
+/// How a node's force can change.
+#[derive(Debug, Clone, Copy)]
+enum Way {
+    /// F_n alone: smooth, or a support carries F_t.
+    Normal(usize),
+    /// F_n, and F_t = ± tan φ F_n + c with it.
+    Limit(usize, f64),
+    /// F_n, and F_t within the limit.
+    Both(usize),
+}
+
+/// The forces that move nothing, about a state between those that move alike; in `unit`s.
+struct Around<'a> {
+    problem: &'a InterfaceProblem,
+    /// The largest force of these states, or of the problem.
+    unit: f64,
+    /// F_n and F_t of that state.
+    force: Vec<[f64; 2]>,
+    /// The touching nodes that take part.
+    ways: Vec<(usize, Way)>,
+    /// Columns: directions. Rows: components, as `ways` number them.
+    directions: DMatrix<f64>,
+}
+
+impl<'a> Around<'a> {
+    /// `None` where every force moves something.
+    fn of(problem: &'a InterfaceProblem, states: &[&Consistent]) -> Option<Self> {
+        let relation = &problem.relation;
+        if relation.stiffness.is_infinite() {
+            return None;
+        }
+        let all = states.iter().flat_map(|state| &state.answer.nodes);
+        let unit = all.fold(problem.force, |m, n| m.max(n.f_n.abs()).max(n.f_t.abs()));
+        let mean = |place: usize| {
+            let nodes = states.iter().map(|state| &state.answer.nodes[place]);
+            let sum = nodes.fold([0.0; 2], |s, n| [s[0] + n.f_n, s[1] + n.f_t]);
+            sum.map(|x| x / states.len() as f64 / unit)
+        };
+        let force: Vec<[f64; 2]> = (0..problem.nodes.len()).map(mean).collect();
+        let (mut ways, mut columns) = (Vec::new(), Vec::new());
+        for (place, node) in problem.nodes.iter().enumerate() {
+            let at = &states[0].answer.nodes[place];
+            let [normal, tangential] = node.moves();
+            let jumps = node.friction.cohesion != 0.0 && force[place][0] <= SAME_FORCE;
+            if !normal || jumps || at.gap.abs() > SAME * problem.length {
+                continue;
+            }
+            let first = columns.len();
+            let tangent = node.friction.coefficient();
+            let unit = |k: usize| vec![(2 * place + k, 1.0)];
+            let way = if node.friction.is_smooth() || !tangential {
+                columns.push(unit(0));
+                Way::Normal(first)
+            } else if at.slip.abs() > SAME * problem.length {
+                let slope = tangent * at.slip.signum();
+                columns.push(vec![(2 * place, 1.0), (2 * place + 1, slope)]);
+                Way::Limit(first, slope)
+            } else {
+                columns.extend([unit(0), unit(1)]);
+                Way::Both(first)
+            };
+            ways.push((place, way));
+        }
+        // What moves: (I + R / k) of each column.
+        let count = relation.count();
+        let entry = |i: usize, column: &[(usize, f64)]| -> f64 {
+            let of = |&(j, times): &(usize, f64)| {
+                let one = if i == j { 1.0 } else { 0.0 };
+                times * (one + relation.response[j * count + i] / relation.stiffness)
+            };
+            column.iter().map(of).sum()
+        };
+        if columns.is_empty() {
+            return None;
+        }
+        let motions = DMatrix::from_fn(count, columns.len(), |i, j| entry(i, &columns[j]));
+        let parts = motions.svd(false, true);
+        let (sizes, rows) = (parts.singular_values, parts.v_t?);
+        let still: Vec<usize> = (0..sizes.len())
+            .filter(|&k| sizes[k] <= MOVES_NOTHING * sizes.max())
+            .collect();
+        (!still.is_empty()).then(|| Around {
+            problem,
+            unit,
+            force,
+            ways,
+            directions: DMatrix::from_fn(columns.len(), still.len(), |i, j| rows[(still[j], i)]),
+        })
+    }
+
+    /// Its dimension and ranges; `None` if the friction cone leaves nothing of it.
+    fn family(&self) -> Option<(usize, Vec<(usize, [[f64; 2]; 2])>)> {
+        let size = self.directions.ncols();
+        let mut forms = Vec::new();
+        for k in 0..size {
+            forms.extend((0..=size).map(|j| if j == k { 1.0 } else { 0.0 }));
+        }
+        // F_n of each node and then F_t; what must not be negative.
+        let mut asked = Vec::new();
+        for (place, way) in &self.ways {
+            let [f_n, f_t] = self.of_node(*place, *way);
+            asked.push((forms.len() / (size + 1), *place));
+            forms.extend(f_n.iter().chain(&f_t).copied());
+        }
+        let mut bounded: Vec<usize> = asked.iter().map(|(form, _)| *form).collect();
+        for (place, way) in &self.ways {
+            if let Way::Both(_) = way {
+                let friction = &self.problem.nodes[*place].friction;
+                let cohesion = friction.cohesion / self.unit;
+                let [f_n, f_t] = self.of_node(*place, *way);
+                for sign in [-1.0, 1.0] {
+                    bounded.push(forms.len() / (size + 1));
+                    let pairs = f_n.iter().zip(&f_t).enumerate();
+                    forms.extend(pairs.map(|(k, (n, t))| {
+                        let given = if k == size { cohesion } else { 0.0 };
+                        friction.coefficient() * n + sign * t + given
+                    }));
+                }
+            }
+        }
+        let rows = |form: usize| forms[form * (size + 1)..(form + 1) * (size + 1) - 1].to_vec();
+        let of_bounded: Vec<Vec<f64>> = bounded.iter().map(|&form| rows(form)).collect();
+        let mut inside = Forms::new(size, forms, SLACK)?;
+        (0..size).for_each(|k| inside.bound(k, -REACH, REACH));
+        for &form in &bounded {
+            inside.bound(form, 0.0, f64::INFINITY);
+        }
+        if !inside.can_hold() {
+            return None;
+        }
+        // A condition that can only be zero takes a direction away.
+        let mut fixed = Vec::new();
+        for (&form, row) in bounded.iter().zip(of_bounded) {
+            if inside.most(form, 1.0) <= SAME_FORCE {
+                fixed.extend(row);
+            }
+        }
+        let dimension = match fixed.len() / size {
+            0 => size,
+            rows => size - DMatrix::from_row_slice(rows, size, &fixed).rank(SAME_FORCE),
+        };
+        if dimension == 0 {
+            return None;
+        }
+        let mut range = |form: usize| {
+            let mut end = |sign: f64| {
+                let most = inside.most(form, sign);
+                let far = most > REACH / 10.0;
+                sign * if far { f64::INFINITY } else { most } * self.unit
+            };
+            let [low, high] = [end(-1.0), end(1.0)];
+            match high - low > SAME_FORCE * self.unit {
+                true => [low, high],
+                false => [(low + high) / 2.0; 2],
+            }
+        };
+        let all = asked
+            .iter()
+            .map(|&(form, place)| (place, [range(form), range(form + 1)]));
+        let differs =
+            |(_, ranges): &(usize, [[f64; 2]; 2])| ranges.iter().any(|[low, high]| low < high);
+        Some((dimension, all.filter(differs).collect()))
+    }
+
+    /// F_n and F_t of a node: a coefficient a direction, and the constant.
+    fn of_node(&self, place: usize, way: Way) -> [Vec<f64>; 2] {
+        let size = self.directions.ncols();
+        let [f_n, f_t] = self.force[place];
+        let form = |row: Option<(usize, f64)>, constant: f64| -> Vec<f64> {
+            let of = |k| row.map_or(0.0, |(row, times)| times * self.directions[(row, k)]);
+            (0..size).map(of).chain([constant]).collect()
+        };
+        match way {
+            Way::Normal(row) => [form(Some((row, 1.0)), f_n), form(None, f_t)],
+            Way::Limit(row, slope) => [form(Some((row, 1.0)), f_n), form(Some((row, slope)), f_t)],
+            Way::Both(row) => [form(Some((row, 1.0)), f_n), form(Some((row + 1, 1.0)), f_t)],
+        }
+    }
+}
