@@ -42,6 +42,7 @@ pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> L
     // The places of the contacts are needed, not the matrix; it may be singular.
     stepper.norms();
     let at_start = stepper.loose(&state.start.nodes);
+    let still = matches!(stepper.loose(&state.nodes), Singular::Rigid { .. });
     let model = stepper.model();
     let places = model.places(&state.u);
     let mut told = Loose::default();
@@ -50,7 +51,7 @@ pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> L
             continue;
         };
         told.lines.push(moving.pushed(state));
-        told.lines.push(moving.contacts(state));
+        told.lines.push(moving.contacts(state, still));
         told.lines.push(moving.stopped(state));
         told.arrows.extend(moving.arrows());
     }
@@ -145,8 +146,8 @@ impl<'a> Moving<'a> {
         )
     }
 
-    /// What its contacts do: how many are open, slide, stick.
-    fn contacts(&self, state: &State) -> String {
+    /// What its contacts do: how many are open, slide, stick; `still` where nothing holds it in these modes.
+    fn contacts(&self, state: &State, still: bool) -> String {
         let own: Vec<usize> = self.own().collect();
         let count = |mode: Mode| own.iter().filter(|s| state.nodes[**s].mode == mode).count();
         let (free, sliding, fixed) = (count(Mode::Free), count(Mode::Sliding), count(Mode::Fixed));
@@ -154,10 +155,11 @@ impl<'a> Moving<'a> {
             return "why: it has no contact, and its supports leave this motion free".into();
         }
         let why = match (free, sliding, fixed) {
-            (_, 0, 0) => "an open node resists nothing",
-            (_, _, 0) => {
+            (_, 0, 0) if still => "an open node resists nothing",
+            (_, _, 0) if still => {
                 "a sliding node resists along its normal only: its friction is a force, T_max, that does not grow with the motion"
             }
+            _ if !still => "the modes that were tried before these held it still less",
             _ => "where they stick, they leave this motion free",
         };
         format!(

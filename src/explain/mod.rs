@@ -8,7 +8,7 @@
 //!   it is indefinite by rounding, and what comes of it without.
 //! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
 //! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
-//!   where nothing holds it; [`reach`]: up to which load there is an answer.
+//!   where nothing holds it; [`reach`]: up to which load there is an answer; [`finer`]: whether a finer mesh has one.
 //! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
@@ -18,6 +18,7 @@ pub mod audit;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;
+pub mod finer;
 pub mod indefinite;
 pub mod influence;
 pub mod judged;

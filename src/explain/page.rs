@@ -8,6 +8,7 @@ use super::advice::{Advice, advice};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, NOT_CONDENSED, frozen};
+use super::finer::{Finer, finer};
 use super::indefinite::{self, indefinite};
 use super::judged;
 use super::loose::loose;
@@ -16,8 +17,9 @@ use super::names;
 use super::number::{four, plain};
 use super::reach::reach;
 use super::remedies::{self, Trial, TrialEnd, attempt};
-use super::remedy::{Kind, Remedy};
+use super::remedy::{How, Remedy};
 use super::report::{describe_failure, sound};
+use crate::format::spec::Spec;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::{Body, BodyKind, Model};
@@ -28,10 +30,12 @@ use crate::step::stepper::Stepper;
 /// Most remedies that are tried for a page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
 
-/// Makes the page of a state. `tell` sees it grow; `None` where it was stopped.
+/// Makes the page of a state. `spec` is the scene as its author wrote it, of which a finer mesh is made; `tell` sees the
+/// page grow; `None` where it was stopped.
 pub fn page(
     stepper: &mut Stepper,
     state: &State,
+    spec: Option<&Spec>,
     stop: &dyn Fn() -> bool,
     tell: &mut dyn FnMut(&Examination),
 ) -> Option<Examination> {
@@ -52,12 +56,20 @@ pub fn page(
         });
     };
     let mut page = Page::of(stepper, state, failure, stop);
+    let refines = matches!(failure, Failure::MajorCycle(_) | Failure::Refused(_));
     tell(&page.shown("trying what helps …"));
     let remedies = page.remedies(stepper.model(), state, failure);
     for remedy in &remedies {
         tell(&page.shown(&format!("trying {} …", remedy.label)));
         let trial = attempt(stepper, state, remedy, stop)?;
         page.trials.push((remedy.clone(), trial));
+    }
+    if refines && let Some(spec) = spec {
+        tell(&page.shown("trying a finer mesh …"));
+        page.finer = finer(spec, state, stop);
+        if stop() {
+            return None;
+        }
     }
     if page.asks_how_far(failure) {
         tell(&page.shown("looking how far smaller steps come …"));
@@ -90,6 +102,8 @@ struct Page {
     by_hand: Vec<&'static str>,
     /// What was tried.
     trials: Vec<(Remedy, Trial)>,
+    /// A finer mesh, where it was tried.
+    finer: Option<Finer>,
     /// The frozen problem, where it has something to say.
     found: Examination,
 }
@@ -106,6 +120,7 @@ impl Page {
             facts: Vec::new(),
             by_hand: Vec::new(),
             trials: Vec::new(),
+            finer: None,
             found: Examination::default(),
         };
         page.explain(stepper, state, failure, stop);
@@ -311,9 +326,10 @@ impl Page {
             .iter()
             .filter(|(_, trial)| helps(trial))
             .collect();
+        // What lasts over the increments to come is better than what helps in this one.
         trials.sort_by_key(|(remedy, trial)| {
-            let answer = matches!(remedy.kind, Kind::Answer(_));
-            (!answer, trial.factorizations, trial.minors)
+            let lasts = matches!(remedy.how, How::Set(..) | How::Increment(_));
+            (!lasts, trial.factorizations, trial.minors)
         });
         let helped = trials.iter().map(|(remedy, trial)| {
             let minors = match trial.minors {
@@ -326,13 +342,27 @@ impl Page {
                 remedy.how.typed(),
             )
         });
-        let by_hand = self.by_hand.iter().map(|text| (*text).to_owned());
+        let finer = self.finer.iter().filter(|finer| finer.failure.is_none());
+        let finer = finer.map(|finer| {
+            format!(
+                "a finer mesh: --set refine={} (tried from the start: it gets past this load, {} minor iterations)",
+                finer.refine, finer.minors
+            )
+        });
+        // What was tried is not advised once more.
+        let tried = self.finer.is_some();
+        let by_hand = self
+            .by_hand
+            .iter()
+            .filter(|text| !(tried && text.contains("refine=2")));
+        let by_hand = by_hand.map(|text| (*text).to_owned());
         let mut lines: Vec<String> = helped
+            .chain(finer)
             .chain(by_hand)
             .enumerate()
             .map(|(k, text)| format!("do: {}. {text}", k + 1))
             .collect();
-        let vain: Vec<String> = self
+        let mut vain: Vec<String> = self
             .trials
             .iter()
             .filter(|(_, trial)| !helps(trial))
@@ -340,6 +370,13 @@ impl Page {
                 format!("{} ({})", remedy.label, remedies::end_words(&trial.end))
             })
             .collect();
+        vain.extend(self.finer.iter().filter_map(|finer| {
+            let end = match finer.failure.as_ref()? {
+                Some(failure) => remedies::end_words(&TrialEnd::Failed(failure.clone())),
+                None => format!("{} minors", finer.minors),
+            };
+            Some(format!("a finer mesh, refine={} ({end})", finer.refine))
+        }));
         if !vain.is_empty() {
             lines.push(format!("tried in vain: {}", vain.join(", ")));
         }

@@ -16,6 +16,7 @@ use crate::explain::influence::{Push, Way, pushes};
 use crate::explain::page::page;
 use crate::explain::remedies::{self, Trial};
 use crate::explain::report;
+use crate::format::spec::Spec;
 use crate::history::strip::Strip;
 use crate::model::Model;
 use crate::outside::files::{self, FileError};
@@ -167,7 +168,9 @@ pub struct Background {
 
 impl Background {
     /// Starts the idle thread.
-    pub fn new(model: Arc<Model>) -> Background {
+    ///
+    /// `spec` is the scene as its author wrote it, of which a finer mesh may be tried.
+    pub fn new(model: Arc<Model>, spec: Spec) -> Background {
         let (asks, orders) = channel::<Ask>();
         let (news, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
@@ -176,7 +179,7 @@ impl Background {
             let mut stepper = None;
             while let Ok(ask) = orders.recv() {
                 let stepper = stepper.get_or_insert_with(|| Stepper::new(model.clone()));
-                if answer(stepper, ask, &news, &flag).is_none() {
+                if answer(stepper, &spec, ask, &news, &flag).is_none() {
                     return;
                 }
             }
@@ -378,7 +381,13 @@ impl Drop for Background {
 }
 
 /// Answers on the thread; `None` if nobody listens any more.
-fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
+fn answer(
+    stepper: &mut Stepper,
+    spec: &Spec,
+    ask: Ask,
+    news: &Sender<Told>,
+    stop: &AtomicBool,
+) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
     match ask {
         Ask::Pushes(place, slave, way) => {
@@ -398,6 +407,7 @@ fn answer(stepper: &mut Stepper, ask: Ask, news: &Sender<Told>, stop: &AtomicBoo
                 [] => page(
                     stepper,
                     &state,
+                    Some(spec),
                     &stopped,
                     // That nobody listens any more shows at the end.
                     &mut |part| drop(send(Some(part.clone()), true)),

@@ -86,17 +86,18 @@ impl Session {
     pub fn with_budget(scene: Scene, bytes: usize) -> Self {
         let model = Arc::new(scene.model.clone());
         let start = Stepper::new(model.clone()).state().clone();
+        let background = Background::new(model.clone(), scene.spec.clone());
         Session {
             start: (gaps::words(&model).join(", "), gaps::warnings(&model)),
             scene,
             tree: Tree::new(model.clone(), start, bytes),
             cursor: 0,
-            worker: Worker::new(model.clone()),
+            worker: Worker::new(model),
             task: None,
             breakpoints: Vec::new(),
             numbered: 0,
             watches: Vec::new(),
-            background: Background::new(model),
+            background,
             diary: Diary::default(),
             pending: None,
             solved: 0,

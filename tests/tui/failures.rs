@@ -1,10 +1,14 @@
 //! Every way in which an increment can fail has its page: what happened, where, why, what was tried, what to do.
 
+use std::sync::Arc;
+use stickslip::contact::laws::{Finding, Law, Numbers};
 use stickslip::explain::examination::Examination;
+use stickslip::explain::page::page;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::event::Failure;
 use stickslip::step::state::Status;
+use stickslip::step::stepper::Stepper;
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
 
@@ -149,5 +153,65 @@ fn every_way_to_fail_has_a_page_that_says_what_why_and_what_to_do() {
             let name = format!("{}-{width}x{height}", case.name);
             insta::assert_snapshot!(name, debugger.text(width, height));
         }
+    }
+}
+
+#[test]
+fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_allowed() {
+    // No scene is known that ends so, so one that ends otherwise is said to.
+    let case = &CASES[3];
+    let debugger = at_failure(case);
+    let session = debugger.session.as_ref().unwrap();
+    let mut state = session.frame().state.clone();
+    let why = Finding {
+        law: Law::Cone,
+        slave: Some(0),
+        amount: 1e-3,
+        allowed: 1e-9,
+        numbers: Numbers {
+            gap: 0.0,
+            f_n: 2.0,
+            f_t: 0.7,
+            limit: 0.5,
+            slip: 0.01,
+        },
+    };
+    state.status = Status::Failed(Failure::Refused(why));
+    let mut stepper = Stepper::new(Arc::new(session.model().clone()));
+    let spec = Some(&session.scene().spec);
+    let found = page(&mut stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
+    let told = found.lines.join("\n");
+    let name = &session.model().nodes[session.model().contacts[0].node].name;
+    for part in [
+        "cone",
+        name.as_str(),
+        "F_t 0.7 of at most 0.5",
+        "1.0e-9 is allowed",
+        "do: 1. ",
+        "a finer mesh, refine=2",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    assert_eq!(found.nodes, [0]);
+}
+
+#[test]
+fn the_two_scenes_of_a_stranger_are_cured_by_what_their_pages_say() {
+    for name in ["loose", "major-cycle"] {
+        let case = CASES.iter().find(|case| case.name == name).unwrap();
+        let mut debugger = at_failure(case);
+        let found = found(&debugger);
+        let first = found.lines.iter().find(|line| line.starts_with("do: 1. "));
+        let first = first.unwrap();
+        // What the page says is typed, and nothing else.
+        let (_, command) = first.split_once(": :").unwrap();
+        let command = command.split_once(" (tried").unwrap().0;
+        debugger.type_keys(":");
+        debugger.type_text(command);
+        debugger.type_keys("Enter c");
+        // The strip comes loose once more where all of its load is gone again: then nothing can hold it.
+        let frames = debugger.session.as_ref().unwrap().frames();
+        let loads = frames.iter().map(|frame| frame.state.start.load_factor);
+        assert_eq!(loads.fold(0.0, f64::max), 1.0, "{name}: {first}");
     }
 }
