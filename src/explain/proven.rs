@@ -49,6 +49,12 @@ pub fn uniqueness_words<'a>(found: Uniqueness, name: &impl Fn(usize) -> &'a str)
             format!("{} has cohesion, which it loses when it opens", name(place))
         }
         Inapplicable::Singular => "some forces move nothing, or nothing holds a body".into(),
+        Inapplicable::Semidefinite(zero) => {
+            let are = if zero == 1 { "is" } else { "are" };
+            format!(
+                "it is singular, {zero} of its eigenvalues {are} 0, so that forces need not be unique"
+            )
+        }
         Inapplicable::Indefinite => "it is not positive definite".into(),
     };
     format!("the matrix alone says nothing of how many states there are: {why}")

@@ -10,6 +10,7 @@ use stickslip::interface::census::census;
 use stickslip::interface::definite::Compliance;
 use stickslip::interface::family::{Family, families};
 use stickslip::interface::problem::InterfaceProblem;
+use stickslip::interface::uniqueness::{Inapplicable, Uniqueness, uniqueness};
 use stickslip::scene::Scene;
 use stickslip::scene::siconos::{Friction2d, Storage};
 use stickslip::step::stepper::Stepper;
@@ -63,6 +64,8 @@ fn two_rough_nodes_on_one_spring_share_its_force_as_friction_lets_them() {
         panic!("{found:?}");
     };
     assert_eq!(family.dimension, 2);
+    let semidefinite = Uniqueness::Not(Inapplicable::Semidefinite(2));
+    assert_eq!(uniqueness(&problem), semidefinite);
     assert_ranges(family, &[[[0.0, 1.0], [-0.3, 0.2]]; 2]);
     assert!(family.states.len() > 1, "{family:?}");
 }

@@ -222,7 +222,7 @@ impl<'a> Branches<'a> {
             if (self.stop)() || !self.holds(FIRST_ROUNDS) {
                 break;
             }
-            for place in 0..self.nodes.len() {
+            for (place, &own) in choices.iter().enumerate() {
                 for k in 0..5 {
                     let form = OF_NODE * place + k;
                     let within = &mut self.nodes[place].within[k];
@@ -231,7 +231,7 @@ impl<'a> Branches<'a> {
                         within[0] = within[0].max(-self.forms.most(form, -1.0));
                     }
                 }
-                self.bound(place, choices[place]);
+                self.bound(place, own);
             }
             self.build(choices)?;
         }

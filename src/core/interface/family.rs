@@ -37,8 +37,11 @@ pub struct Family {
     pub dimension: usize,
     /// Of the nodes whose forces differ, by place: lowest and highest F_n, and F_t; both the same where it does not differ,
     /// infinite where nothing bounds it.
-    pub ranges: Vec<(usize, [[f64; 2]; 2])>,
+    pub ranges: Vec<Range>,
 }
+
+/// A node (its place), and the lowest and highest of its F_n and of its F_t (force).
+pub type Range = (usize, [[f64; 2]; 2]);
 
 /// The families that the states of a census belong to.
 pub fn families(problem: &InterfaceProblem, census: &Census) -> Vec<Family> {
@@ -159,7 +162,7 @@ impl<'a> Around<'a> {
     }
 
     /// Its dimension and ranges; `None` if the friction cone leaves nothing of it.
-    fn family(&self) -> Option<(usize, Vec<(usize, [[f64; 2]; 2])>)> {
+    fn family(&self) -> Option<(usize, Vec<Range>)> {
         let size = self.directions.ncols();
         let mut forms = Vec::new();
         for k in 0..size {
@@ -227,8 +230,7 @@ impl<'a> Around<'a> {
         let all = asked
             .iter()
             .map(|&(form, place)| (place, [range(form), range(form + 1)]));
-        let differs =
-            |(_, ranges): &(usize, [[f64; 2]; 2])| ranges.iter().any(|[low, high]| low < high);
+        let differs = |(_, ranges): &Range| ranges.iter().any(|[low, high]| low < high);
         Some((dimension, all.filter(differs).collect()))
     }
 

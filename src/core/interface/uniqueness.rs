@@ -37,6 +37,7 @@
 //! is small against the mesh is known of Coulomb friction (Haslinger, Math. Methods Appl. Sci. 5, 1983; Hassani, Ionescu &
 //! Oudet, Int. J. Solids Struct. 44, 2007).
 
+use crate::interface::definite;
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::DenseFactors;
 
@@ -75,6 +76,8 @@ pub enum Inapplicable {
     Cohesion(usize),
     /// Bodies are loose, or forces move nothing: there is no definite compliance.
     Singular,
+    /// The compliance is semidefinite: so many of its eigenvalues are round-off, and forces need not be unique.
+    Semidefinite(usize),
     /// The compliance is not positive definite.
     Indefinite,
 }
@@ -83,7 +86,8 @@ pub enum Inapplicable {
 pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
     let compliance = match Compliance::of(problem) {
         Ok(compliance) => compliance,
-        Err(why) => return Uniqueness::Not(why),
+        Err(why @ Inapplicable::Cohesion(_)) => return Uniqueness::Not(why),
+        Err(why) => return Uniqueness::Not(semidefinite(problem).unwrap_or(why)),
     };
     let spare = compliance.spare();
     match spare >= 1.0 {
@@ -93,6 +97,14 @@ pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
         },
         false => Uniqueness::Unproven { spare },
     }
+}
+
+/// Whether the compliance is semidefinite.
+fn semidefinite(problem: &InterfaceProblem) -> Option<Inapplicable> {
+    let compliance = definite::Compliance::of(problem)?;
+    let round_off = compliance.round_off();
+    let zero = compliance.within(round_off);
+    (zero > 0 && compliance.ends()[0] >= -round_off).then_some(Inapplicable::Semidefinite(zero))
 }
 
 /// tan φ √cond W with the largest tan φ: below 1, states are unique, too. `None` where there is no definite compliance.
