@@ -108,6 +108,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
                 true,
                 &[Kind::Start(Mode::Fixed), Kind::Start(Mode::Sliding)],
             );
+            add(!climbs, &[Kind::Strategy(Strategy::Ladder)]);
         }
         Failure::Singular(Singular::Unexplained) | Failure::Diverged { .. } => {
             add(true, parts);

@@ -11,7 +11,7 @@ use crate::step::major_history::{MajorCycle, Stop};
 use crate::step::state::State;
 
 /// Most nodes of a cycle that are told one by one.
-const MOST_NODES: usize = 3;
+const MOST_NODES: usize = 2;
 /// Most residuals that are shown.
 const MOST_RESIDUALS: usize = 8;
 /// Major iterations over which a rate is taken.
@@ -88,7 +88,13 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
     };
     let places = model.places(&last.u);
     let mut lines = Vec::new();
-    for (s, stops) in round.members.iter().take(MOST_NODES) {
+    // Those that change come first; where there are any, the others are only carried along by them.
+    let changes = |stops: &[Stop]| hops(stops).is_some() || switches(stops).is_some();
+    let mut members: Vec<&(usize, Vec<Stop>)> = round.members.iter().collect();
+    if members.iter().any(|(_, stops)| changes(stops)) {
+        members.retain(|(_, stops)| changes(stops));
+    }
+    for (s, stops) in members.iter().take(MOST_NODES) {
         let Some(contact) = model.contacts.get(*s) else {
             continue;
         };
@@ -137,10 +143,11 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
             }
         }
     }
-    if round.members.len() > MOST_NODES {
+    let told = members.len().min(MOST_NODES);
+    if round.members.len() > told {
         lines.push(format!(
-            "and {} more nodes",
-            round.members.len() - MOST_NODES
+            "and {} more nodes change, or are carried along",
+            round.members.len() - told
         ));
     }
     lines.extend(residuals(attempt));

@@ -134,7 +134,16 @@ impl Page {
             "what: increment {} to load {}: {}",
             state.next.increment,
             plain(state.load_factor),
-            describe_failure(model, failure)
+            match failure {
+                // Who takes part is told node by node below.
+                Failure::MajorCycle(round) => format!(
+                    "the major iterations {}-cycle since major {}, with {} nodes that take part",
+                    round.period,
+                    round.start,
+                    round.members.len()
+                ),
+                _ => describe_failure(model, failure),
+            }
         ));
         page.what.push(format!("{}.", sound(state.next, state)));
         page
