@@ -5,8 +5,9 @@ use crate::outside::files::FileError;
 use crate::outside::shown;
 use crate::record::journal::JournalError;
 use crate::record::snapshot::SnapshotError;
-use crate::scene::Scene;
+use crate::scene::{Scene, builtin};
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// How the program ends.
@@ -111,4 +112,13 @@ pub fn say(text: &str) -> Result<(), Error> {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
         _ => Ok(()),
     }
+}
+
+/// What to say of a file that is missing, where a built-in scene has its name. `None` where none has.
+pub fn scene_instead(file: &Path) -> Option<String> {
+    let name = file.to_str().filter(|_| !file.exists())?;
+    builtin::find(name)?;
+    Some(format!(
+        "{name}: this is a built-in scene, and no file; `stickslip {name}` opens it, `stickslip run {name}` solves it"
+    ))
 }

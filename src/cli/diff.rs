@@ -1,6 +1,6 @@
 //! `stickslip diff`: two snapshots, node by node.
 
-use super::base::{Error, Exit, say};
+use super::base::{Error, Exit, say, scene_instead};
 use crate::record::differences::compare;
 use crate::record::snapshot::Snapshot;
 use std::path::PathBuf;
@@ -16,7 +16,13 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let (left, right) = (Snapshot::read(&args.left)?, Snapshot::read(&args.right)?);
+    let read = |file: &PathBuf| {
+        Snapshot::read(file).map_err(|why| match scene_instead(file) {
+            Some(instead) => Error::Usage(instead),
+            None => why.into(),
+        })
+    };
+    let (left, right) = (read(&args.left)?, read(&args.right)?);
     let differences = compare(&left, &right);
     if differences.is_empty() {
         return Ok(Exit::Good);

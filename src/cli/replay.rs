@@ -1,6 +1,6 @@
 //! `stickslip replay`: computes snapshots again, and compares.
 
-use super::base::{Error, Exit, say, tell};
+use super::base::{Error, Exit, say, scene_instead, tell};
 use crate::record::differences::compare;
 use crate::record::snapshot::{Snapshot, SnapshotError};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ fn one(file: &Path) -> Result<Exit, Error> {
     let recorded = match Snapshot::read(file) {
         Ok(recorded) => recorded,
         Err(error) => {
-            tell(&error.to_string());
+            tell(&scene_instead(file).unwrap_or_else(|| error.to_string()));
             return Ok(Exit::Bad);
         }
     };

@@ -96,6 +96,9 @@ pub fn warnings(model: &Model) -> Vec<String> {
         let count = found.inside.len();
         let deepest = -found.range[0];
         let next = match model.settings.initial_gaps {
+            InitialGaps::Keep if count == found.nodes => {
+                "its outward side, on the right of its walk, may be the wrong one (reverse); else the first increment pushes them out, settings.initial_gaps=adjust moves them onto the surface without stress, and ramp pushes them out over the first leg"
+            }
             InitialGaps::Keep => {
                 "the first increment pushes them out; settings.initial_gaps=adjust moves them onto the surface without stress, ramp pushes them out over the first leg"
             }

@@ -218,3 +218,21 @@ fn a_run_of_a_scene_without_monitors_tells_modes_and_forces() {
     let quiet = ran(directory.path(), &[&arguments[..], &["-q"]].concat());
     assert_eq!(err(&quiet), "");
 }
+
+#[test]
+fn a_built_in_scene_where_a_snapshot_is_read_is_told_to_be_one() {
+    let here = tempfile::tempdir().unwrap();
+    for arguments in [
+        &["replay", "osc-snap"][..],
+        &["diff", "osc-snap", "osc-two6"],
+    ] {
+        let output = program(here.path(), arguments).output().unwrap();
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        let told = err(&output);
+        assert!(
+            told.contains("osc-snap: this is a built-in scene"),
+            "{told}"
+        );
+        assert!(told.contains("`stickslip run osc-snap`"), "{told}");
+    }
+}

@@ -126,6 +126,17 @@ fn a_strip_on_a_floor_that_is_drawn_the_other_way_round_is_warned_of() {
 }
 
 #[test]
+fn a_surface_that_all_nodes_of_a_beam_start_inside_of_may_look_the_wrong_way() {
+    let scene = bar(0.1, "", "[0.0, 1.0]");
+    let told = warnings(&scene.model);
+    assert!(
+        told[0].starts_with("1 of 1 slave nodes starts inside surface floor"),
+        "{told:?}"
+    );
+    assert!(told[0].contains("reverse"), "{told:?}");
+}
+
+#[test]
 fn bodies_without_any_hold_and_bodies_that_overlap_are_warned_of() {
     let text = r#"(
     title: "Two blocks",

@@ -397,8 +397,13 @@ impl System {
     pub fn kinematics(&self, contact: usize) -> Option<NodeKinematics> {
         let interface = &self.interfaces[contact];
         let projection = interface.projection.as_ref()?;
+        // A gap of -0 stays what it is.
+        let gap = match interface.allowed {
+            0.0 => projection.gap,
+            allowed => projection.gap + allowed,
+        };
         Some(NodeKinematics {
-            gap: projection.gap + interface.allowed,
+            gap,
             normal: projection.normal,
             foot: projection.foot,
             moves: interface.moves,

@@ -1,5 +1,5 @@
 //! A state as a picture for paper: the deformed shape with the nodes' modes, the masters' normals, contact forces and
-//! gaps, a table of the slave nodes, and the timeline below ([`super::timeline`]).
+//! gaps, a table of the slave nodes, and the timeline below.
 //!
 //! Displacements are drawn as large as they are. Forces have a scale of their own, which stands below the shape with its
 //! number. Modes are told by shapes first, and by colours that differ in grey, too.
