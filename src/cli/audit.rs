@@ -1,6 +1,7 @@
 //! `stickslip audit`: the worst violation of every law over whole histories.
 
 use super::base::{Error, Exit, SetArgs, say, tell};
+use super::course::Course;
 use super::interrupt::Interrupt;
 use crate::contact::laws::Law;
 use crate::explain::audit::{Audit, Found};
@@ -8,12 +9,11 @@ use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::report;
 use crate::model::Model;
-use crate::record::snapshot::{Applied, Snapshot};
+use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
-use crate::step::drive::{RunEnd, Until};
+use crate::step::drive::RunEnd;
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -24,13 +24,6 @@ pub struct Args {
     inputs: Vec<String>,
     #[command(flatten)]
     set: SetArgs,
-}
-
-/// What to audit: a scene, and of a snapshot what was done to it, and how far.
-struct Course {
-    scene: Scene,
-    applied: Vec<Applied>,
-    steps: Option<u64>,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -52,57 +45,26 @@ fn open(input: &str, args: &Args) -> Result<Course, Error> {
     let path = Path::new(input);
     let is_snapshot = path.is_file() && Snapshot::is_one(path);
     if !is_snapshot {
-        return Ok(Course {
-            scene: Scene::open(input, &args.set.set)?,
-            applied: Vec::new(),
-            steps: None,
-        });
+        return Ok(Course::of_scene(Scene::open(input, &args.set.set)?));
     }
     if !args.set.set.is_empty() {
         return Err(Error::Usage(format!(
             "{input}: a snapshot is audited as it was recorded; --set is for scenes"
         )));
     }
-    let snapshot = Snapshot::read(path)?;
-    Ok(Course {
-        scene: Scene::from_spec(input, snapshot.scene)?,
-        applied: snapshot.interventions,
-        steps: Some(snapshot.steps),
-    })
+    Course::of_snapshot(input, Snapshot::read(path)?)
 }
 
 fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     let mut stepper = Stepper::new(Arc::new(course.scene.model.clone()));
-    let (mut audit, mut applied) = (Audit::default(), course.applied.iter().peekable());
+    let mut audit = Audit::default();
     let name = &course.scene.name;
-    let mut intervene = |stepper: &mut Stepper, done: u64| {
-        while let Some(next) = applied.next_if(|a| a.step == done) {
-            stepper
-                .intervene(&next.intervention)
-                .map_err(|e| Error::Usage(format!("{name}: after step {done}: {e}")))?;
-        }
-        Ok(())
-    };
-    intervene(&mut stepper, 0)?;
-    let came = || interrupt.came();
-    let until = Until::end().interrupted_by(&came);
-    // A snapshot goes on from a failure, as its user did.
-    let until = match course.steps {
-        Some(steps) => until.minors(steps).past_failures(),
-        None => until,
-    };
-    let mut done = 0;
-    let end = stepper.drive(until, |stepper| {
-        done += 1;
+    let end = course.go(&mut stepper, interrupt, &mut |stepper| {
         let failed = matches!(stepper.event().outcome, Outcome::Failed(_));
         if !failed || course.steps.is_some() {
             audit.take(stepper);
         }
-        match intervene(stepper, done) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => ControlFlow::Break(error),
-        }
-    });
+    })?;
     let failed = match end {
         RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {

@@ -2,6 +2,7 @@
 //! ([`crate::record::export`]).
 
 use super::base::{Error, Exit, SetArgs, tell};
+use super::course::Course;
 use super::interrupt::Interrupt;
 use super::place::{At, seek, tell_missed};
 use crate::explain::{names, report};
@@ -12,14 +13,13 @@ use crate::outside::input;
 use crate::record::export::shown::{COLUMNS, Shown};
 use crate::record::export::{self, Kind, MadeOf, Origin};
 use crate::record::journal::Record;
-use crate::record::snapshot::{Applied, Snapshot};
+use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
-use crate::step::drive::{RunEnd, Until};
+use crate::step::drive::RunEnd;
 use crate::step::event::{Failure, Position};
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use crate::tui::cast;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -119,23 +119,13 @@ fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
     )))
 }
 
-/// A scene, and of a snapshot what was done to it, and how far.
-struct Course {
-    scene: Scene,
-    applied: Vec<Applied>,
-    steps: Option<u64>,
-}
-
 fn open(args: &Args) -> Result<Course, Error> {
     match input_kind(&args.input) {
         FileKind::Snapshot => {
             scene_only(args, "a snapshot is taken as it was recorded")?;
             let snapshot = Snapshot::read(Path::new(&args.input))?;
-            Ok(Course {
-                scene: Scene::from_spec(&snapshot.name, snapshot.scene)?,
-                applied: snapshot.interventions,
-                steps: Some(snapshot.steps),
-            })
+            let name = snapshot.name.clone();
+            Course::of_snapshot(&name, snapshot)
         }
         FileKind::Journal => {
             let name = &args.input;
@@ -144,11 +134,7 @@ fn open(args: &Args) -> Result<Course, Error> {
                  writes a snapshot of what it shows"
             )))
         }
-        _ => Ok(Course {
-            scene: Scene::open(&args.input, &args.set.set)?,
-            applied: Vec::new(),
-            steps: None,
-        }),
+        _ => Ok(Course::of_scene(Scene::open(&args.input, &args.set.set)?)),
     }
 }
 
@@ -255,34 +241,7 @@ fn drive(
             Err(missed) => Ended::Not(tell_missed(scene, stepper, at, missed)),
         });
     }
-    let mut applied = course.applied.iter().peekable();
-    let mut intervene = |stepper: &mut Stepper, done: u64| {
-        while let Some(next) = applied.next_if(|a| a.step == done) {
-            stepper
-                .intervene(&next.intervention)
-                .map_err(|e| Error::Usage(format!("{name}: after step {done}: {e}")))?;
-        }
-        Ok(())
-    };
-    intervene(stepper, 0)?;
-    if course.steps == Some(0) {
-        return Ok(Ended::There(String::new()));
-    }
-    let came = || interrupt.came();
-    let until = Until::end().interrupted_by(&came);
-    let until = match course.steps {
-        Some(steps) => until.minors(steps).past_failures(),
-        None => until,
-    };
-    let mut done = 0;
-    let end = stepper.drive(until, |stepper| {
-        done += 1;
-        seen.see(stepper);
-        match intervene(stepper, done) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => ControlFlow::Break(error),
-        }
-    });
+    let end = course.go(stepper, interrupt, &mut |stepper| seen.see(stepper))?;
     Ok(match end {
         RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {

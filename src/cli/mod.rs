@@ -8,6 +8,7 @@ mod base;
 mod chart;
 mod check;
 mod core;
+mod course;
 mod debugger;
 mod diff;
 mod export;

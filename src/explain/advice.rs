@@ -2,7 +2,7 @@
 //! story) and the list of remedies take it.
 //!
 //! Advice is what can help against a failure of this kind, best first by what is known of the kind alone. The diagnosis
-//! tries what can be tried ([`super::examination`]), and puts first what did help.
+//! tries what can be tried ([`super::page`]), and puts first what did help.
 
 use super::remedy::{Kind, Remedy};
 use crate::linear::singular::Singular;
@@ -20,7 +20,12 @@ pub enum Advice {
     Remedy(Remedy),
     /// It is done in the scene's file, or by hand.
     ByHand(&'static str),
+    /// A finer mesh: what is tried from the start, where there is a scene to make one of.
+    Finer,
 }
+
+/// What a finer mesh is called where it was not tried.
+pub const FINER: &str = "a finer mesh, whose kinks are smaller (refine=2)";
 
 /// What to do about a failure, best first.
 pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
@@ -39,9 +44,10 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
             | Failure::OverConstrained { .. }
             | Failure::Leapt { .. }
     );
+    let finer = refines(failure).then_some(Advice::Finer);
     match scene_first {
         true => by_hand.chain(remedies).collect(),
-        false => remedies.chain(by_hand).collect(),
+        false => remedies.chain(finer).chain(by_hand).collect(),
     }
 }
 
@@ -50,12 +56,18 @@ pub fn in_a_line(model: &Model, state: &State, failure: &Failure) -> String {
     let told = advice(model, state, failure);
     let words = told.iter().filter_map(|advice| match advice {
         Advice::ByHand(text) => Some((*text).to_owned()),
+        Advice::Finer => Some(FINER.to_owned()),
         Advice::Remedy(remedy) => {
             let option = remedy.how.option()?;
             Some(format!("{} ({option})", remedy.label))
         }
     });
     words.take(IN_A_LINE).collect::<Vec<_>>().join(", or ")
+}
+
+/// Whether a finer mesh can help against a failure.
+fn refines(failure: &Failure) -> bool {
+    matches!(failure, Failure::MajorCycle(_) | Failure::Refused(_))
 }
 
 /// What can be tried, best first; what would change nothing is left out later.
@@ -135,10 +147,7 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
     match failure {
         Failure::Cycle(_) => &["the debugger, to force one of the nodes to its third mode (m)"],
         Failure::MinorLimit { .. } => &["the debugger, to see which nodes still change (t)"],
-        Failure::MajorCycle(_) => &[
-            "a finer master, whose kinks are smaller (refine=2)",
-            "an arc where the kink is a corner of the body",
-        ],
+        Failure::MajorCycle(_) => &["an arc where the kink is a corner of the body"],
         Failure::MajorLimit { .. } => {
             &["the debugger, to see which forces are left (the residuals' pane)"]
         }
@@ -168,10 +177,7 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             &["past a limit point, a prescribed displacement instead of the load"]
         }
         Failure::Diverged { .. } => &["the debugger, to see what moves"],
-        Failure::Refused(_) => &[
-            "a smaller history.least",
-            "another mesh of the surface (refine=2)",
-        ],
+        Failure::Refused(_) => &["a smaller history.least"],
         Failure::Leapt { .. } => match model.jumps {
             Jumps::Stop => &[
                 "history.jumps=cut, to go on on the other branch",

@@ -39,6 +39,17 @@ pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<Fine
     let mut stepper = Stepper::new(Arc::new(model));
     let settings = Intervention::Settings(state.controls.settings);
     stepper.intervene(&settings).ok()?;
+    // Friction that was changed for all nodes is that of the finer ones; groups of nodes have what the scene says.
+    if let [first, rest @ ..] = state.controls.friction.as_slice()
+        && rest.iter().all(|friction| friction == first)
+        && stepper
+            .model()
+            .contacts
+            .iter()
+            .any(|contact| contact.friction != *first)
+    {
+        stepper.intervene(&Intervention::Friction(*first)).ok()?;
+    }
     let target = (state.start.leg, state.load_factor);
     let mut minors = 0;
     let until = Until::end().minors(BUDGET).interrupted_by(stop);

@@ -8,6 +8,7 @@ use crate::linear::singular::{Motion, RigidMotion, Singular};
 use crate::model::{Mode, Model};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use std::collections::HashSet;
 
 /// Most motions that are told one by one.
 const MOST: usize = 3;
@@ -32,6 +33,8 @@ struct Moving<'a> {
     model: &'a Model,
     places: &'a [[f64; 2]],
     body: usize,
+    /// Numbers of its nodes.
+    nodes: HashSet<usize>,
     motion: Motion,
     sign: f64,
 }
@@ -74,6 +77,7 @@ impl<'a> Moving<'a> {
             model,
             places,
             body,
+            nodes: model.bodies[body].nodes.iter().copied().collect(),
             motion: motion.motion,
             sign: 1.0,
         };
@@ -170,30 +174,33 @@ impl<'a> Moving<'a> {
 
     /// The contacts of the body, as slave or as master.
     fn own(&self) -> impl Iterator<Item = usize> {
-        let (model, nodes) = (self.model, &self.model.bodies[self.body].nodes);
+        let model = self.model;
+        let masters: Vec<bool> = model
+            .surfaces
+            .iter()
+            .map(|surface| surface.elements.iter().flatten().any(|&n| self.has(n)))
+            .collect();
         (0..model.contacts.len()).filter(move |&s| {
             let contact = &model.contacts[s];
-            let mut masters = contact
-                .surfaces
-                .iter()
-                .filter_map(|&k| model.surfaces.get(k));
-            nodes.contains(&contact.node)
-                || masters
-                    .any(|surface| surface.elements.iter().flatten().any(|n| nodes.contains(n)))
+            self.has(contact.node) || contact.surfaces.iter().any(|&k| masters[k])
         })
+    }
+
+    /// Whether a node is one of the body's.
+    fn has(&self, node: usize) -> bool {
+        self.nodes.contains(&node)
     }
 
     /// Which contact or support would stop the motion.
     fn stopped(&self, state: &State) -> String {
         let mut closing: Vec<(f64, usize)> = Vec::new();
         let mut sliding = Vec::new();
-        let is_slave = |node: usize| self.model.bodies[self.body].nodes.contains(&node);
         for s in self.own() {
             let (contact, node) = (&self.model.contacts[s], &state.nodes[s]);
             let Some(spot) = node.spot else { continue };
             let at = self.places[contact.node];
             let over = projection_at(&self.model.surfaces, spot, self.places, at);
-            let (v, side) = match is_slave(contact.node) {
+            let (v, side) = match self.has(contact.node) {
                 true => (self.velocity(at), 1.0),
                 false => (self.velocity(over.foot), -1.0),
             };

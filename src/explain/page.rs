@@ -4,7 +4,7 @@
 //! consistent. What takes long (trials of remedies, the load up to which there is an answer) comes after what does not, so
 //! that a reader sees the page grow.
 
-use super::advice::{Advice, advice};
+use super::advice::{Advice, FINER, advice};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, NOT_CONDENSED, frozen};
@@ -56,7 +56,6 @@ pub fn page(
         });
     };
     let mut page = Page::of(stepper, state, failure, stop);
-    let refines = matches!(failure, Failure::MajorCycle(_) | Failure::Refused(_));
     tell(&page.shown("trying what helps …"));
     let remedies = page.remedies(stepper.model(), state, failure);
     for remedy in &remedies {
@@ -64,7 +63,9 @@ pub fn page(
         let trial = attempt(stepper, state, remedy, stop)?;
         page.trials.push((remedy.clone(), trial));
     }
-    if refines && let Some(spec) = spec {
+    if page.refines
+        && let Some(spec) = spec
+    {
         tell(&page.shown("trying a finer mesh …"));
         page.finer = finer(spec, state, stop);
         if stop() {
@@ -102,7 +103,8 @@ struct Page {
     by_hand: Vec<&'static str>,
     /// What was tried.
     trials: Vec<(Remedy, Trial)>,
-    /// A finer mesh, where it was tried.
+    /// Whether a finer mesh can help, and what came of it where it was tried.
+    refines: bool,
     finer: Option<Finer>,
     /// The frozen problem, where it has something to say.
     found: Examination,
@@ -120,14 +122,17 @@ impl Page {
             facts: Vec::new(),
             by_hand: Vec::new(),
             trials: Vec::new(),
+            refines: false,
             finer: None,
             found: Examination::default(),
         };
         page.explain(stepper, state, failure, stop);
         let model = stepper.model();
         for piece in advice(model, state, failure) {
-            if let Advice::ByHand(text) = piece {
-                page.by_hand.push(text);
+            match piece {
+                Advice::ByHand(text) => page.by_hand.push(text),
+                Advice::Finer => page.refines = true,
+                Advice::Remedy(_) => {}
             }
         }
         page.what.push(format!(
@@ -233,7 +238,7 @@ impl Page {
         self.facts.push("its attempt, made again from its start, does not end like this: something was changed by hand on the way".into());
     }
 
-    /// What Table 2 ended with before the ladder went on.
+    /// What this major iteration's first strategy ended with before the ladder went on.
     fn explain_first(&mut self, model: &Model, first: &Failure) {
         let members: &[(usize, Vec<crate::model::Mode>)] = match first {
             Failure::Cycle(cycle) => &cycle.members,
@@ -243,7 +248,7 @@ impl Page {
             .nodes
             .extend(members.iter().map(|member| member.0));
         self.facts.push(format!(
-            "where: Table 2 ended so: {}",
+            "where: the strategy that it began with ended so: {}",
             describe_failure(model, first)
         ));
     }
@@ -277,7 +282,7 @@ impl Page {
                 .into_iter()
                 .filter_map(|piece| match piece {
                     Advice::Remedy(remedy) => Some(remedy),
-                    Advice::ByHand(_) => None,
+                    Advice::ByHand(_) | Advice::Finer => None,
                 }),
         );
         all.truncate(MOST_TRIED);
@@ -299,10 +304,9 @@ impl Page {
     /// The page as far as it is made.
     fn shown(&self, going_on: &str) -> Examination {
         let mut lines = self.what.clone();
-        let mut facts = self.facts.iter();
         let mut details = Vec::new();
         // Where and why come before what to do, all else after it.
-        for fact in facts.by_ref() {
+        for fact in &self.facts {
             match HEADS.iter().any(|head| fact.starts_with(head)) {
                 true => lines.push(fact.clone()),
                 false => details.push(fact.clone()),
@@ -358,15 +362,11 @@ impl Page {
                 finer.refine, finer.minors
             )
         });
-        // What was tried is not advised once more.
-        let tried = self.finer.is_some();
-        let by_hand = self
-            .by_hand
-            .iter()
-            .filter(|text| !(tried && text.contains("refine=2")));
-        let by_hand = by_hand.map(|text| (*text).to_owned());
+        let untried = (self.refines && self.finer.is_none()).then(|| FINER.to_owned());
+        let by_hand = self.by_hand.iter().map(|text| (*text).to_owned());
         let mut lines: Vec<String> = helped
             .chain(finer)
+            .chain(untried)
             .chain(by_hand)
             .enumerate()
             .map(|(k, text)| format!("do: {}. {text}", k + 1))

@@ -4,6 +4,7 @@
 use crate::contact::projection::{SurfacePoint, project, projection_at};
 use crate::fem::lagrange;
 use crate::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
+use std::collections::HashSet;
 
 /// Gaps below this part of the scene's length are none.
 const NONE: f64 = 1e-9;
@@ -73,9 +74,14 @@ pub fn words(model: &Model) -> Vec<String> {
                 true => 0.0,
                 false => gap,
             });
+        // An exact 0 is told from a gap that rounds to it.
+        let told = |gap: f64| match gap {
+            0.0 => "0".to_owned(),
+            gap => format!("{gap:.4}"),
+        };
         let range = match least == largest {
-            true => format!("{least:.4}"),
-            false => format!("{least:.4} to {largest:.4}"),
+            true => told(least),
+            false => format!("{} to {}", told(least), told(largest)),
         };
         let inside = match found.inside.len() {
             0 => String::new(),
@@ -193,21 +199,24 @@ fn unheld(model: &Model) -> Vec<String> {
         (first..first + usize::from(model.dofs.count[node]))
             .any(|dof| model.dofs.equation[dof].is_none())
     };
-    let joined = |body: &Body| {
-        let others = model.bodies.iter().filter(|other| other.name != body.name);
-        others
-            .flat_map(|other| &other.nodes)
-            .any(|node| body.nodes.contains(node))
-    };
-    let touches = |body: &Body| {
-        model.contacts.iter().any(|contact| {
-            let masters = contact.surfaces.iter().map(|&k| &model.surfaces[k]);
-            body.nodes.contains(&contact.node)
-                || masters
-                    .flat_map(|surface| surface.elements.iter().flatten())
-                    .any(|node| body.nodes.contains(node))
-        })
-    };
+    let mut bodies_at = vec![0_usize; model.nodes.len()];
+    for &node in model.bodies.iter().flat_map(|body| &body.nodes) {
+        bodies_at[node] += 1;
+    }
+    let joined = |body: &Body| body.nodes.iter().any(|&node| bodies_at[node] > 1);
+    let slaves = model.contacts.iter().map(|contact| contact.node);
+    let met = model.contacts.iter().flat_map(|contact| &contact.surfaces);
+    let mut met: Vec<usize> = met.copied().collect();
+    met.sort_unstable();
+    met.dedup();
+    let masters = met
+        .iter()
+        .flat_map(|&k| model.surfaces[k].elements.iter().flatten());
+    let mut at_contact = vec![false; model.nodes.len()];
+    for node in slaves.chain(masters.copied()) {
+        at_contact[node] = true;
+    }
+    let touches = |body: &Body| body.nodes.iter().any(|&node| at_contact[node]);
     let mesh = |body: &&Body| !matches!(body.kind, BodyKind::Linear(_));
     model
         .bodies
@@ -239,8 +248,9 @@ fn overlapping(model: &Model) -> Vec<String> {
             .filter(|(b, _)| *b != a)
             .map(|(_, s)| s)
         {
+            let own: HashSet<usize> = body.nodes.iter().copied().collect();
             let deep = |node: &&usize| {
-                !body.nodes.contains(node)
+                !own.contains(node)
                     && is_inside(model.nodes[**node].at, sides, NONE.sqrt() * model.length)
             };
             if let Some(&node) = other.kind.lines().iter().flatten().find(deep) {

@@ -60,6 +60,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
             friction: &state.controls.friction,
             before: &before,
             now: &now,
+            out: [&[], &[]],
             forces: &forces,
             brought: &nothing,
             earlier: &nothing,

@@ -64,6 +64,7 @@ impl Stage {
             friction: &[self.friction],
             before: &before,
             now: &now,
+            out: [&[], &[]],
             forces: &[force],
             brought: &[self.brought],
             earlier: &[0.0],

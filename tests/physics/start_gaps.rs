@@ -78,6 +78,39 @@ fn the_states_of_a_press_fit_are_judged_and_no_law_is_broken_on_the_way() {
 }
 
 #[test]
+fn a_press_fit_in_which_either_side_is_slave_of_the_other_is_accepted_and_presses_like_one_block() {
+    // Two unit blocks side by side between walls, 0.02 too wide together: a strain of 0.01 in the end.
+    let text = r#"(
+    title: "Two blocks that are too wide",
+    nodes: [
+        Block(id: "a", corners: [(0, 0), (1.02, 0), (1.02, 1), (0, 1)], elements: (2, 2)),
+        Block(id: "b", corners: [(1, 0), (2, 0), (2, 1), (1, 1)], elements: (2, 3)),
+    ],
+    materials: [Elastic(id: "steel", E: 100.0, nu: 0.0)],
+    bodies: [Solid(id: "a", mesh: "a", material: "steel"), Solid(id: "b", mesh: "b", material: "steel")],
+    surfaces: [(id: "right", along: "a.right"), (id: "left", along: "b.left")],
+    slaves: [(nodes: ["b.left"], on: ["right"]), (nodes: ["a.right"], on: ["left"])],
+    supports: [(node: "a.left", fix: [x, y]), (node: "b.right", fix: [x, y])],
+    loads: [],
+    history: (path: [0.0, 1.0], increment: 0.25),
+    settings: (initial_gaps: ramp),
+)"#;
+    let scene = Scene::from_text("blocks.ron", text, &[]).unwrap();
+    let run = run(&scene);
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    for accepted in &run.accepted {
+        let Outcome::Increment { marked, .. } = &accepted.event.outcome else {
+            panic!("accepted");
+        };
+        assert_eq!(*marked, None);
+    }
+    // What presses is all of it: the stress of 1 or so over a height of 1, and no more where the sides are slaves of each
+    // other.
+    let pressed: f64 = run.stepper.state().nodes.iter().map(|node| node.f_n).sum();
+    assert!((pressed - 1.0).abs() < 0.03, "{pressed}");
+}
+
+#[test]
 fn an_adjusted_node_stands_on_its_surface_without_stress() {
     let scene = bar(0.1, "initial_gaps: adjust", "[0.0, 1.0]");
     let found = start_gaps(&scene.model);

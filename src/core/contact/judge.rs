@@ -36,6 +36,9 @@ pub struct Seen<'a> {
     pub before: &'a [[f64; 2]],
     /// Positions of all nodes now.
     pub now: &'a [[f64; 2]],
+    /// By how much each slave node alone is judged further out of its surface (Cartesian length), now and in the last
+    /// accepted state: by what is left of an overlap that is closed step by step. Empty where there is none.
+    pub out: [&'a [[f64; 2]]; 2],
     /// Interaction force on each slave node now (Cartesian).
     pub forces: &'a [[f64; 2]],
     /// Slip u_tS* − u_tS that each slave node brought into the scene, if the last accepted state is the scene's start; else
@@ -45,6 +48,26 @@ pub struct Seen<'a> {
     pub earlier: &'a [f64],
     /// Units of amounts, and tolerances.
     pub scales: Scales,
+}
+
+impl Seen<'_> {
+    /// Where a slave node is judged to be now.
+    fn point(&self, slave: usize) -> [f64; 2] {
+        further(self.now[self.contacts[slave].node], self.out[0].get(slave))
+    }
+
+    /// Where a slave node is judged to have been in the last accepted state.
+    fn was(&self, slave: usize) -> [f64; 2] {
+        further(
+            self.before[self.contacts[slave].node],
+            self.out[1].get(slave),
+        )
+    }
+}
+
+/// A place, by a way further on.
+fn further(at: [f64; 2], way: Option<&[f64; 2]>) -> [f64; 2] {
+    way.map_or(at, |way| [at[0] + way[0], at[1] + way[1]])
 }
 
 /// The judge, with the memory that it works in.
@@ -192,7 +215,7 @@ impl Judge {
 
     fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
         let Contact { node, surfaces, .. } = &seen.contacts[slave];
-        let (point, force) = (seen.now[*node], seen.forces[slave]);
+        let (point, force) = (seen.point(slave), seen.forces[slave]);
         let Scales { length, forces, .. } = seen.scales;
         let near = seen.scales.near();
         let pressed = size(force) > forces * seen.scales.force;
@@ -261,8 +284,8 @@ impl Judge {
 
     /// The sides on which a node stands: those of its feet, and where it stands on a border of elements, both.
     fn find_sides(&mut self, seen: &Seen, slave: usize, near: f64) {
-        let Contact { node, surfaces, .. } = &seen.contacts[slave];
-        let (point, was) = (seen.now[*node], seen.before[*node]);
+        let surfaces = &seen.contacts[slave].surfaces;
+        let (point, was) = (seen.point(slave), seen.was(slave));
         // What was found of that state when it was judged itself holds still.
         match self.last.ends.is_empty() {
             false => {
@@ -339,7 +362,7 @@ fn touching(
     let surface = &seen.surfaces[spot.surface];
     let way = |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave];
     let here = earlier.iter().find(|f| f.spot.surface == spot.surface);
-    let was = seen.before[seen.contacts[slave].node];
+    let was = seen.was(slave);
     let past = match here {
         Some(foot) if is_past_end_at(foot, was, seen.surfaces, seen.before, near) => {
             Past::Elsewhere

@@ -39,8 +39,8 @@ struct Bench {
     judge: Judge,
     /// Positions of all nodes in the last accepted state.
     before: Vec<[f64; 2]>,
-    /// Positions now, those of slave nodes out of the overlap that they are still allowed.
-    shifted: Vec<[f64; 2]>,
+    /// What is left of the overlaps, as ways out of them by contact: now, and in the last accepted state.
+    out: [Vec<[f64; 2]>; 2],
     forces: Vec<[f64; 2]>,
     brought: Vec<f64>,
     earlier: Vec<f64>,
@@ -59,7 +59,7 @@ impl Bodies {
             bench: Bench {
                 judge: Judge::with_capacity(nodes, contacts),
                 before: Vec::with_capacity(nodes),
-                shifted: Vec::new(),
+                out: [Vec::new(), Vec::new()],
                 forces: Vec::with_capacity(contacts),
                 brought: Vec::with_capacity(contacts),
                 earlier: Vec::with_capacity(contacts),
@@ -261,37 +261,35 @@ impl Source for Bodies {
         bench.earlier.clear();
         bench.earlier.extend(accepted().map(|state| state.f_t));
         let now = &self.system.positions;
-        let judged = match self.overlaps {
-            false => now,
-            true => {
-                let left = model.unclosed(at.leg, at.last_target);
-                let left_before = model.unclosed(at.leg, at.start_load);
-                bench.shifted.clone_from(now);
-                for (k, contact) in model.contacts.iter().enumerate() {
-                    let shift = |at: &mut [f64; 2], normal: [f64; 2], by: f64| {
-                        *at = [0, 1].map(|axis| at[axis] + by * normal[axis]);
-                    };
-                    let (state, before) = (&at.contacts[k], &at.accepted.contacts[k]);
-                    shift(
-                        &mut bench.shifted[contact.node],
-                        state.normal,
-                        contact.overlap * left,
-                    );
-                    shift(
-                        &mut bench.before[contact.node],
-                        before.normal,
-                        contact.overlap * left_before,
-                    );
+        let overlaps = model
+            .contacts
+            .iter()
+            .zip(at.contacts.iter().zip(at.accepted.contacts));
+        let left = [
+            model.unclosed(at.leg, at.last_target),
+            model.unclosed(at.leg, at.start_load),
+        ];
+        bench.out.iter_mut().for_each(Vec::clear);
+        if self.overlaps {
+            for (contact, (state, was)) in overlaps {
+                for ((out, part), normal) in bench
+                    .out
+                    .iter_mut()
+                    .zip(left)
+                    .zip([state.normal, was.normal])
+                {
+                    out.push(normal.map(|n| n * part * contact.overlap));
                 }
-                &bench.shifted
             }
-        };
+        }
+        let [out, was_out] = &bench.out;
         let seen = Seen {
             surfaces: &model.surfaces,
             contacts: &model.contacts,
             friction: at.friction,
             before: &bench.before,
-            now: judged,
+            now,
+            out: [out, was_out],
             forces: &bench.forces,
             brought: &bench.brought,
             earlier: &bench.earlier,
@@ -308,7 +306,7 @@ impl Source for Bodies {
             contact: &bench.contact,
         };
         balance::check(model, &forces, now, &scales, &mut verdict);
-        if self.overlaps && model.unclosed(at.leg, at.last_target) > 0.0 {
+        if self.overlaps && left[0] > 0.0 {
             // Force and counterforce act apart by what is left of the overlap.
             verdict.worst[Law::Moments as usize] = None;
         }
@@ -325,8 +323,10 @@ impl Source for Bodies {
         let ground = self.ground();
         let before = &self.bench.before;
         let states = contacts.iter_mut().zip(accepted);
-        for ((state, was), contact) in states.zip(&self.model.contacts) {
-            let at = before[contact.node];
+        let out = |k: usize| self.bench.out[1].get(k).copied().unwrap_or_default();
+        for (k, ((state, was), contact)) in states.zip(&self.model.contacts).enumerate() {
+            let (at, out) = (before[contact.node], out(k));
+            let at = [at[0] + out[0], at[1] + out[1]];
             let touched = Judge::touched(&self.model.surfaces, contact, at, before, near);
             let Some(touched) = touched else { continue };
             let anchor = was.anchor.filter(|a| a.surface == touched.surface);

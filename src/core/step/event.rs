@@ -162,14 +162,14 @@ pub enum Failure {
     },
     /// No assumption of what the nodes do is consistent; all were tried.
     NoAnswer {
-        /// What Table 2 failed of before. `None` if it was not tried.
+        /// What the strategy failed of that the major iteration began with. `None` if no other was tried.
         first: Option<Box<Failure>>,
         /// Number of assumptions.
         tried: usize,
     },
     /// No rung of the ladder found a consistent state, and not all assumptions could be tried.
     LadderEnded {
-        /// What Table 2 failed of.
+        /// What the strategy failed of that the major iteration began with.
         first: Box<Failure>,
         /// What the last rung failed of.
         last: Box<Failure>,
