@@ -320,13 +320,14 @@ impl Tally<'_> {
             Outcome::Climbed { .. }
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
+            | Outcome::Braked { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {
                 let sent = first_closed(sent, self.accept(stepper, outputs)?);
                 return Ok(outputs.after(sent));
             }
-            Outcome::Minor | Outcome::Major { .. } => {}
+            Outcome::Minor | Outcome::Major { .. } | Outcome::HeldBack { .. } => {}
         }
         Ok(outputs.after(sent))
     }

@@ -50,12 +50,14 @@ impl Attempt {
                     majors.push(Major::of(stepper.state(), after));
                     ControlFlow::Continue(())
                 }
-                Outcome::Increment { .. } | Outcome::Cut { .. } | Outcome::Leaps { .. } => {
-                    ControlFlow::Break(())
-                }
+                Outcome::Increment { .. }
+                | Outcome::Cut { .. }
+                | Outcome::Leaps { .. }
+                | Outcome::Braked { .. } => ControlFlow::Break(()),
                 Outcome::Minor
                 | Outcome::Damped { .. }
                 | Outcome::Climbed { .. }
+                | Outcome::HeldBack { .. }
                 | Outcome::Failed(_) => ControlFlow::Continue(()),
             }
         });

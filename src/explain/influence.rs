@@ -48,6 +48,7 @@ pub fn influences(
             node.kinematics.as_ref(),
             &node.friction,
             &problem.settings,
+            0.0,
         );
         let none = Influence {
             from,

@@ -4,6 +4,7 @@ use crate::contact::table2::{Decision, Rule, Tested};
 use crate::explain::advice;
 use crate::explain::judged;
 use crate::explain::names::{mode, position, slave};
+use crate::explain::number::four;
 use crate::interface::census;
 use crate::interface::method::NotFound;
 use crate::interface::minor_history::Cycle;
@@ -117,6 +118,21 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: {}; nothing is near: the increment is taken whole, {size}",
             describe_failure(model, why)
         ),
+        Outcome::Braked { why, stiffness } => format!(
+            "{at}: {}; the increment is tried once more, sliding held back by {}",
+            describe_failure(model, why),
+            four(*stiffness)
+        ),
+        Outcome::HeldBack { why, stiffness } => {
+            let why = why.as_ref().map_or_else(
+                || "a node slides too far, or against its force".to_owned(),
+                |why| describe_failure(model, why),
+            );
+            format!(
+                "{at}: {why}; the major iteration begins again, sliding held back by {}",
+                four(*stiffness)
+            )
+        }
         Outcome::Major { after, settled } => {
             let how = if *settled {
                 "minors settled"

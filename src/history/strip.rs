@@ -50,7 +50,8 @@ impl PointKind {
             Outcome::Minor => PointKind::Minor,
             Outcome::Damped { .. } => PointKind::Damped,
             Outcome::Climbed { .. } => PointKind::Climbed,
-            Outcome::Cut { .. } | Outcome::Leaps { .. } => PointKind::Cut,
+            Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Braked { .. } => PointKind::Cut,
+            Outcome::HeldBack { .. } => PointKind::Damped,
             Outcome::Major { .. } => PointKind::Major,
             Outcome::Refused { .. } => PointKind::Refused,
             Outcome::Increment { last, jumped, .. } => match (last, jumped) {

@@ -98,6 +98,17 @@ pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
     }
 }
 
+/// The equation of a sliding node whose motion in a major iteration is held back by a stiffness κ (force by length):
+/// ΔF_t − κ (Δu_tS* − Δu_tS) = T_max − F_t. Where major iterations come to rest the motion is zero, and this is Table 1's.
+pub fn braked(sliding: Equation, stiffness: f64) -> Equation {
+    Equation {
+        motion: Motion::Tangential,
+        d_n: -sliding.d_n / stiffness,
+        d_t: -sliding.d_t / stiffness,
+        value: -sliding.value / stiffness,
+    }
+}
+
 /// The equation d_n ΔF_n + d_t ΔF_t = −`force`: it makes a total force component zero.
 pub fn gone(d_n: f64, d_t: f64, force: f64) -> Equation {
     Equation {

@@ -238,6 +238,7 @@ impl InterfaceProblem {
                 node.kinematics.as_ref(),
                 &node.friction,
                 &self.settings,
+                0.0,
             );
             for (k, row) in rows.iter().enumerate() {
                 rhs[2 * s + k] = relation.place_row(s, k, row, node.prescribed, &mut matrix);

@@ -1,17 +1,19 @@
 //! Table 1's equations of a node, those in which nothing can move left to the support.
 
 use crate::contact::state::ContactState;
-use crate::contact::table1::{Equation, FrictionBound, Known, equations, gone};
+use crate::contact::table1::{Equation, FrictionBound, Known, braked, equations, gone};
 use crate::interface::kinematics::NodeKinematics;
 use crate::model::{BoundUpdate, Friction, Mode, Settings};
 
 /// Table 1's equations of a node, normal and tangential. An equation in which no unknown takes part is replaced by zero
-/// force, and the supports carry that component ([`carried`]).
+/// force, and the supports carry that component ([`carried`]). `brake` holds sliding back
+/// ([`crate::contact::table1::braked`]; 0 for Table 1 as it is).
 pub fn rows(
     node: &ContactState,
     kinematics: Option<&NodeKinematics>,
     friction: &Friction,
     settings: &Settings,
+    brake: f64,
 ) -> [Equation; 2] {
     let limit = match settings.t_max {
         BoundUpdate::Lagged => FrictionBound::Lagged(node.t_max),
@@ -29,7 +31,12 @@ pub fn rows(
         f_t: node.f_t,
         limit,
     };
-    supported(node.mode, &known, moves(kinematics))
+    let moves = moves(kinematics);
+    let [normal, tangential] = supported(node.mode, &known, moves);
+    match node.mode {
+        Mode::Sliding if brake > 0.0 && moves[1] => [normal, braked(tangential, brake)],
+        _ => [normal, tangential],
+    }
 }
 
 /// Table 1's equations, with zero force where the supports carry it.

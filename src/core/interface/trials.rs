@@ -99,6 +99,7 @@ impl<'a> Trials<'a> {
                 node.kinematics.as_ref(),
                 &node.friction,
                 &settings,
+                0.0,
             )
         })
     }

@@ -257,7 +257,7 @@ impl Source for ConstantSource {
         for (k, state) in at.contacts.iter().enumerate() {
             let over = self.kinematics(k);
             let friction = state.friction(&at.friction[k]);
-            let rows = rows::rows(state, over.as_ref(), &friction, &at.settings);
+            let rows = rows::rows(state, over.as_ref(), &friction, &at.settings, 0.0);
             for (component, row) in rows.iter().enumerate() {
                 self.condensed.place_row(k, component, row, [0.0; 2]);
             }

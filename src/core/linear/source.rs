@@ -40,6 +40,9 @@ pub struct At<'a> {
     pub entered: &'a [Input],
     /// Largest displacement change in the last major iteration over the scene's length.
     pub correction: f64,
+    /// Stiffness that holds sliding back in this major iteration (force by length); 0 where nothing does
+    /// ([`crate::step::brake`]).
+    pub brake: f64,
     /// The settings as the user has them.
     pub chosen: &'a Settings,
     /// The settings in force: the strategy is the rung that the ladder has come to.

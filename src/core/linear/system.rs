@@ -390,7 +390,7 @@ impl System {
     pub(super) fn rows(&self, s: usize, at: &At<'_>) -> [Equation; 2] {
         let (node, kinematics) = (&at.contacts[s], self.kinematics(s));
         let friction = node.friction(&at.friction[s]);
-        rows::rows(node, kinematics.as_ref(), &friction, &at.settings)
+        rows::rows(node, kinematics.as_ref(), &friction, &at.settings, at.brake)
     }
 
     /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.

@@ -74,6 +74,20 @@ pub enum Outcome {
         /// Size of the whole (load factor).
         size: f64,
     },
+    /// The increment failed, and is started again with sliding held back ([`crate::step::brake`]).
+    Braked {
+        /// What the increment failed of.
+        why: Failure,
+        /// Stiffness that holds sliding back (force by length).
+        stiffness: f64,
+    },
+    /// Sliding is held back more, and the major iteration starts again.
+    HeldBack {
+        /// What its minor iterations failed of. `None` where they settled, and a node slid too far or against its force.
+        why: Option<Failure>,
+        /// Stiffness that holds sliding back from now on (force by length).
+        stiffness: f64,
+    },
     /// The minor iterations are done, but equilibrium is not reached: another major iteration.
     Major {
         /// Norms at the end of this major iteration.
@@ -111,7 +125,10 @@ impl Outcome {
     pub fn ends_major(&self) -> bool {
         !matches!(
             self,
-            Outcome::Minor | Outcome::Damped { .. } | Outcome::Climbed { .. }
+            Outcome::Minor
+                | Outcome::Damped { .. }
+                | Outcome::Climbed { .. }
+                | Outcome::HeldBack { .. }
         )
     }
 }

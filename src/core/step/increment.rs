@@ -19,8 +19,8 @@ const SMALLEST_PART: f64 = 1e-6;
 impl Stepper {
     /// The increment fails; on the ladder it is cut, where that can help and it is not at its smallest yet.
     pub(super) fn fail(&mut self, why: Failure) -> Outcome {
-        match self.cut(&why) {
-            Some(cut) => cut,
+        match self.cut(&why).or_else(|| self.brake(&why)) {
+            Some(again) => again,
             None => Outcome::Failed(why),
         }
     }

@@ -6,6 +6,7 @@ use crate::contact::table1::t_max;
 use crate::linear::estimate::{Estimate, TooLarge};
 use crate::model::{Friction, Settings, Touch, least};
 use crate::model::{Mode, Model};
+use crate::step::brake::Brake;
 use crate::step::state::{Progress, State, Status};
 use crate::step::sub_increment::SubIncrement;
 use serde::{Deserialize, Serialize};
@@ -127,7 +128,7 @@ impl State {
     pub(super) fn begin(&mut self) {
         (self.next.major, self.next.minor) = (1, 1);
         (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
-        self.net = false;
+        (self.net, self.brake) = (false, Brake::default());
         self.load_factor = self.sub_increment.target();
         self.search = Progress::default();
         (self.target, self.last_target) = (self.load_factor, self.start.load_factor);
@@ -223,6 +224,7 @@ impl State {
     pub fn attempt_again(&self) -> State {
         let mut again = self.clone();
         again.start_again();
+        again.brake = self.brake.again();
         again
     }
 

@@ -6,6 +6,7 @@ use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
 use crate::model::{AtLimit, Mode, ResidualMethod, SlipCount, Sticking};
+use crate::step::brake::PATIENCE;
 use crate::step::event::{Failure, Outcome};
 use crate::step::major_history::{MajorCycle, Scales};
 use crate::step::stepper::Stepper;
@@ -21,6 +22,7 @@ impl Stepper {
     /// Updates displacements and forces, renews the geometry, and asks whether the increment is done. `settled` is false
     /// where the limit of minor iterations was accepted.
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
+        let held = self.hold();
         if self.source.recover() == Solved::Not {
             let singular = self.explain();
             return self.fail(Failure::Singular(singular));
@@ -31,6 +33,9 @@ impl Stepper {
         search.searched = Searched::Not;
         self.kept = None;
         let norms = self.norms();
+        if let Some(again) = held.and_then(|held| self.hold_back(held)) {
+            return again;
+        }
         self.state.unsettled += u32::from(!settled);
         let Some(after) = norms else {
             return self.fail(Failure::Singular(Singular::Unexplained));
@@ -39,7 +44,9 @@ impl Stepper {
         let size = self.source.largest_motion(&self.state.u);
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
         let balanced = self.is_balanced(&after);
-        let at_limit = self.state.next.major.is_multiple_of(settings.majors);
+        let braked = self.state.brake.on;
+        let most = settings.majors * if braked { PATIENCE } else { 1 };
+        let at_limit = self.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;
         if settled && balanced && !drowned {
             return self.finish(after);
@@ -59,6 +66,7 @@ impl Stepper {
             return self.fail(Failure::RoundOff { noise: after.noise });
         }
         if settings.at_major_limit == AtLimit::Stop
+            && !braked
             && let Some(cycle) = self.find_major_cycle()
         {
             self.state.forget_majors();
@@ -66,7 +74,7 @@ impl Stepper {
         }
         if at_limit {
             return self.fail(Failure::MajorLimit {
-                limit: settings.majors,
+                limit: most,
                 relative: after.relative,
                 interface: after.interface,
             });
@@ -160,7 +168,7 @@ impl Stepper {
     /// Finds anew where every contact stands.
     pub(super) fn follow(&mut self) {
         // Where slip is counted anew in every major iteration, so is what to stick to.
-        let settings = &self.state.controls.settings;
+        let settings = self.state.settings();
         let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
         self.source
             .follow(&self.state.u, &mut self.state.nodes, anew);

@@ -8,6 +8,7 @@
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
+pub mod brake;
 pub mod drive;
 pub mod event;
 mod increment;

@@ -35,13 +35,20 @@ impl Stepper {
         self.begin_again();
         let search = &mut self.state.search;
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
-        if let Some(&to) = rungs.get(search.rung + 1) {
+        let next = rungs.get(search.rung + 1);
+        // The searches know nothing of what holds sliding back.
+        let next =
+            next.filter(|&&to| !self.state.brake.on || strategy::method(to).search().is_none());
+        if let Some(&to) = next {
             search.rung += 1;
             (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
             self.state.next.minor += 1;
             return Outcome::Climbed { why, to };
         }
         let first = first.clone();
+        if let Some(again) = self.hold_harder(&why) {
+            return again;
+        }
         self.state.search = Progress::default();
         self.fail(ended(*first, why))
     }

@@ -10,7 +10,8 @@ use crate::interface::method::Searched;
 use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::{Accepted, At};
 use crate::model::least;
-use crate::model::{Friction, Model, Settings};
+use crate::model::{Friction, Model, Settings, SlipCount};
+use crate::step::brake::Brake;
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
 use crate::step::pace::Pace;
@@ -64,6 +65,9 @@ pub struct State {
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
+    /// How sliding is held back in the present attempt ([`crate::step::brake`]).
+    #[serde(default, skip_serializing_if = "Brake::is_off")]
+    pub brake: Brake,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -190,13 +194,18 @@ impl State {
             net: false,
             correction: 0.0,
             pace: Pace::default(),
+            brake: Brake::default(),
             status: Status::Running,
         }
     }
 
     /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
     pub fn settings(&self) -> Settings {
-        strategy::in_force(&self.controls.settings, self.search.rung)
+        let mut settings = strategy::in_force(&self.controls.settings, self.search.rung);
+        if self.brake.on && !self.net {
+            settings.slip = SlipCount::Major;
+        }
+        settings
     }
 
     /// What a source may look at.
@@ -216,6 +225,7 @@ impl State {
             friction: &self.controls.friction,
             entered: self.minor_history.first(self.nodes.len()),
             correction: self.correction,
+            brake: self.brake.stiffness,
             chosen: &self.controls.settings,
             settings: self.settings(),
         }

@@ -183,6 +183,8 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         | Outcome::Climbed { .. }
         | Outcome::Cut { .. }
         | Outcome::Leaps { .. }
+        | Outcome::Braked { .. }
+        | Outcome::HeldBack { .. }
         | Outcome::Refused { .. }
         | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
         Outcome::Increment {
