@@ -312,7 +312,8 @@ impl Tally<'_> {
         (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
         self.progress.show(event, self.steps);
         let sent = send(&mut outputs.trace, || {
-            table::trace_rows(&self.scene.model, event)
+            let friction = &stepper.state().controls.friction;
+            table::trace_rows(&self.scene.model, friction, event)
         })?;
         match event.outcome {
             // That it failed is told, whether anybody reads the trace or not.

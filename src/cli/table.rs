@@ -9,10 +9,13 @@
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
 //! its end. `t_max` is that of the row's own F_n, `margin` the distance of the deciding inequality from switching
-//! (infinite where none was tested). A minor iteration that could not be solved has no rows.
+//! (infinite where none was tested). `contact` is 1; a node that is held where two sides meet has a second row, and both have
+//! what their side gives (F_n, F_t and T_max in its own frame), of all splits the one of least norm. A minor iteration
+//! that could not be solved has no rows.
 
+use crate::contact::record::ContactRecord;
 use crate::explain::names;
-use crate::model::Model;
+use crate::model::{Friction, Model};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::study::csv::field;
 use std::fmt::Write;
@@ -45,18 +48,17 @@ pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
 }
 
 /// The first line of `--trace`.
-pub const TRACE_HEADER: &str =
-    "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual\n";
+pub const TRACE_HEADER: &str = "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual,contact\n";
 
-/// The rows of a minor iteration.
-pub fn trace_rows(model: &Model, event: &Event) -> String {
+/// The rows of a minor iteration; `friction` is that in force, by slave.
+pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String {
     let (at, residual) = (event.position, residual(event));
     let mut lines = String::new();
-    for (slave, r) in event.nodes.iter().enumerate() {
+    let mut row = |slave: usize, contact: usize, r: &ContactRecord, [f_n, f_t, t_max]: [f64; 3]| {
         let d = &r.decision;
         let _ = writeln!(
             lines,
-            "{},{},{},{},{},{},{},{},{:?},{:?},{:?},{:?},{:?},{:?},{residual:?}",
+            "{},{},{},{},{},{},{},{},{:?},{f_n:?},{f_t:?},{t_max:?},{:?},{:?},{residual:?},{contact}",
             at.increment,
             at.attempt,
             at.major,
@@ -66,12 +68,20 @@ pub fn trace_rows(model: &Model, event: &Event) -> String {
             names::mode(d.next),
             names::rule(d.rule),
             r.gap,
-            r.f_n,
-            r.f_t,
-            r.t_max,
             r.slip,
             d.margin(),
         );
+    };
+    for (slave, r) in event.nodes.iter().enumerate() {
+        match r.sides(&friction[slave]) {
+            None => row(slave, 1, r, [r.f_n, r.f_t, r.t_max]),
+            Some(sides) => {
+                for (k, side) in sides.iter().enumerate() {
+                    let t_max = side.limit.copysign(side.f_t);
+                    row(slave, k + 1, r, [side.f_n, side.f_t, t_max]);
+                }
+            }
+        }
     }
     lines
 }

@@ -234,7 +234,7 @@ fn push(
         Tested::Gap => i.gap,
         Tested::NormalForce | Tested::Pressure | Tested::Cover => i.f_n,
         Tested::ShearForce | Tested::Drag => i.f_t,
-        Tested::Slip => i.slip,
+        Tested::Slip | Tested::Room => i.slip,
     };
     let most = all
         .iter()
@@ -250,8 +250,8 @@ fn push(
 /// The inequality that changed a node's mode.
 fn fired(rule: Rule) -> Option<Tested> {
     match rule {
-        Rule::FixedOpens | Rule::SlidingOpens => Some(Tested::NormalForce),
-        Rule::FixedSlides => Some(Tested::ShearForce),
+        Rule::FixedOpens | Rule::SlidingOpens | Rule::CornerOpens => Some(Tested::NormalForce),
+        Rule::FixedSlides | Rule::CornerSlides => Some(Tested::ShearForce),
         Rule::FixedDragged => Some(Tested::Slip),
         Rule::SlidingSticks => Some(Tested::Slip),
         Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(Tested::Gap),
@@ -481,7 +481,7 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
         Tested::Gap => ("Δg", from.gap),
         Tested::NormalForce | Tested::Pressure | Tested::Cover => ("ΔF_n", from.f_n),
         Tested::ShearForce | Tested::Drag => ("ΔF_t", from.f_t),
-        Tested::Slip => ("Δslip", from.slip),
+        Tested::Slip | Tested::Room => ("Δslip", from.slip),
     };
     let whom = if from.from == push.node {
         "it"

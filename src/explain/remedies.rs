@@ -250,7 +250,7 @@ fn scale_of(tested: crate::contact::table2::Tested, stepper: &Stepper, event: &E
         Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
             event.before.scale
         }
-        Tested::Slip | Tested::Gap => stepper.model().length,
+        Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
         Tested::Cover => 1.0,
     }
 }

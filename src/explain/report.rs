@@ -30,6 +30,19 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
             "Stays sliding: there is no friction that could hold it."
         }
         Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
+        Rule::SlidingPasses if !friction => {
+            "Stays sliding, and goes on past the end of its side: there is no friction that could hold it."
+        }
+        Rule::SlidingPasses => {
+            "Stays sliding, since friction opposes the slip, and goes on past the end of its side."
+        }
+        Rule::CornerStays => {
+            "Stays where two sides meet: they push, and together they can carry F_t."
+        }
+        Rule::CornerSlides => {
+            "Two sides → sliding along one: F_t is more than both together can carry."
+        }
+        Rule::CornerOpens => "Two sides → free: they would have to pull.",
         Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
         Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
         Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
@@ -176,7 +189,7 @@ fn pivot(model: &Model, event: &Event) -> String {
             Tested::Gap => "the gap closed",
             Tested::NormalForce => "F_n vanished",
             Tested::ShearForce => "the friction limit was reached",
-            Tested::Slip => "the slip ended",
+            Tested::Slip | Tested::Room => "the slip ended",
             _ => return None,
         };
         Some(format!("at {} {what}", slave(model, s)))

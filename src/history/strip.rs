@@ -117,7 +117,7 @@ pub struct Strip {
     pub after: Option<Box<Norms>>,
     /// Wall time that it took to solve; not a part of the state, and never compared.
     pub seconds: f32,
-    /// A byte a slave node: bits 0-1 the mode before, 2-3 the mode next, 4 forced once, 5 held.
+    /// A byte a slave node: bits 0-1 the mode before, 2-3 the mode next, 4 forced once, 5 held, 6 held where two sides meet.
     marks: Box<[u8]>,
     /// Signed distance of the deciding inequality from switching, by slave node (force or length), rounded.
     margins: Box<[f32]>,
@@ -130,6 +130,7 @@ pub struct Strip {
 const NOWHERE: u32 = u32::MAX;
 const ONCE: u8 = 1 << 4;
 const HELD: u8 = 1 << 5;
+const CORNER: u8 = 1 << 6;
 
 impl Strip {
     /// A mark and a margin.
@@ -152,7 +153,8 @@ impl Strip {
                 Some(found) => (found.decision.before, found.forced),
                 None => (now.mode, now.forced),
             };
-            mark(mode, now.mode, forced)
+            let corner = record(s).is_some_and(|found| found.corner.is_some());
+            mark(mode, now.mode, forced) | if corner { CORNER } else { 0 }
         };
         let count = state.nodes.len();
         Strip {
@@ -217,6 +219,11 @@ impl Strip {
     /// Whether its mode was forced for this iteration, or held.
     pub fn is_forced(&self, slave: usize) -> bool {
         self.marks[slave] & (ONCE | HELD) != 0
+    }
+
+    /// Whether it was held where two sides meet.
+    pub fn in_corner(&self, slave: usize) -> bool {
+        self.marks[slave] & CORNER != 0
     }
 
     /// Whether its mode was held until released.

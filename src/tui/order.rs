@@ -57,7 +57,7 @@ fn margin(slave: usize, view: &View) -> Option<f64> {
         Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
             event.before.scale
         }
-        Tested::Slip | Tested::Gap => view.model.length,
+        Tested::Slip | Tested::Room | Tested::Gap => view.model.length,
         Tested::Cover => 1.0,
     };
     tests

@@ -14,7 +14,7 @@
 //! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, since very stiff
 //! bodies make forces less exact and positions not.
 
-use crate::contact::corner::{Side, beyond_sum, beyond_vertex, concave};
+use crate::contact::corner::{Side, beyond_sum, beyond_vertex, half_angle};
 use crate::contact::feet::{self, Foot, direction, place};
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
@@ -450,7 +450,7 @@ fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> 
         Past::Touched(slip) if slip.abs() > scales.near() => slip,
         _ => 0.0,
     };
-    if meet.is_some() && concave(before.tangent, behind.tangent).is_none() {
+    if meet.is_some() && half_angle(before.tangent, behind.tangent) <= 0.0 {
         let beyond = beyond_vertex(force, &before.side, &behind.side);
         return Amounts {
             tension: beyond.tension / scales.force,

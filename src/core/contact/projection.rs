@@ -149,20 +149,28 @@ pub fn border(
     })
 }
 
-/// Half the angle (radians) between the normals of the two elements that meet at a border, if they form a concave corner;
-/// else `None`.
-pub fn concave(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> Option<f64> {
+/// Sides the angle between whose normals is less than twice this (radians) meet without a kink.
+pub const STRAIGHT: f64 = 1e-9;
+
+/// The diagonal of the box around the nodes of a spot's element (length).
+pub fn element_size(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
+    Bounds::new(&surface.elements[spot.element], positions).size()
+}
+
+/// Half the angle (radians) between the normals of the two elements that meet at a border ([`corner::half_angle`]): positive
+/// where they form a concave corner, negative at a convex vertex. `None` where no two elements meet.
+pub fn half_angle(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> Option<f64> {
     let (other, xi) = neighbour(surface, border)?;
     let slope = |element: usize, xi: f64| {
         let nodes = &surface.elements[element];
         blend(nodes, positions, &shape(nodes.len(), xi).d)
     };
     let (own, across) = (slope(border.element, border.xi), slope(other, xi));
-    if border.xi > 0.0 {
-        corner::concave(own, across)
+    Some(if border.xi > 0.0 {
+        corner::half_angle(own, across)
     } else {
-        corner::concave(across, own)
-    }
+        corner::half_angle(across, own)
+    })
 }
 
 /// Geometry at a spot, for a slave node at `slave`.

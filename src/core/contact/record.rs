@@ -1,8 +1,11 @@
 //! What a minor iteration found at one slave node.
 
+use crate::contact::corner::{Side, split};
 use crate::contact::projection::SurfacePoint;
+#[cfg(doc)]
+use crate::contact::state::ContactState;
 use crate::contact::table2::Decision;
-use crate::model::Mode;
+use crate::model::{Friction, Mode};
 use serde::{Deserialize, Serialize};
 
 /// What a minor iteration found at one slave node. Forces are totals, on the slave node.
@@ -33,8 +36,40 @@ pub struct ContactRecord {
     pub normal: [f64; 2],
     /// Position of S* at the start of this major iteration.
     pub foot: [f64; 2],
+    /// Half the angle between the normals of the two sides that hold it ([`ContactState::corner`]), in radians; `None` where
+    /// one side alone does.
+    pub corner: Option<f64>,
     /// Whether a force component (normal, tangential) is left to the supports, since no unknown takes part in its equation.
     pub carried: [bool; 2],
+}
+
+/// What one of two sides gives, in its own frame (n, t).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SideForce {
+    /// Normal force; compression positive.
+    pub f_n: f64,
+    /// Tangential force.
+    pub f_t: f64,
+    /// Friction bound tan φ F_n + c of this side.
+    pub limit: f64,
+}
+
+impl ContactRecord {
+    /// What each of the two sides that hold the node gives, in the order of the walk; `friction` is that of one side. With
+    /// friction the split is not unique: it is the one of least norm ([`split`]). NaN where both together cannot give the
+    /// force. `None` where one side alone holds the node.
+    pub fn sides(&self, friction: &Friction) -> Option<[SideForce; 2]> {
+        let [one, other] = Side::pair(self.normal, self.corner?, friction);
+        let [c, s] = self.normal;
+        let force = [c * self.f_n - s * self.f_t, s * self.f_n + c * self.f_t];
+        let forces = split(force, [&one, &other]).unwrap_or([[f64::NAN; 2]; 2]);
+        let of = |side: &Side, force: [f64; 2]| {
+            let [f_n, f_t] = side.components(force);
+            let limit = side.coefficient * f_n + side.cohesion;
+            SideForce { f_n, f_t, limit }
+        };
+        Some([of(&one, forces[0]), of(&other, forces[1])])
+    }
 }
 
 /// Whether the user forces a node's mode.

@@ -38,8 +38,8 @@ pub struct ContactState {
     pub travel: f64,
     /// Where S* lies. `None` past the ends of all surfaces.
     pub spot: Option<SurfacePoint>,
-    /// Half the angle (radians) between the normals of the concave corner that holds the node; S* is that corner then.
-    /// `None` if no corner holds it.
+    /// Half the angle (radians) between the normals of the two sides that hold the node where they meet; S* is that point
+    /// then. Positive in a concave corner, negative on a convex vertex. `None` if one side alone holds it.
     #[serde(default)]
     pub corner: Option<f64>,
     /// The master element that it left last in the present increment, if any.
@@ -89,7 +89,7 @@ impl ContactState {
         }
     }
 
-    /// Friction where the node stands: `in_force`, or in a corner the wider friction of both sides
+    /// Friction where the node stands: `in_force`, or where two sides meet that of both
     /// ([`corner::widened`]).
     pub fn friction(&self, in_force: &Friction) -> Friction {
         match self.corner {

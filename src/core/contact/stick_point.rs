@@ -14,7 +14,9 @@
 //!
 //! Drift has the sign of slip, u_tS* − u_tS: what sticking must take back (Table 1).
 
-use crate::contact::projection::{Projection, SurfacePoint, project, tangent};
+use crate::contact::projection::{
+    Projection, STRAIGHT, SurfacePoint, half_angle, project, tangent,
+};
 use crate::fem::lagrange::shape;
 use crate::model::Surface;
 
@@ -45,6 +47,17 @@ pub fn pierced(
     let t = tangent(projection.normal);
     let point = [0, 1].map(|k| projection.foot[k] - projection.gap * ratio * t[k]);
     project(point, surfaces, &[spot.surface], positions, Some(spot))
+}
+
+/// Ways from a spot along −t and along +t to the ends of its element, where those meet others at an angle (length). `None`
+/// where they do not, or end there.
+pub fn room(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [Option<f64>; 2] {
+    [-1.0, 1.0].map(|xi| {
+        let end = SurfacePoint { xi, ..spot };
+        let half = half_angle(surface, end, positions)?;
+        let way = || distance(surface, spot, end, positions).abs();
+        (half.abs() > STRAIGHT).then(way)
+    })
 }
 
 /// Length of a surface from one point of it to another, positive along the walk; the shorter way round a closed one.

@@ -21,6 +21,14 @@ pub enum Rule {
     SlidingStays,
     /// F_n <= 0.
     SlidingOpens,
+    /// As [`Rule::SlidingStays`], and it comes past the end of its side, onto the next.
+    SlidingPasses,
+    /// Where two sides meet: F_n > 0 and |F_t| < |T_max|, with the T_max of both ([`crate::contact::corner`]).
+    CornerStays,
+    /// Where two sides meet: F_n > 0 and |F_t| > |T_max|; it slides out along one of them.
+    CornerSlides,
+    /// Where two sides meet: F_n <= 0.
+    CornerOpens,
     /// g < 0, rough interface.
     FreeSticks,
     /// g < 0, smooth interface: straight to sliding.
@@ -56,6 +64,8 @@ pub enum Tested {
     ShearForce,
     /// sgn(T_max) · slip against 0 (length).
     Slip,
+    /// Way along the surface against the room that is left to the end of the side (length).
+    Room,
     /// g against 0 (length).
     Gap,
     /// F_n − k g against 0, for the interface's spring stiffness k (force).
@@ -253,6 +263,30 @@ impl Decision {
             next: Mode::Sliding,
             wanted: Mode::Sliding,
             rule: Rule::FixedDragged,
+            tests: [self.tests[0], Some(test)],
+            ..self
+        }
+    }
+
+    /// The decision on a fixed node that is held where two sides meet.
+    pub fn in_corner(self) -> Self {
+        let rule = match self.rule {
+            Rule::FixedStays => Rule::CornerStays,
+            Rule::FixedSlides => Rule::CornerSlides,
+            Rule::FixedOpens => Rule::CornerOpens,
+            other => other,
+        };
+        Decision { rule, ..self }
+    }
+
+    /// The decision on a node that goes `way` (length, not negative) along its side, of which `room` is left.
+    pub fn with_room(self, way: f64, room: f64, ties: &Ties) -> Self {
+        if self.rule != Rule::SlidingStays || way <= room {
+            return self;
+        }
+        let test = ties.test(Tested::Room, way, room, room - way, ties.length);
+        Decision {
+            rule: Rule::SlidingPasses,
             tests: [self.tests[0], Some(test)],
             ..self
         }

@@ -1,15 +1,26 @@
 //! Where the slave nodes stand at the start of a major iteration: S*, anchor, drift, and corners.
 //!
 //! Where two elements meet in a concave corner, a node that comes to rest there may go back and forth between them for
-//! ever. A sliding node that comes back to the element that it had left is therefore held in the corner: it is fixed there,
-//! about the mean of the two normals, with the friction that both sides give together ([`crate::contact::corner`]). At the
+//! ever. A sliding node that comes back to the element that it had left, and any node that is past both sides, is therefore
+//! held in the corner: it is fixed there, about the mean of the two normals, with the friction that both sides give together ([`crate::contact::corner`]). At the
 //! friction bound it slides out along one side, as out of any fixed mode.
+//!
+//! A node that comes down on a convex vertex sticks there about the mean normal, too, with the narrower friction that keeps it
+//! from sliding down either side. Where friction is too weak for that, it stands on one of the sides: a vertex that
+//! holds it without friction would be an unstable state.
 
-use crate::contact::projection::{SurfacePoint, border, concave, project, projection_at, tangent};
+use crate::contact::corner;
+use crate::contact::projection::{
+    STRAIGHT, SurfacePoint, border, element_size, half_angle, project, projection_at, tangent,
+};
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
+use crate::contact::table1::t_max;
 use crate::model::Mode;
-use crate::model::{Contact, Surface};
+use crate::model::{Contact, Friction, Surface};
+
+/// A node closer to a vertex than this part of the element's size stands on it.
+const AT_VERTEX: f64 = 1e-9;
 
 /// The chains that nodes stand on, and where all nodes of the scene are now.
 #[derive(Debug, Clone, Copy)]
@@ -24,14 +35,17 @@ impl Ground<'_> {
     /// Finds where a node stands. Forces keep their components in the frame (n, t), which turns with the surface. When a node
     /// enters or leaves a corner, the frame jumps, and the force keeps its direction instead. With `anew` a sliding node is
     /// anchored anew where it stands.
-    pub fn stand(&self, node: &mut ContactState, slave: &Contact, anew: bool) {
+    pub fn stand(&self, node: &mut ContactState, slave: &Contact, friction: &Friction, anew: bool) {
         let at = self.positions[slave.node];
         let (previous, force, was_held) = (node.spot, node.force(), node.corner.is_some());
-        if !self.stays_in_corner(node) {
+        if !self.stays_in_corner(node, friction) {
             node.corner = None;
             node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
             if !was_held {
                 self.cross(node, previous);
+            }
+            if node.corner.is_none() {
+                self.meet_both(node, at, friction);
             }
         }
         match node.spot {
@@ -57,11 +71,16 @@ impl Ground<'_> {
     }
 
     /// Whether a node that is held in a corner still sticks there, and the corner is still one; its angle is renewed.
-    fn stays_in_corner(&self, node: &mut ContactState) -> bool {
-        let (Some(_), Some(spot), Mode::Fixed) = (node.corner, node.spot, node.mode) else {
+    fn stays_in_corner(&self, node: &mut ContactState, friction: &Friction) -> bool {
+        let (Some(was), Some(spot), Mode::Fixed) = (node.corner, node.spot, node.mode) else {
             return false;
         };
-        node.corner = concave(&self.surfaces[spot.surface], spot, self.positions);
+        let half = half_angle(&self.surfaces[spot.surface], spot, self.positions);
+        let still = |half: &f64| {
+            let is_corner = *half > 0.0;
+            is_corner == (was > 0.0) && (is_corner || corner::holds(friction, *half))
+        };
+        node.corner = half.filter(still);
         node.corner.is_some()
     }
 
@@ -77,8 +96,9 @@ impl Ground<'_> {
         let surface = &self.surfaces[from.surface];
         let meet = border(surface, from.surface, from.element, to.element);
         let corner =
-            meet.and_then(|border| Some((border, concave(surface, border, self.positions)?)));
+            meet.and_then(|border| Some((border, half_angle(surface, border, self.positions)?)));
         if let Some((border, half)) = corner
+            && half > STRAIGHT
             && node.left == Some(to.element)
             && node.mode == Mode::Sliding
         {
@@ -86,6 +106,39 @@ impl Ground<'_> {
             node.left = None;
         } else {
             node.left = Some(from.element);
+        }
+    }
+
+    /// Holds a node whose S* is just where two sides meet: in a concave corner, since it is out over both sides; on a convex
+    /// vertex where friction can hold it. Else it stands on a side of the vertex.
+    fn meet_both(&self, node: &mut ContactState, at: [f64; 2], friction: &Friction) {
+        let Some(spot) = node.spot else {
+            return;
+        };
+        let half = half_angle(&self.surfaces[spot.surface], spot, self.positions);
+        let Some(half) = half.filter(|half| half.abs() > STRAIGHT) else {
+            return;
+        };
+        if half > 0.0 {
+            node.corner = Some(half);
+            if node.mode == Mode::Sliding {
+                node.mode = Mode::Fixed;
+            }
+        } else if node.mode != Mode::Sliding && corner::holds(friction, half) {
+            node.corner = Some(half);
+        } else if node.mode != Mode::Free {
+            let here = projection_at(self.surfaces, spot, self.positions, at);
+            let size = element_size(&self.surfaces[spot.surface], spot, self.positions);
+            if here.gap.abs() <= AT_VERTEX * size {
+                // The last place that has the side's own normal.
+                let xi = spot.xi * (1.0 - f64::EPSILON);
+                node.spot = Some(SurfacePoint { xi, ..spot });
+                if node.mode == Mode::Fixed {
+                    // Friction points back to the vertex, which is ahead along t at ξ = 1.
+                    (node.mode, node.sign) = (Mode::Sliding, spot.xi);
+                    node.t_max = t_max(friction, node.f_n, node.sign);
+                }
+            }
         }
     }
 

@@ -117,6 +117,11 @@ fn record(
     if fixed && !moves[1] && slip.abs() > ties.length {
         decision = decision.dragged(slip);
     }
+    if node.corner.is_some() {
+        decision = decision.in_corner();
+    } else if let Some(room) = kinematics.and_then(|k| k.room_for(tangential)) {
+        decision = decision.with_room(tangential.abs(), room, ties);
+    }
     if kinematics.is_none() {
         decision.rule = Rule::OffSurface;
         (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
@@ -146,6 +151,7 @@ fn record(
         spot: node.spot,
         normal: kinematics.map_or(node.normal, |k| k.normal),
         foot: kinematics.map_or([f64::NAN; 2], |k| k.foot),
+        corner: node.corner.filter(|_| node.mode == Mode::Fixed),
         carried: carried(node.mode, moves),
     };
     (record, turned)

@@ -15,7 +15,7 @@ use crate::linear::norms::Norms;
 use crate::linear::singular::{self, Singular};
 use crate::linear::source::{At, Solved, Source};
 use crate::linear::system::System;
-use crate::model::{Axis, Mode, Model, Settings, Watched};
+use crate::model::{Axis, Friction, Mode, Model, Settings, Watched};
 use std::sync::Arc;
 
 /// What a relative amount against a law may be at least; more where the settings' tolerance or round-off is larger.
@@ -111,11 +111,18 @@ impl Source for Bodies {
         vec![0.0; history_len(&self.model)]
     }
 
-    fn follow(&mut self, u: &[f64], contacts: &mut [ContactState], anew: bool) {
+    fn follow(
+        &mut self,
+        u: &[f64],
+        contacts: &mut [ContactState],
+        friction: &[Friction],
+        anew: bool,
+    ) {
         self.system.place(&self.model, u);
         let ground = self.ground();
-        for (state, contact) in contacts.iter_mut().zip(&self.model.contacts) {
-            ground.stand(state, contact, anew);
+        let all = contacts.iter_mut().zip(&self.model.contacts).zip(friction);
+        for ((state, contact), friction) in all {
+            ground.stand(state, contact, friction, anew);
         }
     }
 

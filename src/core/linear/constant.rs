@@ -193,7 +193,13 @@ impl Source for ConstantSource {
         vec![0.0; self.interface.load.len()]
     }
 
-    fn follow(&mut self, w: &[f64], contacts: &mut [ContactState], anew: bool) {
+    fn follow(
+        &mut self,
+        w: &[f64],
+        contacts: &mut [ContactState],
+        _friction: &[Friction],
+        anew: bool,
+    ) {
         for (k, state) in contacts.iter_mut().enumerate() {
             let here = Self::point(k, w);
             (state.spot, state.normal) = (Some(here), [0.0, 1.0]);
@@ -248,6 +254,7 @@ impl Source for ConstantSource {
             gap: self.gaps[contact],
             normal: [0.0, 1.0],
             foot: [0.0; 2],
+            room: [None; 2],
             moves: [true; 2],
         })
     }

@@ -39,6 +39,8 @@ pub struct Interface {
     pub pairs: Vec<Option<usize>>,
     /// Places of the 2 by 2 block of ΔF_n, ΔF_t.
     pub block: [usize; 4],
+    /// Ways along −t and +t to the ends of the side, where another meets it at an angle (length).
+    pub room: [Option<f64>; 2],
     /// Whether the normal and the tangential motion have any coefficient on an unknown.
     pub moves: [bool; 2],
     /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.

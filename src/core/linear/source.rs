@@ -84,8 +84,14 @@ pub trait Source: Send {
     }
 
     /// Finds where every contact stands in a state: the point on its surface, normal, stick point and drift. `anew` says
-    /// that a sliding contact takes its stick point along.
-    fn follow(&mut self, u: &[f64], contacts: &mut [ContactState], anew: bool);
+    /// that a sliding contact takes its stick point along. `friction` is that in force, by contact.
+    fn follow(
+        &mut self,
+        u: &[f64],
+        contacts: &mut [ContactState],
+        friction: &[Friction],
+        anew: bool,
+    );
 
     /// Places the stick points of contacts that bring slip into the scene.
     fn place_stick_points(&mut self, _contacts: &mut [ContactState]) {}

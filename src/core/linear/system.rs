@@ -7,6 +7,7 @@
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
 use crate::contact::projection::{Projection, projection_at, tangent};
 use crate::contact::state::ContactState;
+use crate::contact::stick_point::room;
 use crate::contact::table1::Equation;
 use crate::fem::assembly::{Assembly, Moved};
 use crate::fem::element::Assembled;
@@ -194,7 +195,7 @@ impl System {
         if let (Layout::Bodies, Some(bodies)) = (layout, &mut self.bodies) {
             bodies.turning.fill(0.0);
         }
-        self.measure_interfaces(model);
+        self.measure_interfaces(model, at);
         self.balance(model, at);
         Ok(())
     }
@@ -302,8 +303,11 @@ impl System {
         Ok(())
     }
 
-    fn measure_interfaces(&mut self, model: &Model) {
-        for interface in &mut self.interfaces {
+    fn measure_interfaces(&mut self, model: &Model, at: &At<'_>) {
+        for (interface, node) in self.interfaces.iter_mut().zip(at.contacts) {
+            interface.room = node.spot.map_or([None; 2], |spot| {
+                room(&model.surfaces[spot.surface], spot, &self.positions)
+            });
             interface.prescribed = [0.0; 2];
             interface.moves = [false; 2];
             let Some(frame) = interface.projection.map(|f| [f.normal, tangent(f.normal)]) else {
@@ -406,6 +410,7 @@ impl System {
             gap,
             normal: projection.normal,
             foot: projection.foot,
+            room: interface.room,
             moves: interface.moves,
         })
     }

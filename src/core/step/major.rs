@@ -6,8 +6,8 @@ use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
 use crate::model::{AtLimit, Mode, ResidualMethod, SlipCount, Sticking};
-use crate::step::brake::PATIENCE;
 use crate::step::event::{Failure, Outcome};
+use crate::step::hold::PATIENCE;
 use crate::step::major_history::{MajorCycle, Scales};
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
@@ -170,8 +170,8 @@ impl Stepper {
         // Where slip is counted anew in every major iteration, so is what to stick to.
         let settings = self.state.settings();
         let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
-        self.source
-            .follow(&self.state.u, &mut self.state.nodes, anew);
+        let (u, friction) = (&self.state.u, &self.state.controls.friction);
+        self.source.follow(u, &mut self.state.nodes, friction, anew);
         self.linearised = false;
     }
 }

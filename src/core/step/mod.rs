@@ -5,12 +5,14 @@
 //! - `minor`, `major`, `increment`: the three levels; `search`: what happens where the modes do not settle.
 //! - [`sub_increment`]: increments whole and cut; `jump`: those that end on another branch of equilibrium; `verdict`:
 //!   what becomes of a state that the judge refuses.
+//! - [`brake`], `hold`: sliding that is held back, where nothing else has helped.
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
 pub mod brake;
 pub mod drive;
 pub mod event;
+mod hold;
 mod increment;
 pub mod intervene;
 mod jump;

@@ -198,6 +198,7 @@ impl Stepper {
             spot: node.spot,
             normal: over.map_or(node.normal, |k| k.normal),
             foot: over.map_or([f64::NAN; 2], |k| k.foot),
+            corner: node.corner.filter(|_| before == Mode::Fixed),
             carried: [false; 2],
         });
     }

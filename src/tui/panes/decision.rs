@@ -1,10 +1,10 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
 
-use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::record::{ContactRecord, Forced, SideForce};
 use crate::contact::table2::{Decision, Rule, Test, Tested};
 use crate::explain::influence::Push;
 use crate::explain::names::{self, MODES, TABLE_2};
-use crate::explain::number::{self, long};
+use crate::explain::number::{self, four, long};
 use crate::explain::report;
 use crate::explain::round_off::{NOTE, RoundOff};
 use crate::model::Mode;
@@ -49,6 +49,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             theme,
         )
     });
+    let tests: Vec<Line> = match record.filter(|_| !hidden) {
+        Some(record) => tests
+            .into_iter()
+            .chain(sides(record, slave, view, theme))
+            .collect(),
+        None => tests,
+    };
     let words = match (hidden, &app.lesson) {
         (false, _) => words(record, slave, view),
         (true, Some(_)) => "The numbers are in the table above. What does Table 2 say?".into(),
@@ -130,13 +137,13 @@ fn pushes(
         Tested::Gap => push.influence.gap,
         Tested::NormalForce | Tested::Pressure | Tested::Cover => push.influence.f_n,
         Tested::ShearForce | Tested::Drag => push.influence.f_t,
-        Tested::Slip => push.influence.slip,
+        Tested::Slip | Tested::Room => push.influence.slip,
     };
     let symbol = match tested {
         Tested::Gap => "Δg",
         Tested::NormalForce | Tested::Pressure | Tested::Cover => "ΔF_n",
         Tested::ShearForce | Tested::Drag => "ΔF_t",
-        Tested::Slip => "Δslip",
+        Tested::Slip | Tested::Room => "Δslip",
     };
     let mut found: Vec<&Push> = found.iter().filter(|push| of(push) != 0.0).collect();
     found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
@@ -432,6 +439,26 @@ fn tests(
     lines
 }
 
+/// What each of two sides gives that hold the node.
+fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+    let friction = &view.frame().state.controls.friction[slave];
+    let Some(sides) = record.sides(friction) else {
+        return Vec::new();
+    };
+    let one = |(k, side): (usize, &SideForce)| {
+        let (f_n, f_t, limit) = (four(side.f_n), four(side.f_t), four(side.limit));
+        let text = format!(" side {}: F_n {f_n}, F_t {f_t} of at most {limit}", k + 1);
+        Line::styled(text, theme.text)
+    };
+    let note = match friction.is_smooth() {
+        true => " the only split",
+        false => " least norm: with friction, other splits are as good",
+    };
+    let mut lines: Vec<Line> = sides.iter().enumerate().map(one).collect();
+    lines.push(Line::styled(note, theme.faint));
+    lines
+}
+
 /// An inequality as it stands, with ten digits on both sides.
 fn inequality(test: &Test) -> String {
     let sign = match test.value.partial_cmp(&test.bound) {
@@ -445,6 +472,7 @@ fn inequality(test: &Test) -> String {
         Tested::NormalForce => ("F_n", "0".into()),
         Tested::ShearForce => ("|F_t|", format!("|T_max| {}", long(test.bound))),
         Tested::Slip => ("slip·sgn T_max", "0".into()),
+        Tested::Room => ("way", format!("room {}", long(test.bound))),
         Tested::Gap => ("g", "0".into()),
         Tested::Pressure => ("F_n − k·g", "0".into()),
         Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
@@ -457,7 +485,7 @@ fn inequality(test: &Test) -> String {
 fn margin(test: &Test, round_off: &RoundOff, theme: &Theme) -> (String, Style) {
     let unit = match test.tested {
         Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => "force",
-        Tested::Slip | Tested::Gap => "length",
+        Tested::Slip | Tested::Room | Tested::Gap => "length",
         Tested::Cover => "(relative)",
     };
     match test.tie {
@@ -492,7 +520,8 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     };
     let decision = &record.decision;
     let mut text = report::reason(decision, record.t_max != 0.0);
-    let frictionless = decision.rule == Rule::SlidingStays && record.t_max == 0.0;
+    let frictionless =
+        matches!(decision.rule, Rule::SlidingStays | Rule::SlidingPasses) && record.t_max == 0.0;
     if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {
         text += match view.frame().state.controls.settings.ties {
             Ties::Keep => " A tie keeps the mode.",

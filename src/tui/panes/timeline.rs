@@ -220,7 +220,8 @@ fn headings(buffer: &mut Buffer, inner: Rect, columns: &[Column], strips: &[Stri
     }
 }
 
-/// The letter of a node's mode in an iteration; a small one where it was forced.
+/// The letter of a node's mode in an iteration, V for one that is fixed where two sides meet; a small one where it was
+/// forced.
 fn cell(strip: &Strip, slave: usize, app: &App) -> (&'static str, Style) {
     let (mode, forced) = (strip.before(slave), strip.is_forced(slave));
     if strip.kind == PointKind::Intervention && !forced {
@@ -229,9 +230,11 @@ fn cell(strip: &Strip, slave: usize, app: &App) -> (&'static str, Style) {
     let letter = match (mode, forced) {
         (Mode::Free, false) => "F",
         (Mode::Sliding, false) => "S",
+        (Mode::Fixed, false) if strip.in_corner(slave) => "V",
         (Mode::Fixed, false) => "X",
         (Mode::Free, true) => "f",
         (Mode::Sliding, true) => "s",
+        (Mode::Fixed, true) if strip.in_corner(slave) => "v",
         (Mode::Fixed, true) => "x",
     };
     let mut style = app.theme.mode(mode);

@@ -1,0 +1,127 @@
+//! Where sliding is held back ([`crate::step::brake`]): when an increment is tried so, and which of its major iterations are
+//! taken back.
+
+use crate::contact::state::ContactState;
+use crate::model::{Jumps, Mode};
+use crate::step::brake::Brake;
+use crate::step::event::{Failure, Outcome};
+use crate::step::state::{Progress, State};
+use crate::step::stepper::Stepper;
+use crate::strategy;
+
+/// Slip in one major iteration beyond which it is taken back, relative to the scene's length.
+const FAR: f64 = 0.02;
+/// Part of its work before that a step may have turned round after it.
+const TURNED: f64 = 0.5;
+/// Times the settings' major iterations that an increment may take which is held back.
+pub(super) const PATIENCE: u32 = 5;
+
+/// A major iteration that may have to be taken back.
+pub(super) struct Held {
+    /// Where it began.
+    state: Box<State>,
+    /// Slips of the sliding contacts, 0 of the others (length).
+    slips: Vec<f64>,
+    /// Σ δ d before it (force by length).
+    work: f64,
+}
+
+impl Stepper {
+    /// Starts the increment again with sliding held back. `None` where this was tried, or cannot help.
+    pub(super) fn brake(&mut self, why: &Failure) -> Option<Outcome> {
+        let helps = matches!(
+            why,
+            Failure::MajorCycle(_)
+                | Failure::MajorLimit { .. }
+                | Failure::Diverged { .. }
+                | Failure::LadderEnded { .. }
+                | Failure::NoAnswer { .. }
+                | Failure::Singular(_)
+                | Failure::Refused(_)
+        );
+        let settings = &self.state.controls.settings;
+        let touches = |node: &ContactState| node.mode != Mode::Free;
+        let mut nodes = self.state.nodes.iter().chain(&self.state.start.nodes);
+        let any = nodes.any(touches);
+        let cuts = !strategy::rungs(settings.strategy).is_empty();
+        if self.state.brake.on || !helps || !any || !cuts || self.model.jumps == Jumps::Stop {
+            return None;
+        }
+        self.restart(self.state.sub_increment);
+        self.state.brake = Brake::new(self.source.spring());
+        Some(Outcome::Braked {
+            why: why.clone(),
+            stiffness: self.state.brake.stiffness,
+        })
+    }
+
+    /// The modes of a major iteration do not settle: it begins again with a greater κ, with which they do in the end. `None`
+    /// where sliding is not held back, or κ does not help any more.
+    pub(super) fn hold_harder(&mut self, why: &Failure) -> Option<Outcome> {
+        if !self.state.brake.on || !self.state.brake.tighten() {
+            return None;
+        }
+        self.state.search = Progress::default();
+        self.state.next.minor += 1;
+        Some(Outcome::HeldBack {
+            why: Some(why.clone()),
+            stiffness: self.state.brake.stiffness,
+        })
+    }
+
+    /// What a major iteration is about to do, where sliding is held back.
+    pub(super) fn hold(&self) -> Option<Held> {
+        self.state.brake.on.then(|| {
+            let (mut work, mut slips) = (0.0, Vec::new());
+            for (contact, node) in self.state.nodes.iter().enumerate() {
+                let record = self.record(contact);
+                let slides = record.decision.before == Mode::Sliding;
+                let slip = if slides {
+                    self.source.increment(contact).motion[1]
+                } else {
+                    0.0
+                };
+                work += slip * (node.f_t - record.t_max_used);
+                slips.push(slip);
+            }
+            Held {
+                state: Box::new(self.state.clone()),
+                slips,
+                work,
+            }
+        })
+    }
+
+    /// Takes a major iteration back that went too far or the wrong way. Else κ falls for the next one.
+    pub(super) fn hold_back(&mut self, held: Held) -> Option<Outcome> {
+        let Held {
+            state,
+            slips,
+            work: before,
+        } = held;
+        let far = FAR * self.model.length;
+        let after: f64 = (slips.iter().zip(&self.state.nodes))
+            .map(|(slip, node)| slip * (node.f_t - node.t_max))
+            .sum();
+        // The first major iteration brings the load in, which drives nodes by itself.
+        let loads = state.next.major == 1;
+        let way: f64 = slips.iter().map(|slip| slip.abs()).sum();
+        let tiny = self.state.controls.settings.tolerance * self.force_scale() * way;
+        let turned = before < -tiny || after < -TURNED * before - tiny;
+        let wrong = slips.iter().any(|slip| slip.abs() > far) || turned && !loads;
+        let mut brake = state.brake;
+        if !wrong || !brake.tighten() {
+            self.state.brake.loosen();
+            return None;
+        }
+        self.state = *state;
+        self.state.brake = brake;
+        self.linearised = false;
+        self.begin_again();
+        self.state.next.minor += 1;
+        Some(Outcome::HeldBack {
+            why: None,
+            stiffness: brake.stiffness,
+        })
+    }
+}
