@@ -217,6 +217,18 @@ fn normal_at(
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
 
+/// The last place on the side that lies ahead of a border (along the walk), or behind it, that has the side's own normal.
+pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePoint {
+    let own = (border.xi < 0.0) == ahead;
+    let across = || neighbour(surface, border).filter(|_| !own);
+    let (element, xi) = across().unwrap_or((border.element, border.xi));
+    SurfacePoint {
+        element,
+        xi: xi * (1.0 - f64::EPSILON),
+        ..border
+    }
+}
+
 /// The element that meets the spot's own there, and ξ on it. `None` inside an element, and at an end of the chain.
 fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
     let count = surface.elements.len();

@@ -11,7 +11,8 @@
 
 use crate::contact::corner;
 use crate::contact::projection::{
-    STRAIGHT, SurfacePoint, border, element_size, half_angle, project, projection_at, tangent,
+    STRAIGHT, SurfacePoint, beside, border, element_size, half_angle, project, projection_at,
+    tangent,
 };
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
@@ -44,7 +45,9 @@ impl Ground<'_> {
             if !was_held {
                 self.cross(node, previous);
             }
-            if node.corner.is_none() {
+            if was_held {
+                self.leave(node, previous);
+            } else if node.corner.is_none() {
                 self.meet_both(node, at, friction);
             }
         }
@@ -109,6 +112,17 @@ impl Ground<'_> {
         }
     }
 
+    /// Lets a node that has left the place where two sides meet stand on the side along which it slides.
+    fn leave(&self, node: &mut ContactState, held: Option<SurfacePoint>) {
+        if let (Some(held), Some(spot), Mode::Sliding) = (held, node.spot, node.mode)
+            && spot.xi.abs() == 1.0
+            && held.surface == spot.surface
+        {
+            // Slip is that of S* against the node, which goes the other way along the surface.
+            node.spot = Some(beside(&self.surfaces[held.surface], held, node.sign < 0.0));
+        }
+    }
+
     /// Holds a node whose S* is just where two sides meet: in a concave corner, since it is out over both sides; on a convex
     /// vertex where friction can hold it. Else it stands on a side of the vertex.
     fn meet_both(&self, node: &mut ContactState, at: [f64; 2], friction: &Friction) {
@@ -130,9 +144,8 @@ impl Ground<'_> {
             let here = projection_at(self.surfaces, spot, self.positions, at);
             let size = element_size(&self.surfaces[spot.surface], spot, self.positions);
             if here.gap.abs() <= AT_VERTEX * size {
-                // The last place that has the side's own normal.
-                let xi = spot.xi * (1.0 - f64::EPSILON);
-                node.spot = Some(SurfacePoint { xi, ..spot });
+                let surface = &self.surfaces[spot.surface];
+                node.spot = Some(beside(surface, spot, spot.xi < 0.0));
                 if node.mode == Mode::Fixed {
                     // Friction points back to the vertex, which is ahead along t at ξ = 1.
                     (node.mode, node.sign) = (Mode::Sliding, spot.xi);

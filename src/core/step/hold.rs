@@ -2,6 +2,7 @@
 //! taken back.
 
 use crate::contact::state::ContactState;
+use crate::linear::norms::Norms;
 use crate::model::{Jumps, Mode};
 use crate::step::brake::Brake;
 use crate::step::event::{Failure, Outcome};
@@ -13,6 +14,8 @@ use crate::strategy;
 const FAR: f64 = 0.02;
 /// Part of its work before that a step may have turned round after it.
 const TURNED: f64 = 0.5;
+/// Error of the interface conditions (relative) below which nothing is carried any more.
+const EXACT: f64 = 1e-9;
 /// Times the settings' major iterations that an increment may take which is held back.
 pub(super) const PATIENCE: u32 = 5;
 
@@ -36,15 +39,21 @@ impl Stepper {
                 | Failure::Diverged { .. }
                 | Failure::LadderEnded { .. }
                 | Failure::NoAnswer { .. }
-                | Failure::Singular(_)
                 | Failure::Refused(_)
         );
+        // What runs away drowns in round-off before it is out of all bounds.
+        let drowned = matches!(why, Failure::RoundOff { .. }) && self.state.next.major > 2;
         let settings = &self.state.controls.settings;
         let touches = |node: &ContactState| node.mode != Mode::Free;
         let mut nodes = self.state.nodes.iter().chain(&self.state.start.nodes);
         let any = nodes.any(touches);
         let cuts = !strategy::rungs(settings.strategy).is_empty();
-        if self.state.brake.on || !helps || !any || !cuts || self.model.jumps == Jumps::Stop {
+        if self.state.brake.on
+            || !(helps || drowned)
+            || !any
+            || !cuts
+            || self.model.jumps == Jumps::Stop
+        {
             return None;
         }
         self.restart(self.state.sub_increment);
@@ -67,6 +76,12 @@ impl Stepper {
             why: Some(why.clone()),
             stiffness: self.state.brake.stiffness,
         })
+    }
+
+    /// Whether what holds sliding back still carries a part of the friction that the judge would miss.
+    pub(super) fn is_carried(&self, after: &Norms) -> bool {
+        let Brake { on, stiffness, .. } = self.state.brake;
+        on && stiffness > 0.0 && after.interface > EXACT
     }
 
     /// What a major iteration is about to do, where sliding is held back.

@@ -48,7 +48,7 @@ impl Stepper {
         let most = settings.majors * if braked { PATIENCE } else { 1 };
         let at_limit = self.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;
-        if settled && balanced && !drowned {
+        if settled && balanced && !drowned && !self.is_carried(&after) {
             return self.finish(after);
         }
         let accepts = settings.at_major_limit == AtLimit::Accept && !drowned;
