@@ -35,7 +35,11 @@ impl Stepper {
         self.begin_again();
         let search = &mut self.state.search;
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
-        if let Some(&to) = rungs.get(search.rung + 1) {
+        // A census that has tried all leaves nothing to find.
+        let proven = matches!(why, Failure::NoAnswer { .. });
+        if let Some(&to) = rungs.get(search.rung + 1)
+            && !proven
+        {
             search.rung += 1;
             (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
             self.state.next.minor += 1;
@@ -162,7 +166,10 @@ impl Stepper {
         let sign = if f_t == 0.0 { node.sign } else { f_t.signum() };
         node.t_max = t_max(&friction, f_n, sign);
         let test = Test {
-            tested: Tested::Cover,
+            tested: match proposal.rule {
+                Rule::Sweeps => Tested::Change,
+                _ => Tested::Cover,
+            },
             value: proposal.cover,
             bound: 0.0,
             margin: -proposal.cover,

@@ -9,12 +9,14 @@ use crate::model::Strategy;
 pub struct Ladder;
 
 /// The rungs of the ladder, the cheapest first.
-const RUNGS: [Strategy; 5] = [
+const RUNGS: [Strategy; 7] = [
     Strategy::Table2,
     Strategy::Sliding,
     Strategy::SlidingLeast,
     Strategy::Lemke,
     Strategy::Census,
+    Strategy::Copositive,
+    Strategy::GaussSeidel,
 ];
 
 impl Method for Ladder {

@@ -2,6 +2,8 @@
 
 mod block;
 mod census;
+mod copositive;
+mod gauss_seidel;
 mod ladder;
 mod least;
 mod lemke;
@@ -24,6 +26,8 @@ pub fn method(strategy: Strategy) -> &'static dyn Method {
         Strategy::Newton => &newton::Newton,
         Strategy::Lemke => &lemke::Lemke,
         Strategy::Census => &census::Census,
+        Strategy::Copositive => &copositive::Copositive,
+        Strategy::GaussSeidel => &gauss_seidel::GaussSeidel,
     }
 }
 
