@@ -341,10 +341,18 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
                 Some(first) => format!("{none} (at first: {})", describe_failure(model, first)),
             }
         }
-        Failure::LadderEnded { first, last } => format!(
-            "no strategy of the ladder found a consistent state (at first: {}; at last: {})",
+        Failure::LadderEnded {
+            first,
+            last,
+            scales,
+        } => format!(
+            "no strategy of the ladder found a consistent state (at first: {}; at last: {}){}",
             describe_failure(model, first),
-            describe_failure(model, last)
+            describe_failure(model, last),
+            match scales {
+                true => "; without gaps all scales with the load, so a smaller increment is the same problem and was not tried",
+                false => "",
+            }
         ),
         Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {

@@ -13,15 +13,22 @@
 //! copositive. Lemke's path can then end on a ray only if forces within the friction cones that move nothing (W F = 0) take
 //! energy from the unloaded motion q (Fᵀ q < 0). In a structure W = H M⁻¹ Hᵀ whose contacts have no gaps, q lies in the range
 //! of H and no such forces exist: there is an answer, and the path ends in it (Anitescu and Potra, Nonlinear Dynamics 14,
-//! 1997). The form of [`crate::interface::lemke`] has half as many rows and is not copositive.
+//! 1997). The path may be long, and depends on how much the covering variable relaxes each row; so there are several starts.
+//! The form of [`crate::interface::lemke`] has half as many rows and is not copositive.
 
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
-use crate::interface::tableau::{PathEnd, Tableau};
+use crate::interface::tableau::{Begin, PathEnd, Tableau};
 
 /// A path that ends on a ray has come to an answer if the covering variable is no more than this (relative): the rows that
 /// would bound it are tied, and round-off decides which of them does.
-const NEARLY: f64 = 1e-11;
+const NEARLY: f64 = 1e-9;
+/// Ties are broken by shifts of the rows up to this (relative).
+const SHIFT: f64 = 1e-7;
+/// Number of starts: the first relaxes all rows alike, the others each row by 0.2 to 1.
+pub const STARTS: usize = 8;
+/// Most pivots from a start, per row. Most paths take fewer than 3.
+const PIVOTS: usize = 8;
 
 /// Variables of a rough node, in this order, each beside its complement.
 const FORCE: usize = 0;
@@ -61,8 +68,8 @@ enum Held {
 }
 
 impl Copositive {
-    /// The problem with all nodes free. `None` if the bodies are not held without contact, or there is no memory.
-    pub fn new(problem: &InterfaceProblem) -> Option<Self> {
+    /// The problem with all nodes free, at start `number`, less than [`STARTS`]. `None` if the bodies are not held without contact, or there is no memory.
+    pub fn new(problem: &InterfaceProblem, number: usize) -> Option<Self> {
         let (relation, count) = (&problem.relation, problem.relation.count());
         let rough = |k: usize| {
             let node = &problem.nodes[k];
@@ -147,7 +154,15 @@ impl Copositive {
             basis.extend([first + PLUS_REST, first + MINUS_REST, first + ROOM]);
             path.nodes.push(Held::Rough(first));
         }
-        path.tableau.start(basis, rhs)?;
+        let begin = Begin {
+            cover: &|row| match number {
+                0 => 1.0,
+                _ => 0.2 + 0.8 * spread(row, number),
+            },
+            shift: Some(&|row| SHIFT * (0.5 + 0.5 * spread(row, 0))),
+            pivots: PIVOTS,
+        };
+        path.tableau.start(basis, rhs, begin)?;
         Some(path)
     }
 
@@ -240,6 +255,16 @@ impl Copositive {
             ],
         }
     }
+}
+
+/// Numbers in 0 to 1 that differ from row to row and from start to start, the same every time: the top bits of a product with
+/// an odd number, mixed (Steele, Lea and Flood's generator, 2014).
+fn spread(row: usize, number: usize) -> f64 {
+    let seed = (row as u64) << 8 | number as u64;
+    let mut x = seed.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 fn positive(scale: f64) -> f64 {

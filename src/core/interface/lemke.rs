@@ -14,7 +14,7 @@
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
 pub use crate::interface::tableau::PathEnd;
-use crate::interface::tableau::Tableau;
+use crate::interface::tableau::{Begin, Tableau};
 
 /// A variable of the tableau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,7 +150,7 @@ impl Lemke {
         let basis = (0..lemke.variables.len())
             .filter(|&v| lemke.is_basic(lemke.variables[v], &start))
             .collect();
-        lemke.tableau.start(basis, rhs)?;
+        lemke.tableau.start(basis, rhs, Begin::PLAIN)?;
         Some(lemke)
     }
 

@@ -3,12 +3,15 @@
 //! Variables come in pairs of which one is zero; a loose one has no partner, may have either sign, and never leaves the
 //! basis. A covering variable relaxes all rows at once. In every pivot the complement of the variable that left last enters
 //! the basis, until the covering variable leaves it. If nothing bounds the entering variable, the path ends on a ray. Ties
-//! are broken lexicographically, so that no basis comes twice.
+//! are broken lexicographically, so that no basis comes twice, or by a small shift of every row, which is the same for all
+//! shifts that are small enough, and cheap; then the path is that of the shifted rows, and the values are those of the true.
 
 use crate::linalg::DenseFactors;
 
-/// Entries of an entering column below this part of its largest are zero.
+/// Entries of an entering column below this part of its largest are zero: with rows as they are, and with shifted ones,
+/// where no row needs a pivot that small.
 const TINY: f64 = 1e-11;
+const TINY_SHIFTED: f64 = 1e-9;
 /// Ratios that differ by less than this are a tie.
 const TIE: f64 = 1e-12;
 /// Largest number of pivots of a path, per row. A usual path takes about one per row. If all forces are round-off, no basis
@@ -21,7 +24,8 @@ const SINGULAR: f64 = 1e11;
 #[derive(Debug, Clone)]
 pub struct Tableau {
     rows: usize,
-    /// Column by column: every variable's, then the covering variable's, then the values of the basic variables.
+    /// Column by column: every variable's, then the covering variable's, then the values of the basic variables that the path
+    /// goes by; where those are shifted, then the true ones.
     table: Vec<f64>,
     /// The complement of every variable; a loose one is its own.
     partners: Vec<usize>,
@@ -31,12 +35,35 @@ pub struct Tableau {
     row_of: Vec<Option<usize>>,
     /// The basis of the start, which breaks ties.
     first: Vec<usize>,
+    /// Whether small shifts break ties instead.
+    shifted: bool,
     /// The variable that enters next. `None` before the first pivot and after the last.
     entering: Option<usize>,
     /// The variable that left last. `None` if that was the covering one.
     left: Option<usize>,
     ended: Option<PathEnd>,
     pivots: usize,
+    most: usize,
+}
+
+/// How a path starts.
+#[derive(Clone, Copy)]
+pub struct Begin<'a> {
+    /// By how much the covering variable relaxes each row; all positive.
+    pub cover: &'a dyn Fn(usize) -> f64,
+    /// By how much each row is shifted. `None` where ties are broken lexicographically.
+    pub shift: Option<&'a dyn Fn(usize) -> f64>,
+    /// Most pivots of the path, per row.
+    pub pivots: usize,
+}
+
+impl Begin<'_> {
+    /// All rows are relaxed alike, and ties are broken lexicographically.
+    pub const PLAIN: Begin<'static> = Begin {
+        cover: &|_| 1.0,
+        shift: None,
+        pivots: PIVOTS,
+    };
 }
 
 /// How the path ended.
@@ -60,10 +87,12 @@ impl Tableau {
             basis: Vec::new(),
             row_of: Vec::new(),
             first: Vec::new(),
+            shifted: false,
             entering: None,
             left: None,
             ended: None,
             pivots: 0,
+            most: 0,
         }
     }
 
@@ -91,7 +120,7 @@ impl Tableau {
     }
 
     /// Starts the path from a basis (one variable a row, ascending). `None` if it is singular.
-    pub fn start(&mut self, basis: Vec<usize>, rhs: Vec<f64>) -> Option<()> {
+    pub fn start(&mut self, basis: Vec<usize>, rhs: Vec<f64>, begin: Begin<'_>) -> Option<()> {
         let (rows, cover) = (self.rows, self.variables());
         self.basis = basis;
         self.row_of = vec![None; cover + 1];
@@ -102,11 +131,20 @@ impl Tableau {
         self.table.extend(vec![0.0; rows]);
         self.table.extend(rhs);
         self.reduce()?;
+        self.most = begin.pivots * rows;
         for row in 0..rows {
             let loose = self.is_loose(row);
-            self.table[cover * rows + row] = if loose { 0.0 } else { -1.0 };
+            self.table[cover * rows + row] = if loose { 0.0 } else { -(begin.cover)(row) };
         }
-        let all_hold = (0..rows).all(|row| self.is_loose(row) || self.value(row) >= 0.0);
+        if let Some(shift) = begin.shift {
+            self.shifted = true;
+            self.table.extend_from_within((cover + 1) * rows..);
+            let values = &mut self.table[(cover + 1) * rows..(cover + 2) * rows];
+            for (row, value) in values.iter_mut().enumerate() {
+                *value += shift(row);
+            }
+        }
+        let all_hold = (0..rows).all(|row| self.is_loose(row) || self.truth(row) >= 0.0);
         if all_hold {
             self.ended = Some(PathEnd::Solved);
         }
@@ -139,6 +177,11 @@ impl Tableau {
         self.table[(self.variables() + 1) * self.rows + row]
     }
 
+    /// The value without the shift.
+    fn truth(&self, row: usize) -> f64 {
+        self.table[(self.variables() + 1 + usize::from(self.shifted)) * self.rows + row]
+    }
+
     /// Whether a variable is in the basis.
     pub fn is_basic(&self, variable: usize) -> bool {
         self.row_of[variable].is_some()
@@ -146,7 +189,7 @@ impl Tableau {
 
     /// The value of a variable.
     pub fn of(&self, variable: usize) -> f64 {
-        self.row_of[variable].map_or(0.0, |row| self.value(row))
+        self.row_of[variable].map_or(0.0, |row| self.truth(row))
     }
 
     /// How the path ended. `None` while it goes on.
@@ -176,7 +219,7 @@ impl Tableau {
             return None;
         }
         self.pivots += 1;
-        if self.pivots > PIVOTS * self.rows {
+        if self.pivots > self.most {
             self.ended = Some(PathEnd::Astray);
             return Some(());
         }
@@ -205,8 +248,9 @@ impl Tableau {
     /// The row whose value is the most negative.
     fn most_broken(&self) -> Option<usize> {
         let rows = (0..self.rows).filter(|&row| !self.is_loose(row));
+        let covers = |row: usize| -self.table[self.variables() * self.rows + row];
         rows.reduce(|best, row| {
-            if self.comes_before(row, best, |_| 1.0) {
+            if self.comes_before(row, best, covers) {
                 row
             } else {
                 best
@@ -218,7 +262,11 @@ impl Tableau {
     /// lexicographically.
     fn bounding(&self, entering: usize) -> Option<usize> {
         let column = &self.table[entering * self.rows..(entering + 1) * self.rows];
-        let tiny = TINY * column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let tiny = match self.shifted {
+            true => TINY_SHIFTED,
+            false => TINY,
+        };
+        let tiny = tiny * column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let rows = (0..self.rows).filter(|&row| column[row] > tiny && !self.is_loose(row));
         rows.reduce(|best, row| {
             let ratio = |row: usize| self.value(row) / column[row];
@@ -240,7 +288,7 @@ impl Tableau {
     fn comes_before(&self, row: usize, other: usize, divisor: impl Fn(usize) -> f64) -> bool {
         let (mine, its) = (divisor(row), divisor(other));
         let gap = self.value(row) / mine - self.value(other) / its;
-        if gap.abs() > TIE {
+        if gap.abs() > TIE || self.shifted {
             return gap < 0.0;
         }
         for &v in &self.first {

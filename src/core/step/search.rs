@@ -214,6 +214,7 @@ fn ended(first: Failure, last: Failure) -> Failure {
         (first, last) => Failure::LadderEnded {
             first: Box::new(first),
             last: Box::new(last),
+            scales: false,
         },
     }
 }

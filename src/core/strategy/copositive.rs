@@ -4,7 +4,7 @@
 //! ([`crate::interface::vertex`]). What is found is checked by Table 2 in the minor iteration after.
 
 use crate::contact::table2::Rule;
-use crate::interface::copositive::Copositive as Pivoting;
+use crate::interface::copositive::{Copositive as Pivoting, STARTS};
 use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
 use crate::interface::tableau::PathEnd;
 use crate::interface::vertex::vertices;
@@ -13,9 +13,10 @@ use crate::model::BoundUpdate;
 /// Pivoting from all nodes free, with the friction force in two parts.
 pub struct Copositive;
 
-/// A path and the pivots done.
+/// A path, its start, and the pivots done.
 struct Path {
     pivoting: Pivoting,
+    start: usize,
     step: usize,
 }
 
@@ -30,9 +31,9 @@ impl Method for Copositive {
 }
 
 impl Search for Copositive {
-    /// One pivot. There is one path.
+    /// One pivot; after a path that has ended without an answer, the next start follows.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
-        if asked.start > 0 {
+        if asked.start >= STARTS {
             return Err(match asked.unconfirmed {
                 0 => NotFound::Ray.into(),
                 states => NotFound::Unconfirmed { states }.into(),
@@ -62,11 +63,14 @@ impl Search for Copositive {
             bound: pivoting.bound(),
             next: match ended {
                 None => Searched::At {
-                    start: 0,
+                    start: path.start,
                     step: path.step,
                 },
-                Some(PathEnd::Solved) => Searched::Found { start: 0 },
-                Some(PathEnd::Ray | PathEnd::Astray) => Searched::At { start: 1, step: 0 },
+                Some(PathEnd::Solved) => Searched::Found { start: path.start },
+                Some(PathEnd::Ray | PathEnd::Astray) => Searched::At {
+                    start: path.start + 1,
+                    step: 0,
+                },
             },
         };
         *asked.kept = Some(path);
@@ -75,18 +79,19 @@ impl Search for Copositive {
 }
 
 fn path_is_at(path: &Path, asked: &Asked<'_>) -> bool {
-    path.step == asked.step
+    (path.start, path.step) == (asked.start, asked.step)
 }
 
 /// The path after so many pivots.
 fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
-    let mut pivoting = Pivoting::new(&problem).ok_or(NotFound::NoStart)?;
+    let mut pivoting = Pivoting::new(&problem, asked.start).ok_or(NotFound::NoStart)?;
     for _ in 0..asked.step {
         pivoting.pivot();
     }
     Ok(Path {
         pivoting,
+        start: asked.start,
         step: asked.step,
     })
 }

@@ -1,6 +1,6 @@
 //! Projected Gauss-Seidel ([`crate::interface::sweep`]), some sweeps a minor iteration, made fast by Newton's step: as soon as
 //! the modes last, the next minor iteration solves for them, and Table 2 checks them. If they do not hold, the sweeps go on
-//! to others.
+//! to others, which must last twice as long.
 //!
 //! Where forces are not unique, those of the sweeps are taken on to a state whose modes have one solution
 //! ([`crate::interface::vertex`]).
@@ -18,7 +18,7 @@ pub struct GaussSeidel;
 /// Sweeps in a minor iteration.
 const SWEEPS: usize = 10;
 /// Most minor iterations of sweeps. Most problems take fewer than 100.
-const MOST: usize = 2000;
+const MOST: usize = 500;
 
 /// Sweeps on their way.
 struct Going {
@@ -28,6 +28,9 @@ struct Going {
     step: usize,
     /// All of them.
     done: usize,
+    /// Minor iterations for which the modes have lasted, and those for which they must.
+    lasted: usize,
+    patience: usize,
     /// What the nodes did before, and in what was found last.
     does: Vec<Assumed>,
     found: Vec<Assumed>,
@@ -42,6 +45,8 @@ impl Going {
             start: 0,
             step: 0,
             done: 0,
+            lasted: 0,
+            patience: 1,
             does: Vec::new(),
             found: Vec::new(),
             change: f64::INFINITY,
@@ -56,9 +61,15 @@ impl Going {
         self.done += 1;
         self.step += 1;
         let does: Vec<Assumed> = (0..nodes).map(|k| self.sweep.assumed(k)).collect();
-        let lasts = does == self.does && does != self.found;
+        self.lasted = if does == self.does {
+            self.lasted + 1
+        } else {
+            0
+        };
+        let lasts = self.lasted >= self.patience && does != self.found;
         self.does = does;
         if lasts {
+            self.patience *= 2;
             self.found.clone_from(&self.does);
             (self.start, self.step) = (self.start + 1, 0);
         }
