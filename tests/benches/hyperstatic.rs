@@ -3,6 +3,7 @@
 //! ```text
 //! cargo bench --bench hyperstatic                       all 276 with the strategies below
 //! cargo bench --bench hyperstatic -- copositive ladder  with these
+//! cargo bench --bench hyperstatic -- 60 copositive      the first 60
 //! ```
 //!
 //! What a run ends in is judged from the problem and the forces alone.
@@ -28,7 +29,12 @@ fn main() {
         .skip(1)
         .filter(|a| a != "--bench")
         .collect();
-    let strategies: Vec<&str> = match asked.as_slice() {
+    let count = asked.iter().find_map(|a| a.parse().ok()).unwrap_or(COUNT);
+    let names: Vec<&String> = asked
+        .iter()
+        .filter(|a| a.parse::<usize>().is_err())
+        .collect();
+    let strategies: Vec<&str> = match names.as_slice() {
         [] => vec![
             "sliding",
             "newton",
@@ -38,7 +44,7 @@ fn main() {
             "gauss_seidel",
             "ladder",
         ],
-        some => some.iter().map(String::as_str).collect(),
+        some => some.iter().map(|name| name.as_str()).collect(),
     };
     println!("strategy      solved  wrong  seconds  longest  iterations  worst");
     for strategy in strategies {
@@ -46,7 +52,7 @@ fn main() {
             (0, 0, 0.0_f64, 0, 0.0_f64);
         let mut failed = Vec::new();
         let begin = Instant::now();
-        for k in 0..COUNT {
+        for k in 0..count {
             let problem = problem(k);
             let set = [("settings.strategy".to_owned(), strategy.to_owned())];
             let text = problem.write(Storage::Dense);

@@ -4,7 +4,8 @@
 //! With the compliance W and the unloaded motions q, e = W F + q holds the gap and the negative slip of every node. At one
 //! node this is a problem of two equations, and of four assumptions: free, fixed, and sliding either way. The forces come to
 //! an answer slowly, but the modes as a rule soon, and with them a solve gives the forces exactly. Nothing is ever inverted
-//! but a block of two, so W may be singular.
+//! but a block of two, so W may be singular. Every second sweep goes back: with strong friction sweeps that all go the same
+//! way may go round for ever.
 
 use crate::interface::problem::{Assumed, InterfaceProblem};
 use crate::linalg::DenseFactors;
@@ -22,6 +23,8 @@ pub struct Sweep {
     forces: Vec<f64>,
     /// Gap and negative slip of each node in turn.
     motions: Vec<f64>,
+    /// Whether the next sweep goes back.
+    back: bool,
 }
 
 /// A node by itself.
@@ -80,6 +83,7 @@ impl Sweep {
             nodes,
             forces: vec![0.0; count],
             motions,
+            back: false,
         };
         // What it starts from are motions without any force.
         for (place, node) in problem.nodes.iter().enumerate() {
@@ -104,7 +108,9 @@ impl Sweep {
     /// One sweep over all nodes; returns the largest change of a force over the largest force.
     pub fn sweep(&mut self) -> f64 {
         let (mut most, mut largest) = (0.0_f64, 0.0_f64);
-        for place in 0..self.nodes.len() {
+        let count = self.nodes.len();
+        for k in 0..count {
+            let place = if self.back { count - 1 - k } else { k };
             let force = self.alone(place);
             let change: [f64; 2] = std::array::from_fn(|k| force[k] - self.forces[2 * place + k]);
             self.push(place, change);
@@ -114,6 +120,7 @@ impl Sweep {
                 largest = largest.max(force[k].abs());
             }
         }
+        self.back = !self.back;
         if most == 0.0 {
             0.0
         } else {
