@@ -56,6 +56,11 @@ pub trait Method: Sync {
     fn rungs(&self) -> &'static [Strategy] {
         &[]
     }
+
+    /// Whether one of [`Method::rungs`] is left out with so many contacts.
+    fn leaves_out(&self, _rung: Strategy, _contacts: usize) -> bool {
+        false
+    }
 }
 
 /// What a verdict on one node may look at beside the numbers of Table 2.

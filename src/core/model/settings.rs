@@ -84,8 +84,8 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum Strategy {
-        /// Table 2 first; if it cycles or cannot go on, then `sliding`, `sliding_least`, `lemke`, `census`, `copositive` and
-        /// `gauss_seidel`, with T_max in the matrix. If none of them finds a consistent state, the increment is halved, down to
+        /// Table 2 first; if it cycles or cannot go on, then `sliding`, `sliding_least`, `lemke`, `census`, `gauss_seidel`
+        /// and `copositive`, with T_max in the matrix. If none of them finds a consistent state, the increment is halved, down to
         /// `history.least`, and grows again afterwards.
         #[default]
         Ladder,

@@ -24,9 +24,9 @@ impl Stepper {
         if searches && self.state.search.searched == Searched::Not {
             return self.begin_search();
         }
-        let rungs = strategy::rungs(self.state.controls.settings.strategy);
+        let chosen = self.state.controls.settings.strategy;
         let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
-        if rungs.is_empty() || self.state.nodes.iter().any(held) {
+        if strategy::rungs(chosen).is_empty() || self.state.nodes.iter().any(held) {
             let unsolved = matches!(why, Failure::Singular(_) | Failure::OverConstrained { .. });
             self.state.next.minor += u32::from(!unsolved);
             self.state.forget_minors();
@@ -37,10 +37,11 @@ impl Stepper {
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
         // A census that has tried all leaves nothing to find.
         let proven = matches!(why, Failure::NoAnswer { .. });
-        if let Some(&to) = rungs.get(search.rung + 1)
+        let next = strategy::next_rung(chosen, search.rung, self.state.nodes.len());
+        if let Some((rung, to)) = next
             && !proven
         {
-            search.rung += 1;
+            search.rung = rung;
             (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
             self.state.next.minor += 1;
             return Outcome::Climbed { why, to };
