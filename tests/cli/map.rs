@@ -159,7 +159,7 @@ fn the_default_strategy_solves_every_random_problem_that_has_an_answer_and_inven
     let table = rows(&well(&ran(directory.path(), &arguments)));
     let mut names: Vec<&str> = table.iter().map(|r| r["strategy"].as_str()).collect();
     names.dedup();
-    assert_eq!(names.len(), 200 * 15);
+    assert_eq!(names.len(), 200 * 17);
     let by = |name: &str| {
         table
             .iter()
