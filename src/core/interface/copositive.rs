@@ -171,7 +171,7 @@ impl Copositive {
         let number = self.owners.len();
         self.owners.push((place, kind));
         // Of two that are beside each other the first has an even number among the node's own.
-        let partner = if kind % 2 == 0 {
+        let partner = if kind.is_multiple_of(2) {
             number + 1
         } else {
             number - 1
