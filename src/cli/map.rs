@@ -30,6 +30,9 @@ pub struct Args {
     /// Tries that many random interface problems, each of which has a number of answers that is known
     #[arg(long, value_name = "N", value_parser = count)]
     random: Option<usize>,
+    /// With --random: a row for each kind of problem, strategy and verdict, not one for each problem
+    #[arg(long, requires = "random")]
+    totals: bool,
     /// Seed of the random problems
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
@@ -241,7 +244,10 @@ fn survey(args: &Args, population: Population) -> Result<Exit, Error> {
     progress.finish_and_clear();
     let survey = survey.map_err(|e| Error::Usage(e.to_string()))?;
     outputs.write(
-        &survey.csv(),
+        &match args.totals {
+            true => survey.totals(),
+            false => survey.csv(),
+        },
         || verdict_figure::bars(&survey)?.svg(),
         || verdict_figure::bars(&survey)?.png(),
     )?;

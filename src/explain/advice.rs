@@ -126,7 +126,11 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
             add(true, parts);
         }
         Failure::LadderEnded { .. } | Failure::NotFound(_) => {
-            add(true, parts);
+            // Where all scales with the load, a part of it is the same problem.
+            add(
+                !matches!(failure, Failure::LadderEnded { scales: true, .. }),
+                parts,
+            );
             let others = [Strategy::Newton, Strategy::Block];
             add(climbs, &others.map(Kind::Strategy));
         }
@@ -155,6 +159,7 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             "other loads or friction",
             "a prescribed displacement instead of a load",
         ],
+        Failure::LadderEnded { scales: true, .. } => &["the debugger, to see where it stands"],
         Failure::LadderEnded { .. } => &[
             "a smaller history.least",
             "the debugger, to see where it stands",

@@ -141,6 +141,8 @@ fn solved(
         let mut problem = of_ladder.clone();
         problem.settings = in_force(&of_ladder.settings, rung);
         let found = match strategy {
+            // What they find, if anything, is what the run says; here forces are to be unique.
+            Strategy::Copositive | Strategy::GaussSeidel => return None,
             Strategy::Lemke => by_pivoting(&problem, tolerance),
             Strategy::Census => {
                 let found = search(&problem, BRANCHES, stop).ok()?;

@@ -251,7 +251,7 @@ fn scale_of(tested: crate::contact::table2::Tested, stepper: &Stepper, event: &E
             event.before.scale
         }
         Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
-        Tested::Cover => 1.0,
+        Tested::Cover | Tested::Change => 1.0,
     }
 }
 

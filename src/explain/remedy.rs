@@ -169,6 +169,8 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
                 Strategy::Newton => "semismooth Newton",
                 Strategy::Lemke => "Lemke's pivoting",
                 Strategy::Census => "a census of all assignments",
+                Strategy::Copositive => "pivoting with the friction force in two parts",
+                Strategy::GaussSeidel => "Gauss-Seidel, and a solve for its modes",
             };
             (label, "settings.strategy", strategy.name().to_owned())
         }

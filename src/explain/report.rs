@@ -76,6 +76,12 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
             };
             return here + first;
         }
+        Rule::Sweeps => {
+            return format!(
+                "Gauss-Seidel: {} by Coulomb's law at this node, the forces of all others held.",
+                mode(decision.next)
+            );
+        }
         Rule::Found => {
             return format!(
                 "Found {} in a consistent state; checked next.",
@@ -107,6 +113,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             format!("{at}: a consistent state is found; it is checked next")
         }
         Outcome::Minor if together(event, Rule::Pivots) => format!("{at}: {}", pivot(model, event)),
+        Outcome::Minor if together(event, Rule::Sweeps) => format!("{at}: {}", sweeps(event)),
         Outcome::Minor => match changes(model, event).as_str() {
             "" => format!("{at}: modes settled, T_max still moves"),
             changes => format!("{at}: {changes}"),
@@ -200,6 +207,18 @@ fn pivot(model: &Model, event: &Event) -> String {
         Some(what) => format!("a pivot: {what}; {left}"),
         None => format!("a pivot; {left}"),
     }
+}
+
+/// Sweeps of Gauss-Seidel: how much the forces still change.
+fn sweeps(event: &Event) -> String {
+    let change = event
+        .nodes
+        .iter()
+        .find_map(|n| Some(n.decision.tests[0]?.value));
+    let left = change.map_or(String::new(), |c| {
+        format!("; the last one changed forces by {c:.3e}")
+    });
+    format!("sweeps{left}")
 }
 
 /// What an accepted increment was accepted in spite of; empty where there is nothing.
@@ -351,10 +370,18 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
                 Some(first) => format!("{none} (at first: {})", describe_failure(model, first)),
             }
         }
-        Failure::LadderEnded { first, last } => format!(
-            "no strategy of the ladder found a consistent state (at first: {}; at last: {})",
+        Failure::LadderEnded {
+            first,
+            last,
+            scales,
+        } => format!(
+            "no strategy of the ladder found a consistent state (at first: {}; at last: {}){}",
             describe_failure(model, first),
-            describe_failure(model, last)
+            describe_failure(model, last),
+            match scales {
+                true => "; without gaps all scales with the load, so a smaller increment is the same problem and was not tried",
+                false => "",
+            }
         ),
         Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {
@@ -393,6 +420,9 @@ fn not_found(why: NotFound) -> String {
         }
         NotFound::NoStart => {
             "pivoting has no start: the equations of every one that it knows are singular".into()
+        }
+        NotFound::Unsettled { sweeps } => {
+            format!("{sweeps} sweeps of Gauss-Seidel came to no modes that last")
         }
         NotFound::TooMany { nodes } => format!(
             "{nodes} nodes can touch, too many to try what each does: a census is held over at most {}",

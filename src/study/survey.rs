@@ -7,6 +7,7 @@ use super::run::{RunError, Watch, pool};
 use super::trial::{Judged, Trial, Variant, try_variants};
 use super::verdict::RunVerdict;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -141,6 +142,47 @@ impl Survey {
         text
     }
 
+    /// The same as sums: a row for each kind of problem, variant and verdict, with the number of problems, their minor
+    /// iterations together and the most of one, and the largest violation. However many problems there are, it has a few
+    /// hundred rows.
+    pub fn totals(&self) -> String {
+        let mut sums: BTreeMap<Kind<'_>, Sums> = BTreeMap::new();
+        for (_, judged) in self.done() {
+            for (v, trial) in judged.trials.iter().enumerate() {
+                let kind = Kind {
+                    nodes: judged.nodes,
+                    form: &judged.form,
+                    cohesive: judged.cohesive,
+                    answers: judged.answers,
+                    variant: v,
+                    verdict: trial.verdict.word(),
+                };
+                sums.entry(kind).or_default().add(trial);
+            }
+        }
+        let mut text = super::csv::comments(&self.origin());
+        text += "seed,nodes,form,cohesion,answers,strategy,verdict,problems,minors,most_minors,violation\n";
+        for (kind, sums) in &sums {
+            // Writing to a string does not fail.
+            let _ = writeln!(
+                text,
+                "{},{},{},{},{},{},{},{},{},{},{:?}",
+                self.population.seed,
+                kind.nodes,
+                kind.form,
+                kind.cohesive,
+                kind.answers,
+                super::csv::field(&self.variants[kind.variant].name),
+                kind.verdict,
+                sums.problems,
+                sums.minors,
+                sums.most_minors,
+                sums.violation
+            );
+        }
+        text
+    }
+
     /// What it was made of, and by what.
     pub fn origin(&self) -> Vec<String> {
         let Population { count, .. } = self.population;
@@ -152,6 +194,35 @@ impl Survey {
             made,
             format!("{} on {}", origin::program(), origin::machine()),
         ]
+    }
+}
+
+/// Problems and runs that are counted together.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Kind<'a> {
+    nodes: usize,
+    form: &'a str,
+    cohesive: bool,
+    answers: usize,
+    variant: usize,
+    verdict: &'static str,
+}
+
+/// What is known of those that are counted together.
+#[derive(Default)]
+struct Sums {
+    problems: usize,
+    minors: u64,
+    most_minors: u64,
+    violation: f64,
+}
+
+impl Sums {
+    fn add(&mut self, trial: &Trial) {
+        self.problems += 1;
+        self.minors += trial.minors;
+        self.most_minors = self.most_minors.max(trial.minors);
+        self.violation = self.violation.max(trial.violation);
     }
 }
 

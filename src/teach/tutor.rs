@@ -612,6 +612,7 @@ fn compared(decision: &Decision) -> String {
             Tested::Pressure => ("F_n − k·g", "0".into()),
             Tested::Drag => ("|F_t + k·slip|", format!("the limit, {}", four(test.bound))),
             Tested::Cover => ("z", "0".into()),
+            Tested::Change => ("the change", "0".into()),
         };
         format!("{name} = {} {sign} {bound}", four(test.value))
     };

@@ -40,6 +40,39 @@ fn random_problems_are_the_same_every_time_and_however_many_run_at_once() {
     assert_eq!(rows(&run("2", "20"))[..], table[..40]);
 }
 
+/// The rows of one run, counted here, are the rows of the other.
+#[test]
+fn totals_count_what_the_rows_say() {
+    let directory = tempfile::tempdir().unwrap();
+    let run = |more: &[&str]| {
+        let same = ["--random", "80", "--over", T_MAX, "--csv", "-"];
+        well(&ran(directory.path(), &[&same[..], more].concat()))
+    };
+    let mut counted: HashMap<String, (u64, u64)> = HashMap::new();
+    for row in rows(&run(&[])) {
+        let kind = [
+            "nodes", "form", "cohesion", "answers", "strategy", "verdict",
+        ];
+        let kind: Vec<&str> = kind.iter().map(|&name| row[name].as_str()).collect();
+        let sums = counted.entry(kind.join(" ")).or_default();
+        sums.0 += 1;
+        sums.1 += row["minors"].parse::<u64>().unwrap();
+    }
+    let totals = run(&["--totals"]);
+    assert_eq!(totals, run(&["--totals", "--jobs", "1"]));
+    let totals = rows(&totals);
+    assert_eq!(totals.len(), counted.len());
+    for row in totals {
+        let kind = [
+            "nodes", "form", "cohesion", "answers", "strategy", "verdict",
+        ];
+        let kind: Vec<&str> = kind.iter().map(|&name| row[name].as_str()).collect();
+        let sums = counted[&kind.join(" ")];
+        let number = |name: &str| row[name].parse::<u64>().unwrap();
+        assert_eq!((number("problems"), number("minors")), sums, "{row:?}");
+    }
+}
+
 #[test]
 fn what_table_2_makes_of_random_problems_is_counted_honestly() {
     let directory = tempfile::tempdir().unwrap();
@@ -126,7 +159,7 @@ fn the_default_strategy_solves_every_random_problem_that_has_an_answer_and_inven
     let table = rows(&well(&ran(directory.path(), &arguments)));
     let mut names: Vec<&str> = table.iter().map(|r| r["strategy"].as_str()).collect();
     names.dedup();
-    assert_eq!(names.len(), 200 * 15);
+    assert_eq!(names.len(), 200 * 17);
     let by = |name: &str| {
         table
             .iter()

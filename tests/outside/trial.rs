@@ -240,7 +240,7 @@ fn failed(failure: &Failure, passages: &Passages) -> End {
 /// The name of a failure, and of what it is made of.
 fn kind(failure: &Failure) -> String {
     match failure {
-        Failure::LadderEnded { first, last } => {
+        Failure::LadderEnded { first, last, .. } => {
             format!("LadderEnded({}, {})", kind(first), kind(last))
         }
         Failure::Singular(of) => format!("Singular({})", head(&format!("{of:?}"))),
@@ -263,7 +263,7 @@ fn at_vertex(failure: &Failure) -> bool {
             elements.dedup();
             elements.len() > 1
         }),
-        Failure::LadderEnded { first, last } => at_vertex(first) || at_vertex(last),
+        Failure::LadderEnded { first, last, .. } => at_vertex(first) || at_vertex(last),
         other => kind(other).contains("Vertex"),
     }
 }

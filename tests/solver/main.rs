@@ -3,6 +3,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../outside/hyperstatic.rs"]
+mod hyperstatic;
 #[path = "../common/program.rs"]
 mod program;
 
@@ -32,5 +34,7 @@ mod jumps;
 mod scales;
 // The examples of the library run, and write what they promise.
 mod examples;
+// Structures that hold each other by more contacts than they have motions.
+mod structures;
 // Forces that are not unique, and matrices that are indefinite by rounding.
 mod families;

@@ -51,7 +51,9 @@ pub enum Rule {
     NewtonSlides,
     /// A step of Lemke's pivoting, on the problem relaxed by the covering variable.
     Pivots,
-    /// The state that was found consistent, by pivoting or by the census.
+    /// Sweeps of Gauss-Seidel: Coulomb's law at this node, the forces of all others held.
+    Sweeps,
+    /// The state that was found consistent, by pivoting, by sweeps, or by the census.
     Found,
 }
 
@@ -74,6 +76,8 @@ pub enum Tested {
     Drag,
     /// The covering variable of Lemke's pivoting against 0: how far the problem is still relaxed (relative).
     Cover,
+    /// The change of the forces in the last sweep of Gauss-Seidel against 0 (relative).
+    Change,
 }
 
 /// One inequality of Table 2 with its numbers.

@@ -8,25 +8,13 @@
 //! 0 <= φ− = tan φ F_n + c + F_t     λ− >= 0,       slip = λ+ − λ−
 //! ```
 //!
-//! and for a smooth one only the first line. A covering variable relaxes all of them at once. In every pivot the complement
-//! of the variable that left last enters the basis, until the covering variable leaves it: then the basis says what every
-//! node does. If nothing bounds the entering variable, the path ends on a ray. Ties are broken lexicographically, so that no
-//! basis comes twice. Here cohesion acts on open nodes too, which Coulomb's law does not say; therefore what is found is
-//! checked afterwards.
+//! and for a smooth one only the first line; [`crate::interface::tableau`] walks its bases. Here cohesion acts on open nodes
+//! too, which Coulomb's law does not say; therefore what is found is checked afterwards.
 
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
-use crate::linalg::DenseFactors;
-
-/// Entries of an entering column below this part of its largest are zero.
-const TINY: f64 = 1e-11;
-/// Ratios that differ by less than this are a tie.
-const TIE: f64 = 1e-12;
-/// Largest number of pivots of a path, per row. A usual path takes about one per row. If all forces are round-off, no basis
-/// is better than another and the path would not end.
-const PIVOTS: usize = 20;
-/// Estimated norm of a basis' scaled inverse from which on it is singular.
-const SINGULAR: f64 = 1e11;
+pub use crate::interface::tableau::PathEnd;
+use crate::interface::tableau::{Begin, Tableau};
 
 /// A variable of the tableau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,37 +36,14 @@ enum VariableKind {
 /// A tableau on its way.
 #[derive(Debug, Clone)]
 pub struct Lemke {
-    rows: usize,
-    /// Column by column: every variable's, then the covering variable's, then the values of the basic variables; in units
-    /// of the problem's force and length.
-    table: Vec<f64>,
+    /// In units of the problem's force and length.
+    tableau: Tableau,
     /// Node and kind of every variable.
     variables: Vec<(usize, VariableKind)>,
-    /// The variable of every row.
-    basis: Vec<usize>,
-    /// The basis of the start, which breaks ties.
-    first: Vec<usize>,
-    /// The variable that enters next. `None` before the first pivot and after the last.
-    entering: Option<usize>,
-    /// Node and kind of the variable that left last.
-    left: Option<(usize, VariableKind)>,
-    ended: Option<PathEnd>,
-    pivots: usize,
     /// Which nodes are rough, with the friction coefficient and the cohesion.
     friction: Vec<Option<(f64, f64)>>,
     force: f64,
     length: f64,
-}
-
-/// How the path ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PathEnd {
-    /// The basis solves the problem.
-    Solved,
-    /// Nothing bounds the variable that enters: no state is found from this start.
-    Ray,
-    /// It did not end within the pivots that it has.
-    Astray,
 }
 
 /// Number of starts: all nodes free, as they come, all fixed, all sliding.
@@ -111,15 +76,8 @@ impl Lemke {
             .collect();
         let rows = count + friction.iter().flatten().count();
         let mut lemke = Lemke {
-            rows,
-            table: Vec::new(),
+            tableau: Tableau::new(rows),
             variables: Vec::new(),
-            basis: Vec::new(),
-            first: Vec::new(),
-            entering: None,
-            left: None,
-            ended: None,
-            pivots: 0,
             friction,
             force: positive(problem.force),
             length: positive(problem.length),
@@ -170,13 +128,9 @@ impl Lemke {
             let slipped = node.state.slipped(&problem.settings) + node.prescribed[1];
             of_motion(t, slipped, &mut rhs);
             // F_t = tan φ F_n + c − φ+ acts through the columns of F_n and φ+.
-            let of_normal = (lemke.variables.len() - 2) * rows;
-            of_force(
-                t,
-                coefficient * force,
-                &mut lemke.table[of_normal..of_normal + rows],
-            );
-            lemke.table[of_normal + extra] = -2.0 * coefficient;
+            let of_normal = lemke.tableau.column(lemke.variables.len() - 2);
+            of_force(t, coefficient * force, of_normal);
+            of_normal[extra] = -2.0 * coefficient;
             lemke.add(place, VariableKind::Slack { plus: true }, |column| {
                 of_force(t, -force, column);
                 column[extra] = 1.0;
@@ -193,30 +147,22 @@ impl Lemke {
             rhs[extra] = 2.0 * cohesion / force;
             extra += 1;
         }
-        lemke.basis = (0..lemke.variables.len())
+        let basis = (0..lemke.variables.len())
             .filter(|&v| lemke.is_basic(lemke.variables[v], &start))
             .collect();
-        lemke.first.clone_from(&lemke.basis);
-        lemke.table.extend(vec![0.0; rows]);
-        lemke.table.extend(rhs);
-        lemke.reduce()?;
-        let cover = lemke.variables.len() * rows;
-        for row in 0..rows {
-            let loose = lemke.variables[lemke.basis[row]].1 == VariableKind::Loose;
-            lemke.table[cover + row] = if loose { 0.0 } else { -1.0 };
-        }
-        let all_hold = (0..rows).all(|row| lemke.is_loose(row) || lemke.value(row) >= 0.0);
-        if all_hold {
-            lemke.ended = Some(PathEnd::Solved);
-        }
+        lemke.tableau.start(basis, rhs, Begin::PLAIN)?;
         Some(lemke)
     }
 
     fn add(&mut self, place: usize, kind: VariableKind, fill: impl FnOnce(&mut [f64])) {
+        let number = self.variables.len();
+        let partner = match kind {
+            VariableKind::Force | VariableKind::Slack { .. } => number + 1,
+            VariableKind::Gap | VariableKind::Slip { .. } => number - 1,
+            VariableKind::Loose => number,
+        };
         self.variables.push((place, kind));
-        let from = self.table.len();
-        self.table.resize(from + self.rows, 0.0);
-        fill(&mut self.table[from..]);
+        self.tableau.add(partner, fill);
     }
 
     /// Whether a variable is basic where its node does this.
@@ -234,156 +180,19 @@ impl Lemke {
         }
     }
 
-    /// Multiplies the tableau by the inverse of the basis.
-    fn reduce(&mut self) -> Option<()> {
-        let rows = self.rows;
-        let matrix: Vec<f64> = self
-            .basis
-            .iter()
-            .flat_map(|&v| self.table[v * rows..(v + 1) * rows].iter().copied())
-            .collect();
-        let columns = self.table.len() / rows.max(1);
-        let mut dense = DenseFactors::new(rows, columns).ok()?;
-        dense.factor(&matrix);
-        if dense.inverse_norm() > SINGULAR {
-            return None;
-        }
-        dense.solve(&mut self.table).ok()
-    }
-
-    fn is_loose(&self, row: usize) -> bool {
-        self.variables
-            .get(self.basis[row])
-            .is_some_and(|v| v.1 == VariableKind::Loose)
-    }
-
-    fn value(&self, row: usize) -> f64 {
-        self.table[(self.variables.len() + 1) * self.rows + row]
-    }
-
     /// How the path ended. `None` while it goes on.
     pub fn ended(&self) -> Option<PathEnd> {
-        self.ended
+        self.tableau.ended()
     }
 
     /// One pivot. `None` if the path has ended before.
     pub fn pivot(&mut self) -> Option<()> {
-        if self.ended.is_some() {
-            return None;
-        }
-        self.pivots += 1;
-        if self.pivots > PIVOTS * self.rows {
-            self.ended = Some(PathEnd::Astray);
-            return Some(());
-        }
-        let cover = self.variables.len();
-        let (entering, row) = match self.entering {
-            None => (cover, self.most_broken()?),
-            Some(entering) => match self.bounding(entering) {
-                Some(row) => (entering, row),
-                None => {
-                    self.ended = Some(PathEnd::Ray);
-                    return Some(());
-                }
-            },
-        };
-        let leaving = self.basis[row];
-        self.left = self.variables.get(leaving).copied();
-        self.exchange(entering, row);
-        if leaving == cover {
-            (self.ended, self.entering) = (Some(PathEnd::Solved), None);
-        } else {
-            self.entering = Some(self.complement(leaving));
-        }
-        Some(())
-    }
-
-    /// The row whose value is the most negative.
-    fn most_broken(&self) -> Option<usize> {
-        let rows = (0..self.rows).filter(|&row| !self.is_loose(row));
-        rows.reduce(|best, row| {
-            if self.comes_before(row, best, |lemke, row| lemke.value(row), |_| 1.0) {
-                row
-            } else {
-                best
-            }
-        })
-    }
-
-    /// The row that bounds an entering variable: of the smallest ratio, the covering variable's first, then
-    /// lexicographically.
-    fn bounding(&self, entering: usize) -> Option<usize> {
-        let column = &self.table[entering * self.rows..(entering + 1) * self.rows];
-        let tiny = TINY * column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let rows = (0..self.rows).filter(|&row| column[row] > tiny && !self.is_loose(row));
-        rows.reduce(|best, row| {
-            let ratio = |row: usize| self.value(row) / column[row];
-            let tied = (ratio(row) - ratio(best)).abs() <= TIE;
-            let cover = self.variables.len();
-            if tied && self.basis[best] == cover {
-                return best;
-            }
-            let first = tied && self.basis[row] == cover;
-            if first
-                || self.comes_before(row, best, |lemke, row| lemke.value(row), |row| column[row])
-            {
-                row
-            } else {
-                best
-            }
-        })
-    }
-
-    /// Whether a row is lexicographically less than another, both divided by their divisors.
-    fn comes_before(
-        &self,
-        row: usize,
-        other: usize,
-        value: impl Fn(&Self, usize) -> f64,
-        divisor: impl Fn(usize) -> f64,
-    ) -> bool {
-        let (mine, its) = (divisor(row), divisor(other));
-        let gap = value(self, row) / mine - value(self, other) / its;
-        if gap.abs() > TIE {
-            return gap < 0.0;
-        }
-        for &v in &self.first {
-            let of = |row: usize| self.table[v * self.rows + row];
-            let gap = of(row) / mine - of(other) / its;
-            if gap.abs() > TIE {
-                return gap < 0.0;
-            }
-        }
-        false
-    }
-
-    fn exchange(&mut self, entering: usize, row: usize) {
-        let rows = self.rows;
-        let column: Vec<f64> = self.table[entering * rows..(entering + 1) * rows].to_vec();
-        let pivot = column[row];
-        for other in self.table.chunks_exact_mut(rows) {
-            let times = other[row] / pivot;
-            if times != 0.0 {
-                for (x, c) in other.iter_mut().zip(&column) {
-                    *x -= times * c;
-                }
-            }
-            other[row] = times;
-        }
-        self.basis[row] = entering;
-    }
-
-    fn complement(&self, variable: usize) -> usize {
-        match self.variables[variable].1 {
-            VariableKind::Force | VariableKind::Slack { .. } => variable + 1,
-            VariableKind::Gap | VariableKind::Slip { .. } => variable - 1,
-            VariableKind::Loose => variable,
-        }
+        self.tableau.pivot()
     }
 
     /// The node of the last pivot, and what reached its bound there. `None` if that was the covering variable.
     pub fn bound(&self) -> Option<(usize, Tested)> {
-        let (place, kind) = self.left?;
+        let (place, kind) = self.variables[self.tableau.left()?];
         let tested = match kind {
             VariableKind::Force => Tested::NormalForce,
             VariableKind::Gap => Tested::Gap,
@@ -396,22 +205,14 @@ impl Lemke {
 
     /// The covering variable: how far the problem is still relaxed, in units of its forces and lengths.
     pub fn cover(&self) -> f64 {
-        let cover = self.variables.len();
-        match self.basis.iter().position(|&v| v == cover) {
-            Some(row) => self.value(row),
-            None if self.ended == Some(PathEnd::Solved) => 0.0,
-            None => (0..self.rows)
-                .filter(|&row| !self.is_loose(row))
-                .fold(0.0, |most, row| most.max(-self.value(row))),
-        }
+        self.tableau.cover()
     }
 
     fn at(&self, place: usize, kind: VariableKind) -> Option<f64> {
-        let row = self
-            .basis
-            .iter()
-            .position(|&v| self.variables.get(v) == Some(&(place, kind)))?;
-        Some(self.value(row))
+        let variable = self.variables.iter().position(|&v| v == (place, kind))?;
+        self.tableau
+            .is_basic(variable)
+            .then(|| self.tableau.of(variable))
     }
 
     /// What a node does in the present basis.

@@ -56,6 +56,11 @@ pub trait Method: Sync {
     fn rungs(&self) -> &'static [Strategy] {
         &[]
     }
+
+    /// Whether one of [`Method::rungs`] is left out with so many contacts.
+    fn leaves_out(&self, _rung: Strategy, _contacts: usize) -> bool {
+        false
+    }
 }
 
 /// What a verdict on one node may look at beside the numbers of Table 2.
@@ -114,7 +119,7 @@ pub struct Proposal {
     pub nodes: Vec<(Assumed, [f64; 4])>,
     /// The rule that records name as the reason.
     pub rule: Rule,
-    /// How far the problem is still relaxed (relative).
+    /// How far the problem is still relaxed, or how much its forces still change (relative).
     pub cover: f64,
     /// What reached its bound, and at which node.
     pub bound: Option<(usize, Tested)>,
@@ -162,6 +167,11 @@ pub enum NotFound {
     Ray,
     /// The equations of every start of pivoting are singular.
     NoStart,
+    /// Gauss-Seidel came to no modes that last.
+    Unsettled {
+        /// Sweeps done.
+        sweeps: usize,
+    },
     /// More nodes can touch than a census can try all assumptions of ([`crate::interface::census::MOST`]).
     TooMany {
         /// Number of nodes that can touch.

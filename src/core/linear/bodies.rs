@@ -126,6 +126,10 @@ impl Source for Bodies {
         }
     }
 
+    fn brakes(&self) -> bool {
+        true
+    }
+
     fn place_stick_points(&mut self, contacts: &mut [ContactState]) {
         let ground = self.ground();
         for (state, contact) in contacts.iter_mut().zip(&self.model.contacts) {

@@ -135,6 +135,11 @@ pub trait Source: Send {
     /// A stiffness of the size of the interface's, by which lengths compare with forces (force by length).
     fn spring(&self) -> f64;
 
+    /// Whether [`At::brake`] holds sliding back.
+    fn brakes(&self) -> bool {
+        false
+    }
+
     /// Whether the minor iterations are solved on the condensed interface with these settings.
     fn condenses(&self, _settings: &Settings) -> bool {
         true

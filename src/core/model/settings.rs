@@ -84,9 +84,9 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum Strategy {
-        /// Table 2 first; if it cycles or cannot go on, then `sliding`, `sliding_least`, `lemke` and `census`, with T_max in the
-        /// matrix. If none of them finds a consistent state, the increment is halved, down to `history.least`, and grows again
-        /// afterwards.
+        /// Table 2 first; if it cycles or cannot go on, then `sliding`, `sliding_least`, `lemke`, `census`, `gauss_seidel`
+        /// and `copositive`, with T_max in the matrix. If none of them finds a consistent state, the increment is halved, down to
+        /// `history.least`, and grows again afterwards.
         #[default]
         Ladder,
         /// Table 2 as printed.
@@ -105,12 +105,18 @@ documented! {
         Lemke,
         /// All assumptions of what the nodes do, tried; for few nodes.
         Census,
+        /// Lemke's pivoting with the friction force in two parts, from all nodes free: it ends in an answer wherever forces that
+        /// move nothing take no energy.
+        Copositive,
+        /// Projected Gauss-Seidel: Coulomb's law at one node after the other, the forces of all others held, and then a solve
+        /// for the modes that this comes to.
+        GaussSeidel,
     }
 }
 
 impl Strategy {
     /// All strategies.
-    pub const ALL: [Strategy; 9] = [
+    pub const ALL: [Strategy; 11] = [
         Strategy::Ladder,
         Strategy::Table2,
         Strategy::Sliding,
@@ -120,11 +126,13 @@ impl Strategy {
         Strategy::Newton,
         Strategy::Lemke,
         Strategy::Census,
+        Strategy::Copositive,
+        Strategy::GaussSeidel,
     ];
 
     /// Names of [`Strategy::ALL`], in the same order.
-    pub const NAMES: [&str; 9] = {
-        let (mut names, mut k) = ([""; 9], 0);
+    pub const NAMES: [&str; 11] = {
+        let (mut names, mut k) = ([""; 11], 0);
         while k < names.len() {
             names[k] = Strategy::ALL[k].name();
             k += 1;
@@ -144,6 +152,8 @@ impl Strategy {
             Strategy::Newton => "newton",
             Strategy::Lemke => "lemke",
             Strategy::Census => "census",
+            Strategy::Copositive => "copositive",
+            Strategy::GaussSeidel => "gauss_seidel",
         }
     }
 }

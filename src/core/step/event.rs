@@ -190,6 +190,9 @@ pub enum Failure {
         first: Box<Failure>,
         /// What the last rung failed of.
         last: Box<Failure>,
+        /// Whether the increment was not cut, since at any part of its load the problem is the same.
+        #[serde(default)]
+        scales: bool,
     },
     /// Pivoting, or the census, found no consistent state, which does not prove that there is none.
     NotFound(NotFound),

@@ -47,7 +47,7 @@ impl Stepper {
         let touches = |node: &ContactState| node.mode != Mode::Free;
         let mut nodes = self.state.nodes.iter().chain(&self.state.start.nodes);
         let any = nodes.any(touches);
-        let cuts = !strategy::rungs(settings.strategy).is_empty();
+        let cuts = !strategy::rungs(settings.strategy).is_empty() && self.source.brakes();
         if self.state.brake.on
             || !(helps || drowned)
             || !any

@@ -3,7 +3,7 @@
 use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::Mode;
+use crate::model::{BodyKind, Factor, Mode};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
@@ -18,7 +18,10 @@ const SMALLEST_PART: f64 = 1e-6;
 
 impl Stepper {
     /// The increment fails; on the ladder it is cut, where that can help and it is not at its smallest yet.
-    pub(super) fn fail(&mut self, why: Failure) -> Outcome {
+    pub(super) fn fail(&mut self, mut why: Failure) -> Outcome {
+        if let Failure::LadderEnded { scales, .. } = &mut why {
+            *scales = self.scales();
+        }
         match self.cut(&why).or_else(|| self.brake(&why)) {
             Some(again) => again,
             None => Outcome::Failed(why),
@@ -32,6 +35,7 @@ impl Stepper {
         let helps = match why {
             Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
             Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
+            Failure::LadderEnded { scales, .. } => !scales,
             _ => true,
         };
         let half = self.state.sub_increment.halved();
@@ -53,6 +57,45 @@ impl Stepper {
         self.state.sub_increment = part;
         self.state.start_again();
         self.forget_workspace();
+    }
+
+    /// Whether the problem at a part of the load is the same in every way: matrices without gaps, cohesion and prescribed
+    /// motions, loaded in proportion for the first time. Motions and forces scale then, and modes are the same.
+    fn scales(&self) -> bool {
+        let (model, start) = (&self.model, &self.state.start);
+        let matrices = !model.bodies.is_empty()
+            && model
+                .bodies
+                .iter()
+                .all(|body| matches!(body.kind, BodyKind::Linear(_)))
+            && model.surfaces.iter().all(|surface| surface.endless)
+            && model.prescribed.is_empty();
+        let proportional = model
+            .loads
+            .iter()
+            .all(|load| load.scale == Factor::default());
+        let unloaded = start.load_factor == 0.0
+            && start.u.iter().all(|u| *u == 0.0)
+            && start
+                .nodes
+                .iter()
+                .all(|n| n.f_n == 0.0 && n.f_t == 0.0 && n.slip == 0.0);
+        let closed = |contact: usize| {
+            self.source
+                .kinematics(contact)
+                .is_some_and(|k| k.gap == 0.0)
+        };
+        matrices
+            && proportional
+            && unloaded
+            && self.state.next.major == 1
+            && self
+                .state
+                .controls
+                .friction
+                .iter()
+                .all(|f| f.cohesion == 0.0)
+            && (0..model.contacts.len()).all(closed)
     }
 
     /// Whether nothing holds a body in the modes that the increment starts with, whatever its size.

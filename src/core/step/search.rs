@@ -24,9 +24,9 @@ impl Stepper {
         if searches && self.state.search.searched == Searched::Not {
             return self.begin_search();
         }
-        let rungs = strategy::rungs(self.state.controls.settings.strategy);
+        let chosen = self.state.controls.settings.strategy;
         let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
-        if rungs.is_empty() || self.state.nodes.iter().any(held) {
+        if strategy::rungs(chosen).is_empty() || self.state.nodes.iter().any(held) {
             let unsolved = matches!(why, Failure::Singular(_) | Failure::OverConstrained { .. });
             self.state.next.minor += u32::from(!unsolved);
             self.state.forget_minors();
@@ -35,12 +35,16 @@ impl Stepper {
         self.begin_again();
         let search = &mut self.state.search;
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
-        let next = rungs.get(search.rung + 1);
+        // A census that has tried all leaves nothing to find.
+        let proven = matches!(why, Failure::NoAnswer { .. });
+        let next = strategy::next_rung(chosen, search.rung, self.state.nodes.len());
         // The searches know nothing of what holds sliding back.
-        let next =
-            next.filter(|&&to| !self.state.brake.on || strategy::method(to).search().is_none());
-        if let Some(&to) = next {
-            search.rung += 1;
+        let held = self.state.brake.on;
+        let next = next.filter(|(_, to)| !(held && strategy::method(*to).search().is_some()));
+        if let Some((rung, to)) = next
+            && !proven
+        {
+            search.rung = rung;
             (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
             self.state.next.minor += 1;
             return Outcome::Climbed { why, to };
@@ -169,7 +173,10 @@ impl Stepper {
         let sign = if f_t == 0.0 { node.sign } else { f_t.signum() };
         node.t_max = t_max(&friction, f_n, sign);
         let test = Test {
-            tested: Tested::Cover,
+            tested: match proposal.rule {
+                Rule::Sweeps => Tested::Change,
+                _ => Tested::Cover,
+            },
             value: proposal.cover,
             bound: 0.0,
             margin: -proposal.cover,
@@ -215,6 +222,7 @@ fn ended(first: Failure, last: Failure) -> Failure {
         (first, last) => Failure::LadderEnded {
             first: Box::new(first),
             last: Box::new(last),
+            scales: false,
         },
     }
 }

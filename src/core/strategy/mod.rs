@@ -2,6 +2,8 @@
 
 mod block;
 mod census;
+mod copositive;
+mod gauss_seidel;
 mod ladder;
 mod least;
 mod lemke;
@@ -24,12 +26,22 @@ pub fn method(strategy: Strategy) -> &'static dyn Method {
         Strategy::Newton => &newton::Newton,
         Strategy::Lemke => &lemke::Lemke,
         Strategy::Census => &census::Census,
+        Strategy::Copositive => &copositive::Copositive,
+        Strategy::GaussSeidel => &gauss_seidel::GaussSeidel,
     }
 }
 
 /// The strategies that `chosen` tries one after the other; empty if it stands for itself.
 pub fn rungs(chosen: Strategy) -> &'static [Strategy] {
     method(chosen).rungs()
+}
+
+/// The rung after one (both from 0) with so many contacts, and what it is. `None` after the last.
+pub fn next_rung(chosen: Strategy, rung: usize, contacts: usize) -> Option<(usize, Strategy)> {
+    let method = method(chosen);
+    let all = method.rungs().iter().copied().enumerate();
+    all.skip(rung + 1)
+        .find(|&(_, strategy)| !method.leaves_out(strategy, contacts))
 }
 
 /// The settings in force on a rung (from 0; past the last one, those of the last). The strategy is that of the rung, and

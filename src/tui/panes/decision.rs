@@ -135,13 +135,15 @@ fn pushes(
     let tested = tested(&record.decision);
     let of = |push: &Push| match tested {
         Tested::Gap => push.influence.gap,
-        Tested::NormalForce | Tested::Pressure | Tested::Cover => push.influence.f_n,
+        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change => {
+            push.influence.f_n
+        }
         Tested::ShearForce | Tested::Drag => push.influence.f_t,
         Tested::Slip | Tested::Room => push.influence.slip,
     };
     let symbol = match tested {
         Tested::Gap => "Δg",
-        Tested::NormalForce | Tested::Pressure | Tested::Cover => "ΔF_n",
+        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change => "ΔF_n",
         Tested::ShearForce | Tested::Drag => "ΔF_t",
         Tested::Slip | Tested::Room => "Δslip",
     };
@@ -370,7 +372,9 @@ fn fired(decision: &Decision, theme: &Theme) -> Line<'static> {
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
     let [first, second] = names::table(decision.rule)[place(decision.before)][place(decision.next)];
     let cell = match decision.rule {
-        Rule::OffSurface | Rule::Held | Rule::Waits | Rule::Pivots | Rule::Found => String::new(),
+        Rule::OffSurface | Rule::Held | Rule::Waits | Rule::Pivots | Rule::Sweeps | Rule::Found => {
+            String::new()
+        }
         _ if second.is_empty() => format!(" {first} "),
         _ => format!(" {first}, {second} "),
     };
@@ -477,6 +481,7 @@ fn inequality(test: &Test) -> String {
         Tested::Pressure => ("F_n − k·g", "0".into()),
         Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
         Tested::Cover => ("z", "0".into()),
+        Tested::Change => ("change", "0".into()),
     };
     format!(" {name} {} {sign} {bound}", long(test.value))
 }
@@ -486,7 +491,7 @@ fn margin(test: &Test, round_off: &RoundOff, theme: &Theme) -> (String, Style) {
     let unit = match test.tested {
         Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => "force",
         Tested::Slip | Tested::Room | Tested::Gap => "length",
-        Tested::Cover => "(relative)",
+        Tested::Cover | Tested::Change => "(relative)",
     };
     match test.tie {
         true => (

@@ -1,0 +1,272 @@
+//! Complementary pivoting on Coulomb's law in the form of Stewart and Trinkle (Int. J. Numer. Meth. Engng 39, 1996), with the
+//! friction force in two parts that pull opposite ways: for every rough node
+//!
+//! ```text
+//! 0 <= F_n                              complements   gap >= 0
+//! 0 <= β+                                             λ − slip >= 0
+//! 0 <= β−                                             λ + slip >= 0
+//! 0 <= λ                                              tan φ F_n + c − β+ − β− >= 0,       F_t = β+ − β−
+//! ```
+//!
+//! and for a smooth one only the first line. With all nodes free at the start the matrix M of this problem gives
+//! zᵀ M z = Fᵀ W F + tan φ F_n λ, which is never negative for z >= 0 if the compliance W has no negative eigenvalue: M is
+//! copositive. Lemke's path can then end on a ray only if forces within the friction cones that move nothing (W F = 0) take
+//! energy from the unloaded motion q (Fᵀ q < 0). In a structure W = H M⁻¹ Hᵀ whose contacts have no gaps, q lies in the range
+//! of H and no such forces exist: there is an answer, and the path ends in it (Anitescu and Potra, Nonlinear Dynamics 14,
+//! 1997). The path may be long, and depends on how much the covering variable relaxes each row; so there are several starts.
+//! The form of [`crate::interface::lemke`] has half as many rows and is not copositive.
+
+use crate::contact::table2::Tested;
+use crate::interface::problem::{Assumed, InterfaceProblem};
+use crate::interface::tableau::{Begin, PathEnd, Tableau};
+
+/// A path that ends on a ray has come to an answer if the covering variable is no more than this (relative): the rows that
+/// would bound it are tied, and round-off decides which of them does.
+const NEARLY: f64 = 1e-9;
+/// Ties are broken by shifts of the rows up to this (relative).
+const SHIFT: f64 = 1e-7;
+/// Number of starts: the first relaxes all rows alike, the others each row by 0.2 to 1.
+pub const STARTS: usize = 8;
+/// Most pivots from a start, per row. Most paths take fewer than 3.
+const PIVOTS: usize = 8;
+
+/// Variables of a rough node, in this order, each beside its complement.
+const FORCE: usize = 0;
+const GAP: usize = 1;
+/// β+ and β−.
+const PLUS: usize = 2;
+const MINUS: usize = 4;
+/// λ − slip and λ + slip.
+const PLUS_REST: usize = 3;
+const MINUS_REST: usize = 5;
+/// λ.
+const SPEED: usize = 6;
+/// What friction could still give.
+const ROOM: usize = 7;
+
+/// A path on its way, from all nodes free.
+#[derive(Debug, Clone)]
+pub struct Copositive {
+    /// In units of the problem's force and length.
+    tableau: Tableau,
+    nodes: Vec<Held>,
+    /// Node and number of every variable.
+    owners: Vec<(usize, usize)>,
+    force: f64,
+    length: f64,
+}
+
+/// Where a node's variables begin.
+#[derive(Debug, Clone, Copy)]
+enum Held {
+    /// Nothing can press it, or there is no surface: its motions are loose.
+    No,
+    /// It has F_n and the gap.
+    Smooth(usize),
+    /// It has all eight.
+    Rough(usize),
+}
+
+impl Copositive {
+    /// The problem with all nodes free, at start `number`, less than [`STARTS`]. `None` if the bodies are not held without contact, or there is no memory.
+    pub fn new(problem: &InterfaceProblem, number: usize) -> Option<Self> {
+        let (relation, count) = (&problem.relation, problem.relation.count());
+        let rough = |k: usize| {
+            let node = &problem.nodes[k];
+            node.moves() == [true; 2] && !node.friction.is_smooth()
+        };
+        let rows = count + 2 * (0..problem.nodes.len()).filter(|&k| rough(k)).count();
+        let (force, length) = (positive(problem.force), positive(problem.length));
+        let mut path = Copositive {
+            tableau: Tableau::new(rows),
+            nodes: Vec::with_capacity(problem.nodes.len()),
+            owners: Vec::new(),
+            force,
+            length,
+        };
+        // (I + R / k) F − R v = start + (I + R / k) F_0, a column at a time.
+        let response = |j: usize| &relation.response[j * count..(j + 1) * count];
+        let of_force = |j: usize, times: f64, column: &mut [f64]| {
+            for (to, r) in column.iter_mut().zip(response(j)) {
+                *to += times * r / relation.stiffness / force;
+            }
+            column[j] += times / force;
+        };
+        let of_motion = |j: usize, times: f64, column: &mut [f64]| {
+            for (to, r) in column.iter_mut().zip(response(j)) {
+                *to -= times * r / force;
+            }
+        };
+        let mut rhs = vec![0.0; rows];
+        for (to, start) in rhs.iter_mut().zip(&relation.start) {
+            *to = start / force;
+        }
+        let mut basis = Vec::with_capacity(rows);
+        let mut extra = count;
+        for (place, node) in problem.nodes.iter().enumerate() {
+            let (n, t) = (2 * place, 2 * place + 1);
+            of_force(n, node.state.f_n, &mut rhs);
+            of_force(t, node.state.f_t, &mut rhs);
+            let first = path.owners.len();
+            let presses = node.kinematics.filter(|over| over.moves[0]);
+            if let Some(over) = presses {
+                of_motion(n, -(over.gap - node.prescribed[0]), &mut rhs);
+                path.add(place, FORCE, |column| of_force(n, force, column));
+                path.add(place, GAP, |column| of_motion(n, -length, column));
+                basis.push(first + GAP);
+            } else {
+                basis.push(path.loose(place, |column| of_motion(n, length, column)));
+            }
+            if !rough(place) {
+                basis.push(path.loose(place, |column| of_motion(t, length, column)));
+                path.nodes.push(match presses {
+                    Some(_) => Held::Smooth(first),
+                    None => Held::No,
+                });
+                continue;
+            }
+            let (coefficient, cohesion) = (node.friction.coefficient(), node.friction.cohesion);
+            let slipped = node.state.slipped(&problem.settings) + node.prescribed[1];
+            of_motion(t, slipped, &mut rhs);
+            // slip = λ − (λ − slip); the two rows beside the node's own say that the two rests add up to 2 λ, and what room is.
+            let (sum, room) = (extra, extra + 1);
+            extra += 2;
+            path.tableau.column(first + FORCE)[room] = -coefficient;
+            path.add(place, PLUS, |column| {
+                of_force(t, force, column);
+                column[room] = 1.0;
+            });
+            path.add(place, PLUS_REST, |column| {
+                of_motion(t, -length, column);
+                column[sum] = 1.0;
+            });
+            path.add(place, MINUS, |column| {
+                of_force(t, -force, column);
+                column[room] = 1.0;
+            });
+            path.add(place, MINUS_REST, |column| column[sum] = 1.0);
+            path.add(place, SPEED, |column| {
+                of_motion(t, length, column);
+                column[sum] = -2.0;
+            });
+            path.add(place, ROOM, |column| column[room] = 1.0);
+            rhs[room] = cohesion / force;
+            basis.extend([first + PLUS_REST, first + MINUS_REST, first + ROOM]);
+            path.nodes.push(Held::Rough(first));
+        }
+        let begin = Begin {
+            cover: &|row| match number {
+                0 => 1.0,
+                _ => 0.2 + 0.8 * spread(row, number),
+            },
+            shift: Some(&|row| SHIFT * (0.5 + 0.5 * spread(row, 0))),
+            pivots: PIVOTS,
+        };
+        path.tableau.start(basis, rhs, begin)?;
+        Some(path)
+    }
+
+    /// Adds a variable that has a complement beside it.
+    fn add(&mut self, place: usize, kind: usize, fill: impl FnOnce(&mut [f64])) {
+        let number = self.owners.len();
+        self.owners.push((place, kind));
+        // Of two that are beside each other the first has an even number among the node's own.
+        let partner = if kind.is_multiple_of(2) {
+            number + 1
+        } else {
+            number - 1
+        };
+        self.tableau.add(partner, fill);
+    }
+
+    fn loose(&mut self, place: usize, fill: impl FnOnce(&mut [f64])) -> usize {
+        let number = self.owners.len();
+        self.owners.push((place, ROOM + 1));
+        self.tableau.add(number, fill);
+        number
+    }
+
+    /// One pivot. `None` if the path has ended before.
+    pub fn pivot(&mut self) -> Option<()> {
+        self.tableau.pivot()
+    }
+
+    /// How the path ended. `None` while it goes on.
+    pub fn ended(&self) -> Option<PathEnd> {
+        match self.tableau.ended() {
+            Some(PathEnd::Ray) if self.tableau.cover() <= NEARLY => Some(PathEnd::Solved),
+            other => other,
+        }
+    }
+
+    /// The covering variable: how far the problem is still relaxed, in units of its forces and lengths.
+    pub fn cover(&self) -> f64 {
+        self.tableau.cover()
+    }
+
+    /// The node of the last pivot, and what reached its bound there. `None` if that was the covering variable.
+    pub fn bound(&self) -> Option<(usize, Tested)> {
+        let (place, kind) = self.owners[self.tableau.left()?];
+        let tested = match kind {
+            FORCE => Tested::NormalForce,
+            GAP => Tested::Gap,
+            PLUS | MINUS | ROOM => Tested::ShearForce,
+            _ => Tested::Slip,
+        };
+        Some((place, tested))
+    }
+
+    /// What a node does in the present basis. A node whose friction has come to no bound sticks.
+    pub fn assumed(&self, place: usize) -> Assumed {
+        let first = match self.nodes[place] {
+            Held::No => return Assumed::Free,
+            Held::Smooth(first) if self.tableau.is_basic(first + FORCE) => return Assumed::Plus,
+            Held::Smooth(_) => return Assumed::Free,
+            Held::Rough(first) => first,
+        };
+        let basic = |kind| self.tableau.is_basic(first + kind);
+        if !basic(FORCE) {
+            Assumed::Free
+        } else if basic(ROOM) || !basic(SPEED) {
+            Assumed::Fixed
+        } else if basic(MINUS) || (!basic(PLUS) && !basic(MINUS_REST)) {
+            Assumed::Minus
+        } else {
+            Assumed::Plus
+        }
+    }
+
+    /// F_n, F_t, gap and slip of a node in the present, relaxed solution; a gap is 0 where the node touches.
+    pub fn numbers(&self, place: usize) -> [f64; 4] {
+        let of = |variable: usize| self.tableau.of(variable);
+        match self.nodes[place] {
+            Held::No => [0.0, 0.0, f64::INFINITY, 0.0],
+            Held::Smooth(first) => [
+                self.force * of(first + FORCE),
+                0.0,
+                self.length * of(first + GAP),
+                0.0,
+            ],
+            Held::Rough(first) => [
+                self.force * of(first + FORCE),
+                self.force * (of(first + PLUS) - of(first + MINUS)),
+                self.length * of(first + GAP),
+                self.length * (of(first + SPEED) - of(first + PLUS_REST)),
+            ],
+        }
+    }
+}
+
+/// Numbers in 0 to 1 that differ from row to row and from start to start, the same every time: the top bits of a product with
+/// an odd number, mixed (Steele, Lea and Flood's generator, 2014).
+fn spread(row: usize, number: usize) -> f64 {
+    let seed = (row as u64) << 8 | number as u64;
+    let mut x = seed.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+fn positive(scale: f64) -> f64 {
+    if scale > 0.0 { scale } else { 1.0 }
+}

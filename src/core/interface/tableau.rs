@@ -1,0 +1,321 @@
+//! Complementary pivoting: Lemke's path through the bases of a linear complementarity problem, whatever its variables mean.
+//!
+//! Variables come in pairs of which one is zero; a loose one has no partner, may have either sign, and never leaves the
+//! basis. A covering variable relaxes all rows at once. In every pivot the complement of the variable that left last enters
+//! the basis, until the covering variable leaves it. If nothing bounds the entering variable, the path ends on a ray. Ties
+//! are broken lexicographically, so that no basis comes twice, or by a small shift of every row, which is the same for all
+//! shifts that are small enough, and cheap; then the path is that of the shifted rows, and the values are those of the true.
+
+use crate::linalg::DenseFactors;
+
+/// Entries of an entering column below this part of its largest are zero: with rows as they are, and with shifted ones,
+/// where no row needs a pivot that small.
+const TINY: f64 = 1e-11;
+const TINY_SHIFTED: f64 = 1e-9;
+/// Ratios that differ by less than this are a tie.
+const TIE: f64 = 1e-12;
+/// Largest number of pivots of a path, per row. A usual path takes about one per row. If all forces are round-off, no basis
+/// is better than another and the path would not end.
+const PIVOTS: usize = 20;
+/// Estimated norm of a basis' scaled inverse from which on it is singular.
+const SINGULAR: f64 = 1e11;
+
+/// A tableau on its way.
+#[derive(Debug, Clone)]
+pub struct Tableau {
+    rows: usize,
+    /// Column by column: every variable's, then the covering variable's, then the values of the basic variables that the path
+    /// goes by; where those are shifted, then the true ones.
+    table: Vec<f64>,
+    /// The complement of every variable; a loose one is its own.
+    partners: Vec<usize>,
+    /// The variable of every row.
+    basis: Vec<usize>,
+    /// The row of every variable, the covering one last; `None` where it is zero.
+    row_of: Vec<Option<usize>>,
+    /// The basis of the start, which breaks ties.
+    first: Vec<usize>,
+    /// Whether small shifts break ties instead.
+    shifted: bool,
+    /// The variable that enters next. `None` before the first pivot and after the last.
+    entering: Option<usize>,
+    /// The variable that left last. `None` if that was the covering one.
+    left: Option<usize>,
+    ended: Option<PathEnd>,
+    pivots: usize,
+    most: usize,
+}
+
+/// How a path starts.
+#[derive(Clone, Copy)]
+pub struct Begin<'a> {
+    /// By how much the covering variable relaxes each row; all positive.
+    pub cover: &'a dyn Fn(usize) -> f64,
+    /// By how much each row is shifted. `None` where ties are broken lexicographically.
+    pub shift: Option<&'a dyn Fn(usize) -> f64>,
+    /// Most pivots of the path, per row.
+    pub pivots: usize,
+}
+
+impl Begin<'_> {
+    /// All rows are relaxed alike, and ties are broken lexicographically.
+    pub const PLAIN: Begin<'static> = Begin {
+        cover: &|_| 1.0,
+        shift: None,
+        pivots: PIVOTS,
+    };
+}
+
+/// How the path ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathEnd {
+    /// The basis solves the problem.
+    Solved,
+    /// Nothing bounds the variable that enters: no state is found from this start.
+    Ray,
+    /// It did not end within the pivots that it has.
+    Astray,
+}
+
+impl Tableau {
+    /// A tableau of so many rows, without variables.
+    pub fn new(rows: usize) -> Self {
+        Tableau {
+            rows,
+            table: Vec::new(),
+            partners: Vec::new(),
+            basis: Vec::new(),
+            row_of: Vec::new(),
+            first: Vec::new(),
+            shifted: false,
+            entering: None,
+            left: None,
+            ended: None,
+            pivots: 0,
+            most: 0,
+        }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of variables so far.
+    pub fn variables(&self) -> usize {
+        self.partners.len()
+    }
+
+    /// Adds a variable with its column, zeros at first; `partner` is the number of its complement, or its own if it is loose.
+    pub fn add(&mut self, partner: usize, fill: impl FnOnce(&mut [f64])) {
+        self.partners.push(partner);
+        let from = self.table.len();
+        self.table.resize(from + self.rows, 0.0);
+        fill(&mut self.table[from..]);
+    }
+
+    /// The column of a variable, before the start.
+    pub fn column(&mut self, variable: usize) -> &mut [f64] {
+        &mut self.table[variable * self.rows..(variable + 1) * self.rows]
+    }
+
+    /// Starts the path from a basis (one variable a row, ascending). `None` if it is singular.
+    pub fn start(&mut self, basis: Vec<usize>, rhs: Vec<f64>, begin: Begin<'_>) -> Option<()> {
+        let (rows, cover) = (self.rows, self.variables());
+        self.basis = basis;
+        self.row_of = vec![None; cover + 1];
+        for (row, &variable) in self.basis.iter().enumerate() {
+            self.row_of[variable] = Some(row);
+        }
+        self.first.clone_from(&self.basis);
+        self.table.extend(vec![0.0; rows]);
+        self.table.extend(rhs);
+        self.reduce()?;
+        self.most = begin.pivots * rows;
+        for row in 0..rows {
+            let loose = self.is_loose(row);
+            self.table[cover * rows + row] = if loose { 0.0 } else { -(begin.cover)(row) };
+        }
+        if let Some(shift) = begin.shift {
+            self.shifted = true;
+            self.table.extend_from_within((cover + 1) * rows..);
+            let values = &mut self.table[(cover + 1) * rows..(cover + 2) * rows];
+            for (row, value) in values.iter_mut().enumerate() {
+                *value += shift(row);
+            }
+        }
+        let all_hold = (0..rows).all(|row| self.is_loose(row) || self.truth(row) >= 0.0);
+        if all_hold {
+            self.ended = Some(PathEnd::Solved);
+        }
+        Some(())
+    }
+
+    /// Multiplies the tableau by the inverse of the basis.
+    fn reduce(&mut self) -> Option<()> {
+        let rows = self.rows;
+        let matrix: Vec<f64> = self
+            .basis
+            .iter()
+            .flat_map(|&v| self.table[v * rows..(v + 1) * rows].iter().copied())
+            .collect();
+        let columns = self.table.len() / rows.max(1);
+        let mut dense = DenseFactors::new(rows, columns).ok()?;
+        dense.factor(&matrix);
+        if dense.inverse_norm() > SINGULAR {
+            return None;
+        }
+        dense.solve(&mut self.table).ok()
+    }
+
+    fn is_loose(&self, row: usize) -> bool {
+        let variable = self.basis[row];
+        self.partners.get(variable) == Some(&variable)
+    }
+
+    fn value(&self, row: usize) -> f64 {
+        self.table[(self.variables() + 1) * self.rows + row]
+    }
+
+    /// The value without the shift.
+    fn truth(&self, row: usize) -> f64 {
+        self.table[(self.variables() + 1 + usize::from(self.shifted)) * self.rows + row]
+    }
+
+    /// Whether a variable is in the basis.
+    pub fn is_basic(&self, variable: usize) -> bool {
+        self.row_of[variable].is_some()
+    }
+
+    /// The value of a variable.
+    pub fn of(&self, variable: usize) -> f64 {
+        self.row_of[variable].map_or(0.0, |row| self.truth(row))
+    }
+
+    /// How the path ended. `None` while it goes on.
+    pub fn ended(&self) -> Option<PathEnd> {
+        self.ended
+    }
+
+    /// The variable that left last. `None` if that was the covering one, or none has.
+    pub fn left(&self) -> Option<usize> {
+        self.left
+    }
+
+    /// The covering variable: how far the problem is still relaxed.
+    pub fn cover(&self) -> f64 {
+        match self.row_of[self.variables()] {
+            Some(row) => self.value(row),
+            None if self.ended == Some(PathEnd::Solved) => 0.0,
+            None => (0..self.rows)
+                .filter(|&row| !self.is_loose(row))
+                .fold(0.0, |most, row| most.max(-self.value(row))),
+        }
+    }
+
+    /// One pivot. `None` if the path has ended before.
+    pub fn pivot(&mut self) -> Option<()> {
+        if self.ended.is_some() {
+            return None;
+        }
+        self.pivots += 1;
+        if self.pivots > self.most {
+            self.ended = Some(PathEnd::Astray);
+            return Some(());
+        }
+        let cover = self.variables();
+        let (entering, row) = match self.entering {
+            None => (cover, self.most_broken()?),
+            Some(entering) => match self.bounding(entering) {
+                Some(row) => (entering, row),
+                None => {
+                    self.ended = Some(PathEnd::Ray);
+                    return Some(());
+                }
+            },
+        };
+        let leaving = self.basis[row];
+        self.left = (leaving != cover).then_some(leaving);
+        self.exchange(entering, row);
+        if leaving == cover {
+            (self.ended, self.entering) = (Some(PathEnd::Solved), None);
+        } else {
+            self.entering = Some(self.partners[leaving]);
+        }
+        Some(())
+    }
+
+    /// The row whose value is the most negative.
+    fn most_broken(&self) -> Option<usize> {
+        let rows = (0..self.rows).filter(|&row| !self.is_loose(row));
+        let covers = |row: usize| -self.table[self.variables() * self.rows + row];
+        rows.reduce(|best, row| {
+            if self.comes_before(row, best, covers) {
+                row
+            } else {
+                best
+            }
+        })
+    }
+
+    /// The row that bounds an entering variable: of the smallest ratio, the covering variable's first, then
+    /// lexicographically.
+    fn bounding(&self, entering: usize) -> Option<usize> {
+        let column = &self.table[entering * self.rows..(entering + 1) * self.rows];
+        let tiny = match self.shifted {
+            true => TINY_SHIFTED,
+            false => TINY,
+        };
+        let tiny = tiny * column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let rows = (0..self.rows).filter(|&row| column[row] > tiny && !self.is_loose(row));
+        rows.reduce(|best, row| {
+            let ratio = |row: usize| self.value(row) / column[row];
+            let tied = (ratio(row) - ratio(best)).abs() <= TIE;
+            let cover = self.variables();
+            if tied && self.basis[best] == cover {
+                return best;
+            }
+            let first = tied && self.basis[row] == cover;
+            if first || self.comes_before(row, best, |row| column[row]) {
+                row
+            } else {
+                best
+            }
+        })
+    }
+
+    /// Whether a row is lexicographically less than another, both divided by their divisors.
+    fn comes_before(&self, row: usize, other: usize, divisor: impl Fn(usize) -> f64) -> bool {
+        let (mine, its) = (divisor(row), divisor(other));
+        let gap = self.value(row) / mine - self.value(other) / its;
+        if gap.abs() > TIE || self.shifted {
+            return gap < 0.0;
+        }
+        for &v in &self.first {
+            let of = |row: usize| self.table[v * self.rows + row];
+            let gap = of(row) / mine - of(other) / its;
+            if gap.abs() > TIE {
+                return gap < 0.0;
+            }
+        }
+        false
+    }
+
+    fn exchange(&mut self, entering: usize, row: usize) {
+        let rows = self.rows;
+        let column: Vec<f64> = self.table[entering * rows..(entering + 1) * rows].to_vec();
+        let pivot = column[row];
+        for other in self.table.chunks_exact_mut(rows) {
+            let times = other[row] / pivot;
+            if times != 0.0 {
+                for (x, c) in other.iter_mut().zip(&column) {
+                    *x -= times * c;
+                }
+            }
+            other[row] = times;
+        }
+        self.row_of[self.basis[row]] = None;
+        self.row_of[entering] = Some(row);
+        self.basis[row] = entering;
+    }
+}

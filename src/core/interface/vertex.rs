@@ -1,0 +1,210 @@
+//! Forces that are not unique: from any of them to some that belong to one assumption alone.
+//!
+//! Where forces of the touching nodes move nothing (W d = 0), the equations of what the nodes do are singular, and a solve
+//! finds no forces although there are many. Along such a d the motions stay what they are, and forces within their friction
+//! cones stay an answer until one of them comes to the edge of its cone. A node at the edge slides, by nothing, and one
+//! without force is free, with a gap of zero; so each of them takes an unknown out, and at the end the equations have one
+//! solution. Forces of a node that coheres are left alone where they come to F_n = 0, which is no mode there. It is the same with the vertices of a polyhedron and linear programs (Megiddo, ORSA J. Computing 3, 1991).
+
+use crate::interface::problem::{Assumed, InterfaceProblem};
+
+/// Columns whose rest is below this part of the largest depend on others.
+const DEPENDENT: f64 = 1e-10;
+
+/// What a node does, and its forces.
+pub type Held = (Assumed, [f64; 2]);
+
+/// What the nodes do, and their forces, one entry a node, such that no forces in these modes move nothing. The motions are
+/// those that were before, and the forces obey Coulomb's law if they did.
+pub fn vertex(problem: &InterfaceProblem, nodes: &mut [Held]) {
+    let mut still = motionless(problem, nodes);
+    while let Some(along) = still.pop() {
+        let Some(bound) = nearest(problem, nodes, &along) else {
+            continue;
+        };
+        for (k, (_, force)) in nodes.iter_mut().enumerate() {
+            force[0] += bound.step * along[2 * k];
+            force[1] += bound.step * along[2 * k + 1];
+        }
+        nodes[bound.place].0 = bound.then;
+        let put = &mut nodes[bound.place].1;
+        match bound.then {
+            Assumed::Free => *put = [0.0; 2],
+            does => {
+                let friction = &problem.nodes[bound.place].friction;
+                put[1] = does.sign() * (friction.coefficient() * put[0] + friction.cohesion);
+            }
+        }
+        let leads = bound.of(&along);
+        for other in &mut still {
+            let times = bound.of(other) / leads;
+            other
+                .iter_mut()
+                .zip(&along)
+                .for_each(|(x, d)| *x -= times * d);
+        }
+    }
+}
+
+/// [`vertex`] of what a search proposes: for every node what it does, with F_n, F_t, gap and slip.
+pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(Assumed, [f64; 4])]) {
+    let of = |&(does, [f_n, f_t, ..]): &(Assumed, [f64; 4])| (does, [f_n, f_t]);
+    let mut held: Vec<Held> = nodes.iter().map(of).collect();
+    vertex(problem, &mut held);
+    for (node, (does, [f_n, f_t])) in nodes.iter_mut().zip(held) {
+        node.0 = does;
+        (node.1[0], node.1[1]) = (f_n, f_t);
+    }
+}
+
+/// The edge of a cone that forces come to first.
+struct Bound {
+    place: usize,
+    step: f64,
+    then: Assumed,
+    /// What stays zero there, as factors of the node's F_n and F_t.
+    factors: [f64; 2],
+    /// Whether a mode begins there.
+    open: bool,
+}
+
+impl Bound {
+    fn of(&self, along: &[f64]) -> f64 {
+        self.factors[0] * along[2 * self.place] + self.factors[1] * along[2 * self.place + 1]
+    }
+}
+
+/// The first edge that is come to along d or against it. `None` if there is none.
+fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<Bound> {
+    let mut found: Option<Bound> = None;
+    let mut look = |place: usize, then: Assumed, factors: [f64; 2], left: f64| {
+        let bound = Bound {
+            place,
+            step: 0.0,
+            then,
+            factors,
+            open: then != Assumed::Free || problem.nodes[place].friction.cohesion == 0.0,
+        };
+        let falls = -bound.of(along);
+        let size = along.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+        if falls.abs() <= DEPENDENT * size {
+            return;
+        }
+        let step = left.max(0.0) / falls;
+        if found
+            .as_ref()
+            .is_none_or(|best| step.abs() < best.step.abs())
+        {
+            found = Some(Bound { step, ..bound });
+        }
+    };
+    for (place, (does, [f_n, f_t])) in nodes.iter().enumerate() {
+        let friction = &problem.nodes[place].friction;
+        let limit = friction.coefficient() * f_n + friction.cohesion;
+        match does {
+            Assumed::Free => {}
+            Assumed::Plus | Assumed::Minus => look(place, Assumed::Free, [1.0, 0.0], *f_n),
+            Assumed::Fixed => {
+                if friction.cohesion > 0.0 {
+                    look(place, Assumed::Free, [1.0, 0.0], *f_n);
+                }
+                look(
+                    place,
+                    Assumed::Plus,
+                    [friction.coefficient(), -1.0],
+                    limit - f_t,
+                );
+                look(
+                    place,
+                    Assumed::Minus,
+                    [friction.coefficient(), 1.0],
+                    limit + f_t,
+                );
+            }
+        }
+    }
+    found.filter(|bound| bound.open)
+}
+
+/// Forces of the touching nodes, in these modes, that move nothing: a basis, two entries a node.
+///
+/// They are what (I + R / k) takes to zero. Its columns for the nodes' forces are eliminated with the largest entry that is
+/// left as pivot.
+pub fn motionless(problem: &InterfaceProblem, nodes: &[Held]) -> Vec<Vec<f64>> {
+    let (relation, count) = (&problem.relation, problem.relation.count());
+    let mut directions: Vec<(usize, [f64; 2])> = Vec::new();
+    for (place, (does, _)) in nodes.iter().enumerate() {
+        let coefficient = problem.nodes[place].friction.coefficient();
+        match does {
+            Assumed::Free => {}
+            Assumed::Fixed => directions.extend([(place, [1.0, 0.0]), (place, [0.0, 1.0])]),
+            does => directions.push((place, [1.0, does.sign() * coefficient])),
+        }
+    }
+    let mut columns: Vec<Vec<f64>> = directions
+        .iter()
+        .map(|&(place, parts)| {
+            let mut column = vec![0.0; count];
+            for (part, j) in parts.iter().zip([2 * place, 2 * place + 1]) {
+                let response = &relation.response[j * count..(j + 1) * count];
+                for (to, r) in column.iter_mut().zip(response) {
+                    *to += part * r / relation.stiffness;
+                }
+                column[j] += part;
+            }
+            column
+        })
+        .collect();
+    let size = columns.len();
+    let mut order: Vec<usize> = (0..size).collect();
+    let mut rows: Vec<usize> = (0..count).collect();
+    let (mut rank, mut first) = (0, 0.0);
+    while rank < size.min(count) {
+        let mut best = (0.0, rank, rank);
+        for (c, &column) in order.iter().enumerate().skip(rank) {
+            for (r, &row) in rows.iter().enumerate().skip(rank) {
+                let entry = columns[column][row].abs();
+                if entry > best.0 {
+                    best = (entry, c, r);
+                }
+            }
+        }
+        if rank == 0 {
+            first = best.0;
+        }
+        if best.0 <= DEPENDENT * first {
+            break;
+        }
+        order.swap(rank, best.1);
+        rows.swap(rank, best.2);
+        let pivot = std::mem::take(&mut columns[order[rank]]);
+        for &column in &order[rank + 1..] {
+            let times = columns[column][rows[rank]] / pivot[rows[rank]];
+            if times != 0.0 {
+                for &row in &rows[rank + 1..] {
+                    columns[column][row] -= times * pivot[row];
+                }
+            }
+        }
+        columns[order[rank]] = pivot;
+        rank += 1;
+    }
+    (rank..size)
+        .map(|dependent| {
+            // The upper triangle, back.
+            let mut factors = vec![0.0; size];
+            factors[order[dependent]] = 1.0;
+            for k in (0..rank).rev() {
+                let later = order[k + 1..rank].iter().chain([&order[dependent]]);
+                let sum: f64 = later.map(|&c| columns[c][rows[k]] * factors[c]).sum();
+                factors[order[k]] = -sum / columns[order[k]][rows[k]];
+            }
+            let mut along = vec![0.0; count];
+            for (&(place, parts), factor) in directions.iter().zip(&factors) {
+                along[2 * place] += factor * parts[0];
+                along[2 * place + 1] += factor * parts[1];
+            }
+            along
+        })
+        .collect()
+}
