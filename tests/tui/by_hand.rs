@@ -80,6 +80,8 @@ pub fn model(slaves: usize) -> Model {
         increment: 0.1,
         least: None,
         jumps: Default::default(),
+        control: Default::default(),
+        arc: Default::default(),
         settings: Settings::default(),
         budget: 1e9,
         monitors: vec![],

@@ -155,6 +155,14 @@ impl Source for Bodies {
         self.system.solve(&self.model, at)
     }
 
+    fn load_step(&self) -> f64 {
+        self.system.border.load_step
+    }
+
+    fn follows_paths(&self) -> bool {
+        true
+    }
+
     fn increment(&self, contact: usize) -> NodeIncrement {
         self.system.given(contact)
     }

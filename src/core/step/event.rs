@@ -64,7 +64,7 @@ pub enum Outcome {
     Cut {
         /// What it failed of.
         why: Failure,
-        /// Size of the part that is tried (load factor).
+        /// Size of the part that is tried (load factor; along the path in what is measured).
         size: f64,
     },
     /// The halves of an increment that may jump failed: it is started again, and taken whole, which is this size.
@@ -147,6 +147,10 @@ pub enum Failure {
         /// Round-off over loads, more than [`Norms::LOUDEST`].
         noise: f64,
     },
+    /// Along the path: the increment would go back the way that it came.
+    DoubledBack,
+    /// Along the path: what is measured does not move while the load does, so that no size can be given to it.
+    Unmoved,
     /// The increment moved beyond what its tangent and the increments before it predict: it may have jumped to another
     /// branch of equilibrium.
     Leapt {

@@ -10,7 +10,8 @@ use crate::interface::method::Searched;
 use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::{Accepted, At};
 use crate::model::least;
-use crate::model::{Friction, Model, Settings};
+use crate::model::{Control, Friction, Model, Settings};
+use crate::step::arc::Way;
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
 use crate::step::pace::Pace;
@@ -64,6 +65,9 @@ pub struct State {
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
+    /// How far the way along the path has come. `None` under load control.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub way: Option<Box<Way>>,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -167,7 +171,7 @@ impl State {
         };
         let sub_increment = SubIncrement::whole(model, start.place(), controls.increment);
         let target = sub_increment.target();
-        State {
+        let mut state = State {
             next: Position {
                 increment: 1,
                 attempt: 1,
@@ -190,8 +194,11 @@ impl State {
             net: false,
             correction: 0.0,
             pace: Pace::default(),
+            way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             status: Status::Running,
-        }
+        };
+        state.set_out();
+        state
     }
 
     /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
@@ -218,6 +225,7 @@ impl State {
             correction: self.correction,
             chosen: &self.controls.settings,
             settings: self.settings(),
+            along: self.way.as_ref().map(|way| way.along()),
         }
     }
 }

@@ -19,7 +19,10 @@ impl Stepper {
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
         let verdict = self.source.judge(&self.state.at(), &after);
         let Some(worst) = worst_of(&verdict) else {
-            return self.land(after, verdict);
+            return match self.state.way {
+                Some(_) => self.land_on_way(after, verdict),
+                None => self.land(after, verdict),
+            };
         };
         if self.only_marks() {
             return self.accept(after, verdict, Some(worst), false);

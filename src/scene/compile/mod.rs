@@ -88,6 +88,8 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         increment: spec.history.increment,
         least: spec.history.least,
         jumps: spec.history.jumps,
+        control: Default::default(),
+        arc: Default::default(),
         settings,
         monitors,
         budget: crate::scene::memory::free(),
