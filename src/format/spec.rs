@@ -544,7 +544,7 @@ described! {
         /// What drives the history from one increment to the next. Default: load.
         #[serde(default, skip_serializing_if = "Control::is_default")]
         pub control: Control,
-        /// How the path of equilibrium is followed, with `control: arc` or `rescue`. Default: along all displacements.
+        /// How the path of equilibrium is followed, with `control: arc`. Default: along all displacements.
         #[serde(default, skip_serializing_if = "ArcSpec::is_default")]
         pub arc: ArcSpec,
     }

@@ -156,6 +156,7 @@ pub fn event(position: (u32, u32, u32), nodes: Vec<ContactRecord>, outcome: Outc
             minor,
         },
         load_factor: increment as f64 / 10.0,
+        arc: None,
         nodes,
         before: Norms::default(),
         outcome,

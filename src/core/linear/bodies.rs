@@ -360,6 +360,7 @@ impl Source for Bodies {
                     largest
                 }
             }),
+            Watched::Arc => at.arc,
             // The load is that of the displacements at hand, not the one that is aimed at next.
             Watched::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);

@@ -410,6 +410,7 @@ impl Source for ConstantSource {
                 )
             }
             // Nothing is supported here.
+            Watched::Arc => at.arc,
             Watched::Reaction { .. } => 0.0,
         }
     }

@@ -47,6 +47,8 @@ pub struct At<'a> {
     /// What the present major iteration is bound by where the load factor is an unknown; `target` is then the load factor
     /// that the solve adds to. `None` under load control.
     pub along: Option<Along<'a>>,
+    /// Arc from the start of the history to the last accepted state; 0 under load control.
+    pub arc: f64,
 }
 
 /// One equation more, for the load factor as an unknown.

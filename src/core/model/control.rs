@@ -13,8 +13,6 @@ documented! {
         Load,
         /// The way along the path of equilibrium; the load factor is an unknown, and may fall and rise again.
         Arc,
-        /// The load factor; where it can go no further, from there on the way along the path, to the corner that is next.
-        Rescue,
     }
 }
 

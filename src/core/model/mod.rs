@@ -117,6 +117,8 @@ pub enum Watched {
         /// Slave numbers.
         slaves: Vec<usize>,
     },
+    /// Arc along the path of equilibrium from the start of the history, in what [`ArcLength::along`] measures.
+    Arc,
 }
 
 impl Model {

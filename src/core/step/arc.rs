@@ -22,7 +22,6 @@ use crate::step::event::{Failure, Outcome};
 use crate::step::pace::RATIO;
 use crate::step::state::{IncrementStart, State};
 use crate::step::stepper::Stepper;
-use crate::strategy;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -251,9 +250,8 @@ impl Stepper {
         } else {
             leaps.then_some(Failure::Leapt { motion, predicted })
         };
-        let looks = !strategy::rungs(self.state.controls.settings.strategy).is_empty();
         let mut jumped = false;
-        if let Some(why) = why.filter(|why| looks || *why == Failure::DoubledBack) {
+        if let Some(why) = why {
             let jumps = self.model.jumps;
             let leapt = matches!(why, Failure::Leapt { .. });
             if !(leapt && jumps == Jumps::Accept)

@@ -32,6 +32,9 @@ pub struct Event {
     pub position: Position,
     /// Load factor at the end of this increment.
     pub load_factor: f64,
+    /// Arc from the start of the history to that of this increment, and where it was accepted to its end. `None` under load
+    /// control.
+    pub arc: Option<f64>,
     /// One record a slave node, in the order of the scene.
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, about which the minor iterations are linearised.

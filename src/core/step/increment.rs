@@ -51,10 +51,9 @@ impl Stepper {
         Some(Outcome::Cut { why, size })
     }
 
-    /// The same along the path.
+    /// The same along the path, whatever the strategy: the size is the control's own.
     fn cut_along(&mut self, why: &Failure, helps: bool) -> Option<Outcome> {
-        let cuts = !strategy::rungs(self.state.controls.settings.strategy).is_empty();
-        if !cuts || !helps {
+        if !helps {
             return None;
         }
         let size = self.cut_way()?;

@@ -206,6 +206,11 @@ impl State {
         strategy::in_force(&self.controls.settings, self.search.rung)
     }
 
+    /// Arc from the start of the history to that of the present increment. `None` under load control.
+    pub fn arc(&self) -> Option<f64> {
+        self.way.as_ref().map(|way| way.length)
+    }
+
     /// What a source may look at.
     pub fn at(&self) -> At<'_> {
         At {
@@ -226,6 +231,7 @@ impl State {
             chosen: &self.controls.settings,
             settings: self.settings(),
             along: self.way.as_ref().map(|way| way.along()),
+            arc: self.arc().unwrap_or(0.0),
         }
     }
 }
