@@ -193,7 +193,9 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             "another measure of the path: history.arc.monitor, or history.arc.slip",
             "a smaller history.arc.least",
         ],
-        Failure::Unmoved => &["another measure of the path: history.arc.monitor, or history.arc.slip"],
+        Failure::Unmoved => {
+            &["another measure of the path: history.arc.monitor, or history.arc.slip"]
+        }
         Failure::RoundOff { .. } => &[
             "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid",
         ],

@@ -7,7 +7,8 @@
 use super::arc::ArcSpec;
 use super::described::macros::described;
 use crate::model::{
-    Axis, Component, Control, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update, least,
+    Axis, Component, Control, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
+    least,
 };
 use serde::{Deserialize, Serialize};
 

@@ -161,14 +161,17 @@ impl System {
         let border = &mut self.border;
         border.rhs.clear();
         border.rhs.extend(&border.rate);
-        border.rhs.extend(border.carried.iter().flatten().map(|p| -p));
+        border
+            .rhs
+            .extend(border.carried.iter().flatten().map(|p| -p));
         border.moved.clear();
         border.moved.resize(self.x.len(), 0.0);
         factors.solve(&border.rhs, &mut border.moved)?;
         let terms = border.row.iter().zip(&border.moved).map(|(c, x)| c * x);
-        let (sum, size) = terms.fold((border.given[1], border.given[1].abs()), |(sum, size), t| {
-            (sum + t, size + t.abs())
-        });
+        let (sum, size) = terms.fold(
+            (border.given[1], border.given[1].abs()),
+            |(sum, size), t| (sum + t, size + t.abs()),
+        );
         if !sum.is_finite() || sum.abs() <= NO_PIVOT * size {
             return Err(SolveError::Singular);
         }
@@ -207,7 +210,9 @@ impl System {
         let step = border.load_step;
         border.rhs.clear();
         let balance = self.rhs.iter().zip(&border.rate);
-        border.rhs.extend(balance.map(|(rhs, rate)| rhs + step * rate));
+        border
+            .rhs
+            .extend(balance.map(|(rhs, rate)| rhs + step * rate));
         let carried = border.carried.iter().flatten();
         let gaps = self.condensed.gaps.iter().zip(carried);
         border.rhs.extend(gaps.map(|(z, p)| z - step * p));

@@ -61,7 +61,9 @@ impl Factor {
         }
         let mut pieces = points.windows(2);
         let piece = pieces.find(|pair| load_factor <= pair[1].0);
-        piece.map_or(0.0, |pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0))
+        piece.map_or(0.0, |pair| {
+            (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)
+        })
     }
 }
 

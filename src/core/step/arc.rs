@@ -286,15 +286,9 @@ impl Stepper {
             return behind;
         }
         let moved = state.u.iter().zip(state.start.u.iter());
-        let moved = || moved.clone().map(|(u, start)| u - start);
-        // Displacements alone, each as large as the last ones and the load as large as its last change.
-        let (mut product, mut here, mut there) = (0.0, 0.0, 0.0);
-        for (now, &then) in moved().zip(way.last.iter()).filter(|(_, then)| **then != 0.0) {
-            (product, here, there) = (product + now * then, here + now * now, there + then * then);
-        }
+        let moved = moved.map(|(u, start)| u - start);
         let load = state.load_factor - state.start.load_factor;
-        let back = product < -BACK * (here * there).sqrt();
-        back && load * way.last_load <= 0.0
+        goes_back(moved, &way.last) && load * way.last_load <= 0.0
     }
 
     /// The corner or bound that the increment has passed first.
@@ -349,7 +343,9 @@ impl Stepper {
         };
         let bounded = |aim: Aim| {
             let mut bounds = model.arc.bounds.iter();
-            bounds.any(|bound| matches!(aim, Aim::Dof { dof, to } if (dof, to) == (bound.dof, bound.at)))
+            bounds.any(
+                |bound| matches!(aim, Aim::Dof { dof, to } if (dof, to) == (bound.dof, bound.at)),
+            )
         };
         let ends = bounded(way.aim) || way.length >= farthest(&model) * (1.0 - ROUNDING);
         let whole = !matches!(way.aim, Aim::Load(_)) && !bounded(way.aim);
@@ -357,7 +353,11 @@ impl Stepper {
             let wanted = f64::from(model.arc.iterations) / f64::from(state.next.major);
             way.step *= wanted.sqrt().clamp(CHANGE[0], CHANGE[1]);
         }
-        let motion: Vec<f64> = u.iter().zip(start.iter()).map(|(u, start)| u - start).collect();
+        let motion: Vec<f64> = u
+            .iter()
+            .zip(start.iter())
+            .map(|(u, start)| u - start)
+            .collect();
         let mut last = displacements(&model, &motion);
         let square: f64 = last.iter().map(|d| d * d).sum();
         last.iter_mut().for_each(|d| *d /= square);
@@ -397,6 +397,15 @@ impl State {
     }
 }
 
+/// Whether displacements go against the last ones, within the angle of [`BACK`].
+fn goes_back(moved: impl Iterator<Item = f64>, last: &[f64]) -> bool {
+    let (mut product, mut here, mut there) = (0.0, 0.0, 0.0);
+    for (now, &then) in moved.zip(last).filter(|(_, then)| **then != 0.0) {
+        (product, here, there) = (product + now * then, here + now * now, there + then * then);
+    }
+    here > 0.0 && product < -BACK * (here * there).sqrt()
+}
+
 /// Arc at which a history ends at the latest.
 fn farthest(model: &Model) -> f64 {
     let most = ArcLength::FARTHEST * model.length;
@@ -410,4 +419,23 @@ fn displacements(model: &Model, motion: &[f64]) -> Vec<f64> {
         kept[first..first + 2].copy_from_slice(&motion[first..first + 2]);
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_way_that_was_come_is_the_way_back() {
+        let last = [1.0, 0.5, 0.0, -2.0];
+        let along = |factor: f64, aside: f64| {
+            let moved = last.map(|l| factor * l);
+            goes_back(
+                [moved[0] + aside, moved[1], 9.0, moved[3]].into_iter(),
+                &last,
+            )
+        };
+        assert!(along(-1.0, 0.0) && along(-0.01, 0.0) && along(-3.0, 0.01));
+        assert!(!along(1.0, 0.0) && !along(-1.0, 0.5) && !along(0.0, 0.0));
+    }
 }

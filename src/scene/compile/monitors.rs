@@ -40,7 +40,9 @@ pub(super) fn monitors(
     }
     if spec.history.control == Control::Arc {
         if let Some(k) = seen.get(ARC) {
-            let message = format!("the name {ARC:?} is that of the way along the path (control: arc); take another");
+            let message = format!(
+                "the name {ARC:?} is that of the way along the path (control: arc); take another"
+            );
             return Err(Fault::new(at!["monitors", *k, "name"], message));
         }
         made.push(Monitor {
