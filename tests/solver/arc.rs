@@ -2,6 +2,7 @@
 //! cannot be followed is said.
 
 use crate::common::{self, Accepted, Run, run};
+use crate::program::{program, rows, well};
 use std::sync::Arc;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
@@ -355,4 +356,67 @@ fn what_cannot_be_followed_is_refused_with_a_reason() {
     assert!(told(&[], "step: 0.0").contains("step is 0.0; it must be a positive number"));
     assert!(told(&[], "iterations: 0").contains("at least 1"));
     assert!(told(&[("settings.solver", "augmented")], "").contains("condensed interface"));
+}
+
+/// A scene along its path; the arc after which it ends.
+fn along(name: &str, set: &[(&str, &str)]) -> Run {
+    let all = [&[("history.control", "arc")], set].concat();
+    finished(&common::scene(name, &all))
+}
+
+#[test]
+fn the_arch_of_osc_snap_snaps_through_under_its_cantilever() {
+    let sound = [
+        ("settings.strategy", "ladder"),
+        ("settings.sticking", "anchored"),
+        ("settings.slip", "increment"),
+        ("settings.geometry", "consistent"),
+        ("settings.majors", "60"),
+        ("history.increment", "0.1"),
+    ];
+    let run = along("osc-snap", &sound);
+    assert_eq!(last(&run).load, 6.0);
+    let loads = || run.accepted.iter().map(|accepted| accepted.load);
+    assert_eq!(turns(loads()), 2, "{:?}", loads().collect::<Vec<_>>());
+    assert_eq!(turns(of(&run, "u_y")), 0);
+}
+
+#[test]
+fn the_block_that_is_thrown_over_its_edge_is_let_down_along_its_path() {
+    let edge = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/scales/block-over-its-edge.ron"
+    );
+    let run = along(edge, &[("history.arc.length", "1.0")]);
+    let loads: Vec<f64> = run.accepted.iter().map(|accepted| accepted.load).collect();
+    let highest = loads.iter().copied().fold(0.0, f64::max);
+    // Under load control it jumps between 0.43 and 0.46 (tests/solver/jumps.rs).
+    assert!((0.43..0.46).contains(&highest), "{highest}");
+    assert!(*loads.last().unwrap() < 0.0, "{loads:?}");
+}
+
+#[test]
+fn tables_have_the_arc_where_the_path_is_followed_and_snapshots_replay() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "02-two-cantilevers-rough";
+    let follow = ["--set", "friction.angle=20", "--set", "history.control=arc"];
+    let told = |arguments: &[&str]| well(&program(folder.path(), arguments).output().unwrap());
+    let csv = told(&[&["run", scene, "--quiet", "--csv", "-"], &follow[..]].concat());
+    assert!(csv.starts_with("increment,load,majors,minors,") && csv.contains(",arc,jumped\n"));
+    let trace = told(&[&["run", scene, "--quiet", "--trace", "-"], &follow[..]].concat());
+    assert!(trace.lines().next().unwrap().ends_with(",residual,arc"));
+    let loaded = told(&["run", scene, "--quiet", "--trace", "-"]);
+    assert!(loaded.lines().next().unwrap().ends_with(",residual"));
+    // Rows of the last increment's last minor iteration end with the arc of the table.
+    let arcs: Vec<String> = rows(&csv).iter().map(|row| row["arc"].clone()).collect();
+    let ends = rows(&trace).last().unwrap()["arc"].clone();
+    assert_eq!(Some(&ends), arcs.last());
+    told(
+        &[
+            &["record", scene, "--at", "9.2", "-o", "past.snap"],
+            &follow[..],
+        ]
+        .concat(),
+    );
+    told(&["replay", "past.snap"]);
 }

@@ -167,7 +167,7 @@ pub trait Source: Send {
         0.0
     }
 
-    /// Whether it can solve for the load factor.
+    /// Whether it can solve for the load factor; where not, a history along the path fails at once.
     fn follows_paths(&self) -> bool {
         false
     }

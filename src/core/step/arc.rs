@@ -176,6 +176,9 @@ impl Stepper {
         if self.state.way.as_ref().is_none_or(|way| way.known) {
             return Ok(());
         }
+        if !self.source.follows_paths() {
+            return Err(Failure::Unmoved);
+        }
         let mut at = self.state.at();
         at.settings.t_max = BoundUpdate::Consistent;
         let solved = self.source.solve(&at);
@@ -239,7 +242,16 @@ impl Stepper {
         (state.last_target, state.target, state.load_factor) = (reached, reached, reached);
     }
 
-    /// Accepts a state that the judge finds right, or goes on to where the increment has to end, or cuts it.
+    /// Goes on from a converged state that is beyond where the increment has to end. `None` where it is not.
+    pub(super) fn turn_to_goal(&mut self, after: Norms) -> Option<Outcome> {
+        let goal = self.goal_passed()?;
+        self.aim_at(goal.aim);
+        self.next_major();
+        let settled = true;
+        Some(Outcome::Major { after, settled })
+    }
+
+    /// Accepts a state that the judge finds right, or cuts an increment that jumps or doubles back.
     pub(super) fn land_on_way(&mut self, after: Norms, verdict: Verdict) -> Outcome {
         let motion = self.source.moved(&self.state.u, &self.state.start.u);
         let predicted = self.state.pace.predicted;
@@ -264,14 +276,6 @@ impl Stepper {
                 return Outcome::Failed(why);
             }
             jumped = true;
-        }
-        if let Some(goal) = self.goal_passed() {
-            self.aim_at(goal.aim);
-            self.next_major();
-            return Outcome::Major {
-                after,
-                settled: true,
-            };
         }
         self.accept(after, verdict, None, jumped)
     }

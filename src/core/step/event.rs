@@ -152,7 +152,8 @@ pub enum Failure {
     },
     /// Along the path: the increment would go back the way that it came.
     DoubledBack,
-    /// Along the path: what is measured does not move while the load does, so that no size can be given to it.
+    /// Along the path: what is measured does not move while the load does, so that no size can be given to it; or the source
+    /// cannot solve for the load factor ([`crate::linear::source::Source::follows_paths`]).
     Unmoved,
     /// The increment moved beyond what its tangent and the increments before it predict: it may have jumped to another
     /// branch of equilibrium.

@@ -17,6 +17,9 @@ use crate::step::stepper::Stepper;
 impl Stepper {
     /// Accepts a converged state, or does with it what the judge makes necessary.
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
+        if let Some(on) = self.turn_to_goal(after) {
+            return on;
+        }
         let verdict = self.source.judge(&self.state.at(), &after);
         let Some(worst) = worst_of(&verdict) else {
             return match self.state.way {
