@@ -262,8 +262,17 @@ fn problem_02_is_followed_past_the_limit_at_which_load_control_ends() {
             let all = [&[("friction.angle", angle)], more].concat();
             common::scene("02-two-cantilevers-rough", &all)
         };
+        // It jumps, or ends.
         let loaded = run(&rough(&[]));
-        assert!(loaded.failure.is_some(), "{angle}");
+        let jumps = |accepted: &Accepted| {
+            matches!(
+                accepted.event.outcome,
+                Outcome::Increment { jumped: true, .. }
+            )
+        };
+        let jump = loaded.accepted.iter().position(jumps);
+        assert!(jump.is_some() || loaded.failure.is_some(), "{angle}");
+        let reached = loaded.accepted[jump.unwrap_or(loaded.accepted.len()) - 1].load;
         let followed = finished(&rough(&[
             ("history.control", "arc"),
             ("history.arc.largest", finest),
@@ -272,8 +281,15 @@ fn problem_02_is_followed_past_the_limit_at_which_load_control_ends() {
         assert_eq!(last(&followed).load, 2.5);
         let loads: Vec<f64> = followed.accepted.iter().map(|a| a.load).collect();
         let turn = loads.windows(2).position(|pair| pair[1] < pair[0]).unwrap();
-        let (limit, reached) = (loads[turn], last(&loaded).load);
-        assert!((limit - reached).abs() < 5e-3, "{angle}: {limit} {reached}");
+        let limit = loads[turn];
+        // The peak is a corner between two increments of 0.02, and the load rises by about as much on the way to it.
+        assert!(limit < reached + 0.05 / 64.0, "{angle}: {limit} {reached}");
+        assert!(limit > reached - 0.03, "{angle}: {limit} {reached}");
+        // Where load control lands after its jump, the path comes, too.
+        if jump.is_some() {
+            let ends = [&followed, &loaded].map(|run| last(run).monitors["u_x"]);
+            assert!((ends[0] - ends[1]).abs() < 1e-9, "{ends:?}");
+        }
         assert!(loads[turn + 1..].iter().any(|&load| load < 0.9 * limit));
         for accepted in &followed.accepted {
             let verdict = accepted.state.start.verdict.as_ref().unwrap();

@@ -28,33 +28,6 @@ const NO_PIVOT: f64 = 1e-13;
 /// Norm of the scaled inverse up to which the bodies on their springs are regular, whatever the border.
 const ORDINARY: f64 = 1e6;
 
-/// The last equation and the last column, in the linearisation at hand.
-#[derive(Default)]
-pub(super) struct Border {
-    /// Whether the relation at hand is bordered.
-    pub active: bool,
-    /// Change of each prescribed displacement by the load factor; zero at other degrees of freedom.
-    rates: Vec<f64>,
-    /// q, by equation.
-    rate: Vec<f64>,
-    /// Right-hand side of a solve.
-    rhs: Vec<f64>,
-    /// c, by equation.
-    row: Vec<f64>,
-    /// What prescribed motions put into the constraint: at the load factor of the linearisation, and by its change.
-    given: [f64; 2],
-    /// x1 with the forces f1 after the displacements.
-    moved: Vec<f64>,
-    /// p of each contact, along n and t.
-    pub carried: Vec<[f64; 2]>,
-    /// Xᵀ c, then a.
-    share: Vec<f64>,
-    /// a0.
-    start: f64,
-    /// dλ of the last solve.
-    pub load_step: f64,
-}
-
 impl System {
     /// Finds c, q and p about the last linearisation.
     pub(super) fn lay_border(&mut self, model: &Model, at: &At<'_>, along: &Along<'_>) {
@@ -141,12 +114,6 @@ impl System {
         let found = border.row.iter().zip(&self.x).map(|(c, x)| c * x);
         border.start = along.step() - border.given[0] - found.sum::<f64>();
         border.share.clear();
-    }
-
-    /// Notes what z of one more component puts into the constraint; `column` is a column of X.
-    pub(super) fn extend_border(border: &mut Border, column: &[f64]) {
-        let share = border.row.iter().zip(column).map(|(c, x)| c * x).sum();
-        border.share.push(share);
     }
 
     /// Finds x1 and f1, and eliminates dλ from the relation.

@@ -163,7 +163,7 @@ impl System {
             {
                 to.copy_from_slice(&column[unknowns..]);
                 if at.along.is_some() {
-                    System::extend_border(&mut self.border, column);
+                    self.border.extend(column);
                 }
             }
         }

@@ -13,7 +13,7 @@ use crate::fem::element::Assembled;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::rows;
 use crate::linalg::{Factors, Pattern, SolveError};
-use crate::linear::bordered::Border;
+use crate::linear::border::Border;
 use crate::linear::condensation::Condensation;
 use crate::linear::condensed::Condensed;
 use crate::linear::coupling::Interface;

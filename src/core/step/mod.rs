@@ -5,11 +5,11 @@
 //! - `minor`, `major`, `increment`: the three levels; `search`: what happens where the modes do not settle.
 //! - [`sub_increment`]: increments whole and cut; `jump`: those that end on another branch of equilibrium; `verdict`:
 //!   what becomes of a state that the judge refuses.
-//! - [`arc`]: increments of arc length, the load factor an unknown.
+//! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come.
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
-pub mod arc;
+mod arc;
 pub mod drive;
 pub mod event;
 mod increment;
@@ -24,6 +24,7 @@ pub mod state;
 pub mod stepper;
 pub mod sub_increment;
 mod verdict;
+pub mod way;
 
 #[cfg(test)]
 mod tests;
