@@ -10,13 +10,13 @@ described! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct ArcSpec {
-        /// Monitor of a displacement, whose changes are the increments. Default: all displacements are followed together,
+        /// Monitor of a displacement, whose changes are the increments. Default: none, all displacements are followed together,
         /// along the tangent; the size of an increment is the largest displacement on the tangent.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pub monitor: Option<String>,
-        /// Slave node whose net slip is followed instead.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pub slip: Option<String>,
+        #[serde(skip_serializing_if = "String::is_empty")]
+        pub monitor: String,
+        /// Slave node whose net slip is followed instead. Default: none.
+        #[serde(skip_serializing_if = "String::is_empty")]
+        pub slip: String,
         /// Size of the first increment. Default: what the tangent goes while the load factor moves by `increment`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub step: Option<f64>,
@@ -57,8 +57,8 @@ fn is_usual(iterations: &u32) -> bool {
 impl Default for ArcSpec {
     fn default() -> Self {
         ArcSpec {
-            monitor: None,
-            slip: None,
+            monitor: String::new(),
+            slip: String::new(),
             step: None,
             largest: None,
             least: None,

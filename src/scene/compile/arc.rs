@@ -33,14 +33,14 @@ pub(super) fn arc(
         let message = "the iterations that keep the size are 0; they must be at least 1";
         return Err(Fault::new(here.then("iterations"), message));
     }
-    let along = match (&given.monitor, &given.slip) {
-        (Some(_), Some(_)) => {
+    let along = match (given.monitor.as_str(), given.slip.as_str()) {
+        ("", "") => Measured::Displacements,
+        (name, "") => Measured::Dof(displacement(&here.then("monitor"), name, monitors)?),
+        ("", name) => Measured::Slip(slave(&here.then("slip"), name, names, slaves)?),
+        _ => {
             let message = "the path is followed by a monitor or by the slip of a node, not by both";
             return Err(Fault::new(here.then("slip"), message));
         }
-        (Some(name), None) => Measured::Dof(displacement(&here.then("monitor"), name, monitors)?),
-        (None, Some(name)) => Measured::Slip(slave(&here.then("slip"), name, names, slaves)?),
-        (None, None) => Measured::Displacements,
     };
     let mut bounds = Vec::with_capacity(given.ends.len());
     for (k, end) in given.ends.iter().enumerate() {
