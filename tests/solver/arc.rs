@@ -4,7 +4,6 @@
 use crate::common::{self, Accepted, Run, run};
 use crate::program::{program, rows, well};
 use std::sync::Arc;
-use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::stepper::Stepper;
@@ -373,27 +372,6 @@ fn what_cannot_be_followed_is_refused_with_a_reason() {
     assert!(told(&[], "step: 0.0").contains("step is 0.0; it must be a positive number"));
     assert!(told(&[], "iterations: 0").contains("at least 1"));
     assert!(told(&[("settings.solver", "augmented")], "").contains("condensed interface"));
-}
-
-#[test]
-fn a_corner_of_the_path_sharper_than_a_right_angle_is_turned_by_the_slip_of_the_node_that_slides() {
-    // On a finer mesh the prop lets go with a snap-back: no state lies ahead of the tangent.
-    let run = along(
-        "02-two-cantilevers-rough",
-        &[
-            ("refine", "2"),
-            ("friction.angle", "10"),
-            ("settings.t_max", "consistent"),
-        ],
-    );
-    assert_eq!(last(&run).load, 2.5);
-    let slides = |accepted: &&Accepted| accepted.event.nodes[0].decision.before == Mode::Sliding;
-    let first = run.accepted.iter().position(|a| slides(&a)).unwrap();
-    assert!(run.accepted[first].load < run.accepted[first - 1].load);
-    for accepted in &run.accepted {
-        let verdict = accepted.state.start.verdict.as_ref().unwrap();
-        assert_eq!(verdict.broken().count(), 0, "{}", accepted.load);
-    }
 }
 
 /// A scene along its path; the arc after which it ends.

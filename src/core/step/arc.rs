@@ -14,12 +14,10 @@
 //! constraint, and ends exactly there. The next size follows from the number of major iterations; what fails is cut.
 
 use crate::contact::laws::Verdict;
-use crate::contact::state::ContactState;
-use crate::contact::table1::t_max;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
-use crate::model::{ArcLength, BoundUpdate, Jumps, Measured, Mode, Model};
+use crate::model::{ArcLength, BoundUpdate, Jumps, Measured, Model};
 use crate::step::event::{Failure, Outcome};
 use crate::step::pace::RATIO;
 use crate::step::state::State;
@@ -31,8 +29,6 @@ use std::sync::Arc;
 const BACK: f64 = 0.999;
 /// Motions below this part of the scene's length are none: round-off makes as much of them.
 const NOTHING: f64 = 1e-9;
-/// A sticking node within this part of its friction bound may be the next to slide.
-const NEAR: f64 = 0.99;
 /// Sizes are this exact.
 const ROUNDING: f64 = 1e-9;
 /// The next increment is at least and at most this many times the last.
@@ -164,7 +160,6 @@ impl Stepper {
         let state = &self.state;
         let Some(way) = &state.way else { return false };
         let behind = way.measured == Measured::Displacements
-            && way.corner.is_none()
             && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
         if behind || way.last.is_empty() {
             return behind;
@@ -215,14 +210,12 @@ impl Stepper {
     /// Takes an increment that is about to be accepted into the way: what it went, and the size of the next. Returns whether
     /// the history ends at a bound.
     pub(super) fn go_along(&mut self, leg: usize) -> bool {
-        let largest = self.source.moved(&self.state.u, &self.state.start.u);
         let (model, state) = (self.model.clone(), &mut self.state);
         let Some(way) = &mut state.way else {
             return false;
         };
         let (u, start) = (&state.u, &state.start.u);
-        let measured = way.corner.map_or(way.measured, Measured::Slip);
-        way.length += match measured {
+        way.length += match way.measured {
             Measured::Displacements => way.gone(u, start),
             Measured::Dof(dof) => (u[dof] - start[dof]).abs(),
             Measured::Slip(contact) => state.nodes[contact].slip.abs(),
@@ -234,11 +227,7 @@ impl Stepper {
             )
         };
         let ends = bounded(way.aim) || way.length >= farthest(&model) * (1.0 - ROUNDING);
-        let beyond = way.corner.take().is_some();
-        if beyond {
-            way.step = largest;
-        }
-        let whole = !beyond && !matches!(way.aim, Aim::Load(_)) && !bounded(way.aim);
+        let whole = !matches!(way.aim, Aim::Load(_)) && !bounded(way.aim);
         if whole {
             let wanted = f64::from(model.arc.iterations) / f64::from(state.next.major);
             way.step *= wanted.sqrt().clamp(CHANGE[0], CHANGE[1]);
@@ -268,32 +257,11 @@ impl Stepper {
         let way = self.state.way.as_mut().filter(|way| way.known)?;
         let least = least.unwrap_or(ArcLength::LEAST * way.first);
         let half = way.step / 2.0;
-        if half >= least * (1.0 - ROUNDING) {
-            way.step = half;
-            return Some(half);
-        }
-        if way.corner.is_some() || way.measured != Measured::Displacements {
+        if half < least * (1.0 - ROUNDING) {
             return None;
         }
-        // The path may have a corner here, sharper than a right angle, where a node begins to slide.
-        let (contact, sign) = self.next_to_slide()?;
-        let way = self.state.way.as_mut()?;
-        (way.corner, way.sign, way.step) = (Some(contact), sign, way.first);
-        Some(way.step)
-    }
-
-    /// The sticking contact that is next to its friction bound at the start of the increment, and the direction in which it
-    /// would slide.
-    fn next_to_slide(&self) -> Option<(usize, f64)> {
-        let friction = &self.state.controls.friction;
-        let nodes = self.state.start.nodes.iter().enumerate();
-        let part = |(contact, node): (usize, &ContactState)| {
-            let bound = t_max(&node.friction(&friction[contact]), node.f_n, 1.0);
-            let part = node.f_t.abs() / bound.abs();
-            (node.mode == Mode::Fixed && part > NEAR).then_some((part, contact, node.f_t.signum()))
-        };
-        let next = nodes.filter_map(part).max_by(|a, b| a.0.total_cmp(&b.0));
-        next.map(|(_, contact, sign)| (contact, sign))
+        way.step = half;
+        Some(half)
     }
 }
 
@@ -303,11 +271,6 @@ impl State {
         let start = self.start.clone();
         let Some(way) = &mut self.way else { return };
         way.begin(&start.u, self.controls.increment);
-        if let Some(contact) = way.corner {
-            let node = &mut self.nodes[contact];
-            (node.mode, node.sign) = (Mode::Sliding, way.sign);
-            node.t_max = way.sign * node.f_t.abs();
-        }
         self.load_factor = start.load_factor;
         (self.target, self.last_target) = (start.load_factor, start.load_factor);
     }

@@ -22,9 +22,6 @@ pub struct Way {
     pub aim: Aim,
     /// What is left of that for the next major iteration.
     pub left: f64,
-    /// The contact whose slip the present increment is measured by instead, since the path has a corner where it begins to
-    /// slide.
-    pub corner: Option<usize>,
     /// Whether the tangent of the present increment is known.
     pub known: bool,
     /// Direction in which what is measured goes: −1 or 1.
@@ -68,7 +65,6 @@ impl Way {
             ahead: (model.path[1] - model.path[0]).signum(),
             aim: Aim::Tangent,
             left: 0.0,
-            corner: None,
             known: false,
             sign: 1.0,
             row: Arc::default(),
@@ -109,8 +105,7 @@ impl Way {
             return;
         }
         self.left = self.sign * self.step;
-        let measured = self.corner.map_or(self.measured, Measured::Slip);
-        self.aim = match measured {
+        self.aim = match self.measured {
             Measured::Displacements => Aim::Plane,
             Measured::Dof(dof) => Aim::Dof {
                 dof,
