@@ -41,6 +41,8 @@ fn model() -> Model {
         increment: 0.1,
         least: None,
         jumps: Default::default(),
+        control: Default::default(),
+        arc: Default::default(),
         settings: Settings::default(),
         monitors: vec![],
         budget: 1e9,

@@ -111,7 +111,7 @@ impl Outputs {
 
     fn headers(&mut self, model: &Model) -> Result<Sent, Error> {
         let csv = send(&mut self.csv, || table::csv_header(model))?;
-        let trace = send(&mut self.trace, || table::TRACE_HEADER.to_owned())?;
+        let trace = send(&mut self.trace, || table::trace_header(model))?;
         Ok(self.after(first_closed(csv, trace)))
     }
 

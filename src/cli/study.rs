@@ -14,8 +14,8 @@ const MONITORS: usize = 2;
 #[command(after_help = "\
 A study file is RON, (title: \"...\", scene: \"...\", vary: [(\"history.increment\", [0.01, 0.02])],
 set: [...], x: \"u_x\", y: \"load\", about: \"...\"). Built in are fig-08-increment, fig-09-majors,
-fig-10-minors, fig-11-roles (the paper's), geometry-01, geometry-02, residual-methods, t-max-friction and
-t-max-osc.
+fig-10-minors, fig-11-roles (the paper's), geometry-01, geometry-02, limit-point-02, residual-methods,
+t-max-friction and t-max-osc.
 
 Runs that fail are results: the exit code is 0 if the study was done, 2 for bad input or usage,
 and 130 if it was interrupted; files are whole then and have what was done.")]

@@ -4,18 +4,20 @@
 //! and `-inf`.
 //!
 //! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
-//! is 1 where it ends on another branch of equilibrium than it began on, else 0.
+//! is 1 where it ends on another branch of equilibrium than it began on, else 0. With `history.control: arc` the last monitor is
+//! `arc`, the way along the path of equilibrium.
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
 //! its end. `t_max` is that of the row's own F_n, `margin` the distance of the deciding inequality from switching
 //! (infinite where none was tested). `contact` is 1; a node that is held where two sides meet has a second row, and both have
-//! what their side gives (F_n, F_t and T_max in its own frame), of all splits the one of least norm. A minor iteration
-//! that could not be solved has no rows.
+//! what their side gives (F_n, F_t and T_max in its own frame), of all splits the one of least norm. With `history.control:
+//! arc` one more column comes last, `arc`, the way along the path at the start of the increment, and where it is accepted
+//! at its end. A minor iteration that could not be solved has no rows.
 
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
-use crate::model::{Friction, Model};
+use crate::model::{Control, Friction, Model};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::study::csv::field;
 use std::fmt::Write;
@@ -48,7 +50,15 @@ pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
 }
 
 /// The first line of `--trace`.
-pub const TRACE_HEADER: &str = "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual,contact\n";
+pub fn trace_header(model: &Model) -> String {
+    let arc = match model.control {
+        Control::Load => "",
+        Control::Arc => ",arc",
+    };
+    format!(
+        "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual,contact{arc}\n"
+    )
+}
 
 /// The rows of a minor iteration; `friction` is that in force, by slave.
 pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String {
@@ -56,7 +66,7 @@ pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String
     let mut lines = String::new();
     let mut row = |slave: usize, contact: usize, r: &ContactRecord, [f_n, f_t, t_max]: [f64; 3]| {
         let d = &r.decision;
-        let _ = writeln!(
+        let _ = write!(
             lines,
             "{},{},{},{},{},{},{},{},{:?},{f_n:?},{f_t:?},{t_max:?},{:?},{:?},{residual:?},{contact}",
             at.increment,
@@ -71,6 +81,10 @@ pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String
             r.slip,
             d.margin(),
         );
+        if let Some(arc) = event.arc {
+            let _ = write!(lines, ",{arc:?}");
+        }
+        lines.push('\n');
     };
     for (slave, r) in event.nodes.iter().enumerate() {
         match r.sides(&friction[slave]) {

@@ -62,6 +62,8 @@
 //!     increment: 0.5,
 //!     least: None,
 //!     jumps: Jumps::default(),
+//!     control: Default::default(),
+//!     arc: Default::default(),
 //!     settings: Settings::default(),
 //!     monitors: Vec::new(),
 //!     budget: f64::INFINITY,

@@ -43,6 +43,8 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
             | Failure::RoundOff { .. }
             | Failure::OverConstrained { .. }
             | Failure::Leapt { .. }
+            | Failure::DoubledBack
+            | Failure::Unmoved
     );
     let finer = refines(failure).then_some(Advice::Finer);
     match scene_first {
@@ -140,6 +142,8 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
         }
         Failure::NoAnswer { .. }
         | Failure::Leapt { .. }
+        | Failure::DoubledBack
+        | Failure::Unmoved
         | Failure::RoundOff { .. }
         | Failure::OverConstrained { .. } => {}
     }
@@ -190,6 +194,13 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             ],
             _ => &["a prescribed displacement instead of the load"],
         },
+        Failure::DoubledBack => &[
+            "another measure of the path: history.arc.monitor, or history.arc.slip",
+            "a smaller history.arc.least",
+        ],
+        Failure::Unmoved => {
+            &["another measure of the path: history.arc.monitor, or history.arc.slip"]
+        }
         Failure::RoundOff { .. } => &[
             "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid",
         ],

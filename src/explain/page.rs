@@ -230,6 +230,12 @@ impl Page {
                     motion / predicted.max(f64::MIN_POSITIVE)
                 ));
             }
+            Failure::DoubledBack => self.facts.push(
+                "why: displacements and load go back on the last increment's way: the path turns by more than a right angle here, or ends".into(),
+            ),
+            Failure::Unmoved => self.facts.push(
+                "why: the tangent at the start of the increment moves other things, but not what history.arc measures".into(),
+            ),
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
         }
     }

@@ -312,6 +312,8 @@ pub fn end_words(end: &TrialEnd) -> String {
         TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
         TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
         TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
+        TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),
+        TrialEnd::Failed(Failure::Unmoved) => "does not move".into(),
         TrialEnd::Failed(Failure::RoundOff { .. }) => "round-off".into(),
         TrialEnd::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
         TrialEnd::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),

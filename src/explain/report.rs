@@ -400,6 +400,12 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         Failure::Leapt { motion, predicted } => format!(
             "a jump to another branch: it moves by {motion:.3e}, where its tangent and the increments before predict {predicted:.1e}"
         ),
+        Failure::DoubledBack => {
+            "along the path, the increment would go back the way that it came".into()
+        }
+        Failure::Unmoved => {
+            "along the path, what is measured does not move while the load does: no size can be given to the increment".into()
+        }
         Failure::RoundOff { noise } => format!(
             "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
             Norms::LOUDEST

@@ -98,6 +98,8 @@ pub fn at_once() -> History {
         increment: 1.0,
         least: None,
         jumps: Jumps::default(),
+        control: Default::default(),
+        arc: Default::default(),
     }
 }
 

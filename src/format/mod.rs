@@ -1,6 +1,6 @@
 //! The scene file as its author writes it: from its text to a [`Spec`], and from that back to a line.
 //!
-//! - [`spec`]: the types of the file; [`condensed`]: those of a file with an interface problem without bodies.
+//! - [`spec`]: the types of the file; [`arc`]: how a path is followed; [`condensed`]: those of a file with an interface problem without bodies.
 //! - [`described`]: the types, described once for [`paths`] and for the [`reference`](mod@reference), which
 //!   [`markdown`] writes.
 //! - [`notation`]: how RON is written here; [`read`]: from a text to a value; [`locate`]: from a path to its line.
@@ -9,6 +9,7 @@
 //!
 //! Whether what is written makes sense is for [`scene`](crate::scene) to say.
 
+pub mod arc;
 pub mod condensed;
 pub mod described;
 pub mod error;

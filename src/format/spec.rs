@@ -4,9 +4,11 @@
 //! [`Model`](crate::model::Model), and refuses what makes no sense. Every field is either required or has the
 //! default that its comment names.
 
+use super::arc::ArcSpec;
 use super::described::macros::described;
 use crate::model::{
-    Axis, Component, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update, least,
+    Axis, Component, Control, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
+    least,
 };
 use serde::{Deserialize, Serialize};
 
@@ -540,6 +542,12 @@ described! {
         /// What an increment does that jumps to another branch of equilibrium (`strategy: ladder`). Default: cut.
         #[serde(default, skip_serializing_if = "Jumps::is_default")]
         pub jumps: Jumps,
+        /// What drives the history from one increment to the next. Default: load.
+        #[serde(default, skip_serializing_if = "Control::is_default")]
+        pub control: Control,
+        /// How the path of equilibrium is followed, with `control: arc`. Default: along all displacements.
+        #[serde(default, skip_serializing_if = "ArcSpec::is_default")]
+        pub arc: ArcSpec,
     }
 }
 

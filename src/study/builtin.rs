@@ -26,6 +26,7 @@ const STUDIES: &[Builtin] = studies![
     "fig-11-roles",
     "geometry-01",
     "geometry-02",
+    "limit-point-02",
     "residual-methods",
     "t-max-friction",
     "t-max-osc",

@@ -30,5 +30,6 @@ pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
         }
         Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
         Watched::Drift { .. } => MonitorKind::Drift,
+        Watched::Arc => MonitorKind::Length,
     }
 }

@@ -31,6 +31,8 @@ pub enum Reason {
     RoundOff,
     /// The increment leapt to a state far from the one that was predicted.
     Jump,
+    /// The way along the path doubles back, or cannot be measured.
+    OffPath,
 }
 
 impl Reason {
@@ -47,6 +49,7 @@ impl Reason {
             Reason::NoAnswer | Reason::NotFound => 'n',
             Reason::RoundOff => 'r',
             Reason::Jump => 'b',
+            Reason::OffPath => 'p',
         }
     }
 }
@@ -64,6 +67,7 @@ impl From<&Failure> for Reason {
             Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
             Failure::Leapt { .. } => Reason::Jump,
+            Failure::DoubledBack | Failure::Unmoved => Reason::OffPath,
             Failure::RoundOff { .. } => Reason::RoundOff,
             Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
         }
@@ -85,6 +89,7 @@ impl fmt::Display for Reason {
             Reason::NotFound => "not-found",
             Reason::RoundOff => "round-off",
             Reason::Jump => "jump",
+            Reason::OffPath => "off-path",
         })
     }
 }

@@ -52,6 +52,8 @@ fn smooth(m: &[Vec<f64>], gaps: &[f64], touching: &[usize]) -> Scene {
             increment: 1.0,
             least: None,
             jumps: Default::default(),
+            control: Default::default(),
+            arc: Default::default(),
         },
         settings: by_table_2(),
     };
@@ -337,6 +339,8 @@ fn random(n: usize, random: &mut Random) -> InterfaceProblem {
             increment: 1.0,
             least: None,
             jumps: Default::default(),
+            control: Default::default(),
+            arc: Default::default(),
         },
         settings: by_table_2(),
     };

@@ -36,6 +36,8 @@ fn problem(contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
             increment: 0.25,
             least: None,
             jumps: Default::default(),
+            control: Default::default(),
+            arc: Default::default(),
         },
         settings: Settings::default(),
     }

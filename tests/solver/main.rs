@@ -30,6 +30,8 @@ mod strategies;
 mod loose;
 // Jumps to another branch are found, said and decided on; other sudden motions are none.
 mod jumps;
+// Paths are followed past limit points: closed forms, corners, bounds.
+mod arc;
 // Answers of zero, other units, stiffnesses that round-off spoils, scenes near the limits of memory.
 mod scales;
 // The examples of the library run, and write what they promise.

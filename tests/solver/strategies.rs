@@ -85,6 +85,8 @@ fn problem(seed: u64) -> Problem {
             increment: 1.0,
             least: Some(1.0),
             jumps: Jumps::default(),
+            control: Default::default(),
+            arc: Default::default(),
         },
         settings: Settings::default(),
     }

@@ -166,6 +166,14 @@ impl Source for Bodies {
         self.system.solve(&self.model, at)
     }
 
+    fn load_step(&self) -> f64 {
+        self.system.border.load_step
+    }
+
+    fn follows_paths(&self) -> bool {
+        true
+    }
+
     fn increment(&self, contact: usize) -> NodeIncrement {
         self.system.given(contact)
     }
@@ -363,6 +371,7 @@ impl Source for Bodies {
                     largest
                 }
             }),
+            Watched::Arc => at.arc,
             // The load is that of the displacements at hand, not the one that is aimed at next.
             Watched::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);

@@ -127,6 +127,8 @@ impl Constant {
             increment,
             least: None,
             jumps: Default::default(),
+            control: Default::default(),
+            arc: Default::default(),
             settings: Settings { touch, ..settings },
             monitors: Vec::new(),
             budget: f64::INFINITY,
@@ -415,6 +417,7 @@ impl Source for ConstantSource {
                 )
             }
             // Nothing is supported here.
+            Watched::Arc => at.arc,
             Watched::Reaction { .. } => 0.0,
         }
     }

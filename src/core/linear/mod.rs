@@ -6,11 +6,13 @@
 //!   large, what is nothing, and what double precision leaves.
 //! - `augmented` (eqn 9) and `reduced` (eqn 6): the two ways to solve a minor iteration; `condensation`: the bodies
 //!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `ordering`: the order of
-//!   elimination.
+//!   elimination; `bordered` and `border`: the load factor as one more unknown.
 //! - [`singular`]: why there is no solution; [`estimate`]: what a scene takes of time and memory.
 
 mod augmented;
 pub mod bodies;
+mod border;
+mod bordered;
 mod condensation;
 pub mod condensed;
 pub mod constant;

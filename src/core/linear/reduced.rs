@@ -37,6 +37,9 @@ impl System {
             let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
             self.condensed.read(s, prescribed);
         }
+        if at.along.is_some() {
+            self.find_load_step();
+        }
         if norm > SUSPICIOUS {
             return Solved::NearlySingular;
         }
@@ -91,6 +94,7 @@ impl System {
         self.frames.clear();
         let nodes = self.interfaces.iter().zip(at.contacts);
         self.frames.extend(nodes.map(|(i, node)| i.frame(node)));
+        self.border.active = false;
         if self.layout == Some(Layout::Bodies) {
             self.condensed.relation.stiffness = self.spring(model);
             self.start_rhs();
@@ -135,6 +139,14 @@ impl System {
             .relation
             .start
             .copy_from_slice(&self.x[unknowns..]);
+        self.border.active = at.along.is_some();
+        if let Some(along) = &at.along {
+            self.lay_border(model, at, along);
+            self.begin_border(along);
+        }
+        let Some(factors) = &mut self.whole else {
+            return Err(SolveError::Singular);
+        };
         let (count, size) = (2 * self.interfaces.len(), self.x.len());
         for first in (0..count).step_by(Factors::BLOCK) {
             let columns = first..count.min(first + Factors::BLOCK);
@@ -150,7 +162,14 @@ impl System {
                 .zip(self.block.chunks_exact(size))
             {
                 to.copy_from_slice(&column[unknowns..]);
+                if at.along.is_some() {
+                    self.border.extend(column);
+                }
             }
+        }
+        if at.along.is_some() {
+            self.close_border(model)?;
+            return self.bordered_norm(norm);
         }
         Ok(norm)
     }
@@ -180,6 +199,12 @@ impl System {
     pub fn recover(&mut self, model: &Model) -> Solved {
         if !self.condensed.fresh {
             return Solved::Well;
+        }
+        if self.border.active {
+            return match self.recover_bordered() {
+                Ok(()) => Solved::Well,
+                Err(_) => Solved::Not,
+            };
         }
         let done = match (self.layout, &mut self.bodies, &mut self.whole) {
             (Some(Layout::Bodies), Some(bodies), _) => {

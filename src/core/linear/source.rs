@@ -47,6 +47,54 @@ pub struct At<'a> {
     pub chosen: &'a Settings,
     /// The settings in force: the strategy is the rung that the ladder has come to.
     pub settings: Settings,
+    /// What the present major iteration is bound by where the load factor is an unknown; `target` is then the load factor
+    /// that the solve adds to. `None` under load control.
+    pub along: Option<Along<'a>>,
+    /// Arc from the start of the history to the last accepted state; 0 under load control.
+    pub arc: f64,
+}
+
+/// One equation more, for the load factor as an unknown.
+#[derive(Debug, Clone, Copy)]
+pub enum Along<'a> {
+    /// The load factor changes by this much.
+    Load {
+        /// Change of the load factor.
+        step: f64,
+    },
+    /// row · Δu = step, with an entry a degree of freedom.
+    Displacements {
+        /// Weights of the degrees of freedom.
+        row: &'a [f64],
+        /// What they add up to.
+        step: f64,
+    },
+    /// One degree of freedom changes by this much.
+    Dof {
+        /// Its number.
+        dof: usize,
+        /// Its change.
+        step: f64,
+    },
+    /// A contact's relative tangential motion is this much.
+    Slip {
+        /// Contact number.
+        contact: usize,
+        /// Motion of S* relative to S along t (length).
+        step: f64,
+    },
+}
+
+impl Along<'_> {
+    /// Right-hand side of the equation.
+    pub fn step(&self) -> f64 {
+        match *self {
+            Along::Load { step }
+            | Along::Displacements { step, .. }
+            | Along::Dof { step, .. }
+            | Along::Slip { step, .. } => step,
+        }
+    }
 }
 
 /// The last accepted state, from which the present increment started.
@@ -122,6 +170,16 @@ pub trait Source: Send {
 
     /// One minor iteration: solves for the modes of the contacts.
     fn solve(&mut self, at: &At<'_>) -> Solved;
+
+    /// What the last solve adds to the load factor where that is an unknown ([`At::along`]).
+    fn load_step(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether it can solve for the load factor; where not, a history along the path fails at once.
+    fn follows_paths(&self) -> bool {
+        false
+    }
 
     /// What the last solve gave at a contact.
     fn increment(&self, contact: usize) -> NodeIncrement;

@@ -14,6 +14,7 @@ use crate::fem::element::Assembled;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::rows;
 use crate::linalg::{Factors, Pattern, SolveError};
+use crate::linear::border::Border;
 use crate::linear::condensation::Condensation;
 use crate::linear::condensed::Condensed;
 use crate::linear::coupling::Interface;
@@ -74,6 +75,8 @@ pub struct System {
     pub(super) work: Vec<f64>,
     /// Right-hand sides of a condensation, some at a time.
     pub(super) block: Vec<f64>,
+    /// What the load factor as an unknown adds.
+    pub(super) border: Border,
     pub(super) norms: Norms,
 }
 
@@ -113,6 +116,7 @@ impl System {
             x: Vec::new(),
             work: Vec::new(),
             block: Vec::new(),
+            border: Border::default(),
             norms: Norms::default(),
         }
     }
@@ -138,7 +142,7 @@ impl System {
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
     pub fn linearise(&mut self, model: &Model, at: &At<'_>) -> Result<(), SolveError> {
-        if self.condenses(at.chosen) && self.condensable {
+        if self.condenses(at.chosen) && self.condensable && at.along.is_none() {
             self.linearise_in(Layout::Bodies, model, at)
         } else {
             self.linearise_in(Layout::Whole, model, at)
@@ -179,6 +183,17 @@ impl System {
         for p in &model.prescribed {
             self.step[p.dof] = p.value * p.scale.at(at.target) - at.u[p.dof];
         }
+        self.assemble(model, at);
+        if let (Layout::Bodies, Some(bodies)) = (layout, &mut self.bodies) {
+            bodies.turning.fill(0.0);
+        }
+        self.measure_interfaces(model, at);
+        self.balance(model, at);
+        Ok(())
+    }
+
+    /// Internal forces and stiffness of the bodies, and what prescribed motions do through it.
+    pub(super) fn assemble(&mut self, model: &Model, at: &At<'_>) {
         let out = Assembled {
             force: &mut self.force,
             size: &mut self.size,
@@ -192,12 +207,6 @@ impl System {
             history: at.accepted.history,
         };
         self.assembly.assemble(&model.dofs, moved, out);
-        if let (Layout::Bodies, Some(bodies)) = (layout, &mut self.bodies) {
-            bodies.turning.fill(0.0);
-        }
-        self.measure_interfaces(model, at);
-        self.balance(model, at);
-        Ok(())
     }
 
     /// Renews the pattern where a slave node has found another element with unknowns; rigid ones have no entries.
@@ -383,7 +392,7 @@ impl System {
     /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
     /// bodies after [`System::recover`].
     pub fn solve(&mut self, model: &Model, at: &At<'_>) -> Solved {
-        if self.condenses(at.chosen) {
+        if self.condenses(at.chosen) || at.along.is_some() {
             self.solve_condensed(model, at)
         } else {
             self.solve_augmented(model, at)

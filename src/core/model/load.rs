@@ -49,6 +49,22 @@ impl Factor {
         }
         last.1
     }
+
+    /// Its derivative by the load factor; at a kink that of the piece below.
+    pub fn slope(&self, load_factor: f64) -> f64 {
+        let points = &self.0;
+        let Some(first) = points.first() else {
+            return 1.0;
+        };
+        if load_factor < first.0 {
+            return 0.0;
+        }
+        let mut pieces = points.windows(2);
+        let piece = pieces.find(|pair| load_factor <= pair[1].0);
+        piece.map_or(0.0, |pair| {
+            (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)
+        })
+    }
 }
 
 documented! {

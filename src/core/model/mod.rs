@@ -12,6 +12,7 @@ pub mod documented;
 
 mod body;
 mod contact;
+mod control;
 mod dofs;
 mod friction;
 mod load;
@@ -20,6 +21,7 @@ mod settings;
 
 pub use body::{Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, Update};
 pub use contact::{Contact, Surface};
+pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, least};
@@ -58,6 +60,10 @@ pub struct Model {
     pub least: Option<f64>,
     /// What happens to an increment that jumps to another branch of equilibrium.
     pub jumps: Jumps,
+    /// What drives the history.
+    pub control: Control,
+    /// How the path is followed, where that drives it.
+    pub arc: ArcLength,
     /// Choices of the method, and its limits.
     pub settings: Settings,
     /// Numbers to report, in the order of the columns of outputs.
@@ -111,6 +117,8 @@ pub enum Watched {
         /// Slave numbers.
         slaves: Vec<usize>,
     },
+    /// Arc along the path of equilibrium from the start of the history, in what [`ArcLength::along`] measures.
+    Arc,
 }
 
 impl Model {

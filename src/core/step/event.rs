@@ -32,6 +32,9 @@ pub struct Event {
     pub position: Position,
     /// Load factor at the end of this increment.
     pub load_factor: f64,
+    /// Arc from the start of the history to that of this increment, and where it was accepted to its end. `None` under load
+    /// control.
+    pub arc: Option<f64>,
     /// One record a slave node, in the order of the scene.
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, about which the minor iterations are linearised.
@@ -64,7 +67,7 @@ pub enum Outcome {
     Cut {
         /// What it failed of.
         why: Failure,
-        /// Size of the part that is tried (load factor).
+        /// Size of the part that is tried (load factor; along the path in what is measured).
         size: f64,
     },
     /// The halves of an increment that may jump failed: it is started again, and taken whole, which is this size.
@@ -164,6 +167,11 @@ pub enum Failure {
         /// Round-off over loads, more than [`Norms::LOUDEST`].
         noise: f64,
     },
+    /// Along the path: the increment would go back the way that it came.
+    DoubledBack,
+    /// Along the path: what is measured does not move while the load does, so that no size can be given to it; or the source
+    /// cannot solve for the load factor ([`crate::linear::source::Source::follows_paths`]).
+    Unmoved,
     /// The increment moved beyond what its tangent and the increments before it predict: it may have jumped to another
     /// branch of equilibrium.
     Leapt {

@@ -53,6 +53,7 @@ impl Stepper {
             || !any
             || !cuts
             || self.model.jumps == Jumps::Stop
+            || self.state.way.is_some()
         {
             return None;
         }

@@ -38,6 +38,9 @@ impl Stepper {
             Failure::LadderEnded { scales, .. } => !scales,
             _ => true,
         };
+        if self.state.way.is_some() {
+            return self.cut_along(why, helps);
+        }
         let half = self.state.sub_increment.halved();
         let least = controls.least * (1.0 - ROUNDING);
         if strategy::rungs(controls.settings.strategy).is_empty()
@@ -49,6 +52,17 @@ impl Stepper {
         }
         self.restart(half);
         let (why, size) = (why.clone(), half.size());
+        Some(Outcome::Cut { why, size })
+    }
+
+    /// The same along the path, whatever the strategy: the size is the control's own.
+    fn cut_along(&mut self, why: &Failure, helps: bool) -> Option<Outcome> {
+        if !helps {
+            return None;
+        }
+        let size = self.cut_way()?;
+        self.restart(self.state.sub_increment);
+        let why = why.clone();
         Some(Outcome::Cut { why, size })
     }
 
@@ -106,6 +120,9 @@ impl Stepper {
 
     /// Starts the minor iterations of this major one again, with half the load; false if too little is left of it.
     pub(super) fn damp(&mut self) -> bool {
+        if self.state.way.is_some() {
+            return false;
+        }
         let left = self.state.target - self.state.last_target;
         let whole = self.state.load_factor - self.state.start.load_factor;
         if left.abs() < SMALLEST_PART * whole.abs() {
@@ -126,8 +143,9 @@ impl Stepper {
         jumped: bool,
     ) -> Outcome {
         let unsettled = self.state.unsettled;
-        self.settle_contacts();
         let leg = self.leg_reached();
+        let bounded = self.go_along(leg);
+        self.settle_contacts();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         start.leg = leg;
@@ -136,7 +154,7 @@ impl Stepper {
             .accept(&self.state.u, &start.u, &mut start.history);
         Arc::make_mut(&mut start.u).copy_from_slice(&self.state.u);
         start.nodes.clone_from(&self.state.nodes);
-        let last = leg + 1 == self.model.path.len();
+        let last = bounded || leg + 1 == self.model.path.len();
         if last {
             self.state.status = Status::Finished;
         } else {

@@ -132,6 +132,7 @@ impl State {
         self.load_factor = self.sub_increment.target();
         self.search = Progress::default();
         (self.target, self.last_target) = (self.load_factor, self.start.load_factor);
+        self.set_out();
         self.forget_minors();
         self.forget_majors();
     }
@@ -212,6 +213,9 @@ impl State {
             return Err(Refusal::Increment(increment));
         }
         let controls = Arc::make_mut(&mut self.controls);
+        if let Some(way) = &mut self.way {
+            way.step *= increment / controls.increment;
+        }
         controls.increment = increment;
         controls.least = least(model.least, increment).min(increment);
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);

@@ -122,6 +122,7 @@ impl Stepper {
         if self.state.next.major == 1 {
             self.state.pace.predicted = largest;
         }
+        self.take_load();
         for contact in 0..self.state.nodes.len() {
             self.take_increment(contact);
         }

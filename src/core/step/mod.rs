@@ -6,9 +6,11 @@
 //! - [`sub_increment`]: increments whole and cut; `jump`: those that end on another branch of equilibrium; `verdict`:
 //!   what becomes of a state that the judge refuses.
 //! - [`brake`], `hold`: sliding that is held back, where nothing else has helped.
+//! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come.
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
+mod arc;
 pub mod brake;
 pub mod drive;
 pub mod event;
@@ -25,6 +27,7 @@ pub mod state;
 pub mod stepper;
 pub mod sub_increment;
 mod verdict;
+pub mod way;
 
 #[cfg(test)]
 mod tests;

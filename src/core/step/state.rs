@@ -10,12 +10,13 @@ use crate::interface::method::Searched;
 use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::{Accepted, At};
 use crate::model::least;
-use crate::model::{Friction, Model, Settings, SlipCount};
+use crate::model::{Control, Friction, Model, Settings, SlipCount};
 use crate::step::brake::Brake;
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
 use crate::step::pace::Pace;
 use crate::step::sub_increment::SubIncrement;
+use crate::step::way::Way;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -68,6 +69,9 @@ pub struct State {
     /// How sliding is held back in the present attempt ([`crate::step::brake`]).
     #[serde(default, skip_serializing_if = "Brake::is_off")]
     pub brake: Brake,
+    /// How far the way along the path has come. `None` under load control.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub way: Option<Box<Way>>,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -171,7 +175,7 @@ impl State {
         };
         let sub_increment = SubIncrement::whole(model, start.place(), controls.increment);
         let target = sub_increment.target();
-        State {
+        let mut state = State {
             next: Position {
                 increment: 1,
                 attempt: 1,
@@ -195,8 +199,11 @@ impl State {
             correction: 0.0,
             pace: Pace::default(),
             brake: Brake::default(),
+            way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             status: Status::Running,
-        }
+        };
+        state.set_out();
+        state
     }
 
     /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
@@ -206,6 +213,11 @@ impl State {
             settings.slip = SlipCount::Major;
         }
         settings
+    }
+
+    /// Arc from the start of the history to that of the present increment. `None` under load control.
+    pub fn arc(&self) -> Option<f64> {
+        self.way.as_ref().map(|way| way.length)
     }
 
     /// What a source may look at.
@@ -228,6 +240,8 @@ impl State {
             brake: self.brake.stiffness,
             chosen: &self.controls.settings,
             settings: self.settings(),
+            along: self.way.as_ref().map(|way| way.along()),
+            arc: self.arc().unwrap_or(0.0),
         }
     }
 }

@@ -57,6 +57,7 @@ impl Stepper {
             event: Event {
                 position: Position::default(),
                 load_factor: 0.0,
+                arc: None,
                 nodes: Vec::with_capacity(model.contacts.len()),
                 before: Norms::default(),
                 outcome: Outcome::Minor,
@@ -89,6 +90,10 @@ impl Stepper {
         self.event.load_factor = self.state.load_factor;
         self.event.nodes.clear();
         self.event.outcome = self.iterate();
+        self.event.arc = self.state.arc();
+        if self.state.way.is_some() && self.event.outcome.ends_major() {
+            self.event.load_factor = self.state.last_target;
+        }
         if let Outcome::Failed(failure) = &self.event.outcome {
             self.state.status = Status::Failed(failure.clone());
         }
@@ -99,6 +104,9 @@ impl Stepper {
     fn iterate(&mut self) -> Outcome {
         if !self.linearise() {
             return self.fail(Failure::Singular(Singular::Unexplained));
+        }
+        if let Err(why) = self.find_tangent() {
+            return self.fail(why);
         }
         self.norms = self.source.norms(&self.state.at());
         self.event.before = self.norms;

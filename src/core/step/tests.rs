@@ -177,6 +177,8 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         increment: 0.25,
         least: None,
         jumps: Default::default(),
+        control: Default::default(),
+        arc: Default::default(),
         settings: Settings {
             solver,
             ..Settings::default()

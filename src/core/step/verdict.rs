@@ -17,9 +17,15 @@ use crate::step::stepper::Stepper;
 impl Stepper {
     /// Accepts a converged state, or does with it what the judge makes necessary.
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
+        if let Some(on) = self.turn_to_goal(after) {
+            return on;
+        }
         let verdict = self.source.judge(&self.state.at(), &after);
         let Some(worst) = worst_of(&verdict) else {
-            return self.land(after, verdict);
+            return match self.state.way {
+                Some(_) => self.land_on_way(after, verdict),
+                None => self.land(after, verdict),
+            };
         };
         if self.only_marks() {
             return self.accept(after, verdict, Some(worst), false);

@@ -3,6 +3,7 @@
 //! One file per part of the scene; each refuses what makes no sense with a [`Fault`] that has the path of the offending
 //! value.
 
+mod arc;
 mod bodies;
 mod history;
 mod interface;
@@ -70,6 +71,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
+    let arc = arc::arc(spec, &names, &monitors, &slaves)?;
     let settings = Settings {
         touch: touch(spec.settings.touch, &bodies),
         ..spec.settings
@@ -88,6 +90,8 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         increment: spec.history.increment,
         least: spec.history.least,
         jumps: spec.history.jumps,
+        control: spec.history.control,
+        arc,
         settings,
         monitors,
         budget: crate::scene::memory::free(),

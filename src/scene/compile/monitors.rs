@@ -5,8 +5,11 @@ use super::super::nodes::Names;
 use super::layout::no_rotation;
 use crate::format::error::{Fault, Path, at, quoted, some_of};
 use crate::format::spec::{Quantity, Spec};
-use crate::model::{Contact, Dofs, Monitor, Watched};
+use crate::model::{Contact, Control, Dofs, Monitor, Watched};
 use std::collections::HashMap;
+
+/// The last monitor of a history that follows the path.
+const ARC: &str = "arc";
 
 /// Columns that every CSV has.
 const RESERVED: [&str; 4] = ["increment", "load", "majors", "minors"];
@@ -33,6 +36,18 @@ pub(super) fn monitors(
         made.push(Monitor {
             name: name.clone(),
             of,
+        });
+    }
+    if spec.history.control == Control::Arc {
+        if let Some(k) = seen.get(ARC) {
+            let message = format!(
+                "the name {ARC:?} is that of the way along the path (control: arc); take another"
+            );
+            return Err(Fault::new(at!["monitors", *k, "name"], message));
+        }
+        made.push(Monitor {
+            name: ARC.to_owned(),
+            of: Watched::Arc,
         });
     }
     Ok(made)

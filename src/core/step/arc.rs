@@ -1,0 +1,320 @@
+//! Arc length: an increment goes a given way along the path of equilibrium, and the load factor is an unknown.
+//!
+//! ```text
+//! tangent    the motion for the modes and the stiffness at the start, that goes on in the direction of the increment before
+//! majors     residual at the load factor reached so far; c · Δu = s holds it to the way that the increment has to go
+//! ```
+//!
+//! c is the tangent (all increments end on the plane normal to it, a way s ahead: Riks 1979), one displacement, or the slip
+//! of one contact. The tangent's sign is that of its inner product with the increment before, and at the start of a leg that
+//! of the load towards the leg's corner; no determinant is looked at, so that limit points, where load and tangent turn, and
+//! turning points, where the displacement does, are points like others.
+//!
+//! Where a converged state is beyond the leg's corner, or a bound of the history, the increment goes on with that as its
+//! constraint, and ends exactly there. The next size follows from the number of major iterations; what fails is cut.
+
+use crate::contact::laws::Verdict;
+use crate::linear::norms::Norms;
+use crate::linear::singular::Singular;
+use crate::linear::source::Solved;
+use crate::model::{ArcLength, BoundUpdate, Jumps, Measured, Model};
+use crate::step::event::{Failure, Outcome};
+use crate::step::pace::RATIO;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use crate::step::way::Aim;
+use std::sync::Arc;
+
+/// A step that goes back the way of the one before, up to this angle (cosine of its supplement), doubles back.
+const BACK: f64 = 0.999;
+/// Motions below this part of the scene's length are none: round-off makes as much of them.
+const NOTHING: f64 = 1e-9;
+/// Sizes are this exact.
+const ROUNDING: f64 = 1e-9;
+/// The next increment is at least and at most this many times the last.
+const CHANGE: [f64; 2] = [0.5, 2.0];
+
+/// A place on the way between two states at which an increment has to end.
+struct Goal {
+    aim: Aim,
+    /// Part of the way at which it lies.
+    part: f64,
+}
+
+impl Stepper {
+    /// Finds the tangent at the start of an increment, and with it what binds the increment. Under load control, and where the
+    /// tangent is known, there is nothing to do.
+    ///
+    /// # Errors
+    /// Why there is no tangent, or none that goes anywhere.
+    pub(super) fn find_tangent(&mut self) -> Result<(), Failure> {
+        if self.state.way.as_ref().is_none_or(|way| way.known) {
+            return Ok(());
+        }
+        if !self.source.follows_paths() {
+            return Err(Failure::Unmoved);
+        }
+        let mut at = self.state.at();
+        at.settings.t_max = BoundUpdate::Consistent;
+        let solved = self.source.solve(&at);
+        if let Some(why) = self.unsolvable(solved) {
+            return Err(why);
+        }
+        if self.source.recover() == Solved::Not {
+            return Err(Failure::Singular(self.explain()));
+        }
+        let mut motion = vec![0.0; self.state.u.len()];
+        self.source.advance(&mut motion);
+        self.take_tangent(&motion)?;
+        self.linearised = false;
+        if self.linearise() {
+            Ok(())
+        } else {
+            Err(Failure::Singular(Singular::Unexplained))
+        }
+    }
+
+    /// Takes a tangent, of any size, and sets out along it.
+    fn take_tangent(&mut self, motion: &[f64]) -> Result<(), Failure> {
+        let (model, still) = (self.model.clone(), vec![0.0; motion.len()]);
+        let largest = self.source.moved(motion, &still);
+        let slip = |contact: usize| self.source.increment(contact).motion[1];
+        let Some(way) = self.state.way.as_mut() else {
+            return Ok(());
+        };
+        let (size, sign) = match way.measured {
+            Measured::Displacements => (largest, 1.0),
+            Measured::Dof(dof) => (motion[dof].abs(), motion[dof].signum()),
+            Measured::Slip(contact) => (slip(contact).abs(), slip(contact).signum()),
+        };
+        if !(largest.is_finite() && largest > 0.0 && size > NOTHING * largest) {
+            return Err(Failure::Unmoved);
+        }
+        if way.step == 0.0 {
+            way.first = model.arc.step.unwrap_or(size);
+            way.step = way.first;
+        }
+        let most = model.arc.largest.unwrap_or(ArcLength::MOST * way.first);
+        let all = farthest(&model);
+        way.step = way.step.min(most).min(all - way.length);
+        let mut row = displacements(&model, motion);
+        let square: f64 = row.iter().map(|t| t * t).sum();
+        row.iter_mut().for_each(|t| *t *= largest / square);
+        (way.row, way.sign, way.known) = (Arc::new(row), sign, true);
+        way.begin(&self.state.start.u, self.state.controls.increment);
+        Ok(())
+    }
+
+    /// Takes the load factor that the last solve found, with its displacements, into the state.
+    pub(super) fn take_load(&mut self) {
+        let state = &mut self.state;
+        let Some(way) = &mut state.way else { return };
+        let reached = match way.aim {
+            Aim::Load(to) => to,
+            _ => state.target + self.source.load_step(),
+        };
+        way.left = way.remaining(&state.u, &state.start.u);
+        (state.last_target, state.target, state.load_factor) = (reached, reached, reached);
+    }
+
+    /// Goes on from a converged state that is beyond where the increment has to end. `None` where it is not.
+    pub(super) fn turn_to_goal(&mut self, after: Norms) -> Option<Outcome> {
+        let goal = self.goal_passed()?;
+        self.aim_at(goal.aim);
+        self.next_major();
+        let settled = true;
+        Some(Outcome::Major { after, settled })
+    }
+
+    /// Accepts a state that the judge finds right, or cuts an increment that jumps or doubles back.
+    pub(super) fn land_on_way(&mut self, after: Norms, verdict: Verdict) -> Outcome {
+        let motion = self.source.moved(&self.state.u, &self.state.start.u);
+        let predicted = self.state.pace.predicted;
+        let moves = motion > NOTHING * self.model.length;
+        let leaps = moves && motion > RATIO * predicted;
+        let why = if self.doubles_back() {
+            Some(Failure::DoubledBack)
+        } else {
+            leaps.then_some(Failure::Leapt { motion, predicted })
+        };
+        let mut jumped = false;
+        if let Some(why) = why {
+            let jumps = self.model.jumps;
+            let leapt = matches!(why, Failure::Leapt { .. });
+            if !(leapt && jumps == Jumps::Accept)
+                && let Some(cut) = self.cut(&why)
+            {
+                return cut;
+            }
+            if !leapt || jumps == Jumps::Stop {
+                self.next_major();
+                return Outcome::Failed(why);
+            }
+            jumped = true;
+        }
+        self.accept(after, verdict, None, jumped)
+    }
+
+    /// Whether the state lies on the way that the increment before came, or behind its own start.
+    fn doubles_back(&self) -> bool {
+        let state = &self.state;
+        let Some(way) = &state.way else { return false };
+        let behind = way.measured == Measured::Displacements
+            && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
+        if behind || way.last.is_empty() {
+            return behind;
+        }
+        let moved = state.u.iter().zip(state.start.u.iter());
+        let moved = moved.map(|(u, start)| u - start);
+        let load = state.load_factor - state.start.load_factor;
+        goes_back(moved, &way.last) && load * way.last_load <= 0.0
+    }
+
+    /// The corner or bound that the increment has passed first.
+    fn goal_passed(&self) -> Option<Goal> {
+        let (state, model) = (&self.state, &self.model);
+        let way = state.way.as_ref()?;
+        let part = |from: f64, to: f64, goal: f64| {
+            let part = (goal - from) / (to - from);
+            (part > 0.0 && part < 1.0 && goal != to).then_some(part)
+        };
+        let corner = model.path[state.start.leg + 1];
+        let of_load = part(state.start.load_factor, state.load_factor, corner).map(|part| Goal {
+            aim: Aim::Load(corner),
+            part,
+        });
+        let bounds = model.arc.bounds.iter().filter_map(|bound| {
+            let [from, to] = [&state.start.u, &state.u].map(|u| u[bound.dof]);
+            let part = part(from, to, bound.at)?;
+            let (dof, to) = (bound.dof, bound.at);
+            Some(Goal {
+                aim: Aim::Dof { dof, to },
+                part,
+            })
+        });
+        let all = of_load.into_iter().chain(bounds);
+        let open = all.filter(|goal| goal.aim != way.aim);
+        open.min_by(|a, b| a.part.total_cmp(&b.part))
+    }
+
+    fn aim_at(&mut self, aim: Aim) {
+        let state = &mut self.state;
+        let Some(way) = &mut state.way else { return };
+        way.aim = aim;
+        way.left = match aim {
+            Aim::Load(to) => to - state.load_factor,
+            _ => way.remaining(&state.u, &state.start.u),
+        };
+    }
+
+    /// Takes an increment that is about to be accepted into the way: what it went, and the size of the next. Returns whether
+    /// the history ends at a bound.
+    pub(super) fn go_along(&mut self, leg: usize) -> bool {
+        let (model, state) = (self.model.clone(), &mut self.state);
+        let Some(way) = &mut state.way else {
+            return false;
+        };
+        let (u, start) = (&state.u, &state.start.u);
+        way.length += match way.measured {
+            Measured::Displacements => way.gone(u, start),
+            Measured::Dof(dof) => (u[dof] - start[dof]).abs(),
+            Measured::Slip(contact) => state.nodes[contact].slip.abs(),
+        };
+        let bounded = |aim: Aim| {
+            let mut bounds = model.arc.bounds.iter();
+            bounds.any(
+                |bound| matches!(aim, Aim::Dof { dof, to } if (dof, to) == (bound.dof, bound.at)),
+            )
+        };
+        let ends = bounded(way.aim) || way.length >= farthest(&model) * (1.0 - ROUNDING);
+        let whole = !matches!(way.aim, Aim::Load(_)) && !bounded(way.aim);
+        if whole {
+            let wanted = f64::from(model.arc.iterations) / f64::from(state.next.major);
+            way.step *= wanted.sqrt().clamp(CHANGE[0], CHANGE[1]);
+        }
+        let motion: Vec<f64> = u
+            .iter()
+            .zip(start.iter())
+            .map(|(u, start)| u - start)
+            .collect();
+        let mut last = displacements(&model, &motion);
+        let square: f64 = last.iter().map(|d| d * d).sum();
+        last.iter_mut().for_each(|d| *d /= square);
+        way.last_load = state.load_factor - state.start.load_factor;
+        if leg != state.start.leg || square == 0.0 {
+            last.clear();
+            if let Some(corner) = model.path.get(leg + 1) {
+                way.ahead = (corner - state.load_factor).signum();
+            }
+        }
+        (way.last, way.known) = (Arc::new(last), false);
+        ends
+    }
+
+    /// Cuts the present increment's size in half. `None` where it is at its smallest.
+    pub(super) fn cut_way(&mut self) -> Option<f64> {
+        let least = self.model.arc.least;
+        let way = self.state.way.as_mut().filter(|way| way.known)?;
+        let least = least.unwrap_or(ArcLength::LEAST * way.first);
+        let half = way.step / 2.0;
+        if half < least * (1.0 - ROUNDING) {
+            return None;
+        }
+        way.step = half;
+        Some(half)
+    }
+}
+
+impl State {
+    /// Sets out along the path from the start of the present increment.
+    pub(super) fn set_out(&mut self) {
+        let start = self.start.clone();
+        let Some(way) = &mut self.way else { return };
+        way.begin(&start.u, self.controls.increment);
+        self.load_factor = start.load_factor;
+        (self.target, self.last_target) = (start.load_factor, start.load_factor);
+    }
+}
+
+/// Whether displacements go against the last ones, within the angle of [`BACK`].
+fn goes_back(moved: impl Iterator<Item = f64>, last: &[f64]) -> bool {
+    let (mut product, mut here, mut there) = (0.0, 0.0, 0.0);
+    for (now, &then) in moved.zip(last).filter(|(_, then)| **then != 0.0) {
+        (product, here, there) = (product + now * then, here + now * now, there + then * then);
+    }
+    here > 0.0 && product < -BACK * (here * there).sqrt()
+}
+
+/// Arc at which a history ends at the latest.
+fn farthest(model: &Model) -> f64 {
+    let most = ArcLength::FARTHEST * model.length;
+    model.arc.length.unwrap_or(most)
+}
+
+/// A motion of all degrees of freedom without what is no displacement: rotations, and forces that are unknowns.
+fn displacements(model: &Model, motion: &[f64]) -> Vec<f64> {
+    let mut kept = vec![0.0; motion.len()];
+    for &first in &model.dofs.first {
+        kept[first..first + 2].copy_from_slice(&motion[first..first + 2]);
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_way_that_was_come_is_the_way_back() {
+        let last = [1.0, 0.5, 0.0, -2.0];
+        let along = |factor: f64, aside: f64| {
+            let moved = last.map(|l| factor * l);
+            goes_back(
+                [moved[0] + aside, moved[1], 9.0, moved[3]].into_iter(),
+                &last,
+            )
+        };
+        assert!(along(-1.0, 0.0) && along(-0.01, 0.0) && along(-3.0, 0.01));
+        assert!(!along(1.0, 0.0) && !along(-1.0, 0.5) && !along(0.0, 0.0));
+    }
+}

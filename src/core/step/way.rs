@@ -1,0 +1,132 @@
+//! How far a history along the path of equilibrium has come, as plain data (`arc` says how it goes on).
+
+use crate::linear::source::Along;
+use crate::model::{Measured, Model};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// How far the way along the path has come, and what the present increment is bound by.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Way {
+    /// Arc from the start of the history to that of the present increment (in what is measured).
+    pub length: f64,
+    /// Size of the present increment; 0 before the first tangent.
+    pub step: f64,
+    /// Size of the first increment.
+    pub first: f64,
+    /// What is given a size.
+    pub measured: Measured,
+    /// Direction of the load factor towards the leg's corner: −1 or 1.
+    pub ahead: f64,
+    /// What the present increment is bound by.
+    pub aim: Aim,
+    /// What is left of that for the next major iteration.
+    pub left: f64,
+    /// Whether the tangent of the present increment is known.
+    pub known: bool,
+    /// Direction in which what is measured goes: −1 or 1.
+    pub sign: f64,
+    /// Weights of the plane normal to the tangent, by degree of freedom: their sum over a motion is its size.
+    pub row: Arc<Vec<f64>>,
+    /// Displacements of the increment before, as weights; empty at the start of a leg.
+    pub last: Arc<Vec<f64>>,
+    /// Change of the load factor in it.
+    pub last_load: f64,
+}
+
+/// What binds an increment.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Aim {
+    /// The tangent is to be found.
+    Tangent,
+    /// The plane normal to the tangent.
+    Plane,
+    /// A degree of freedom comes to a value.
+    Dof {
+        /// Its number.
+        dof: usize,
+        /// The value.
+        to: f64,
+    },
+    /// The slip of a contact.
+    Slip(usize),
+    /// The load factor comes to a value.
+    Load(f64),
+}
+
+impl Way {
+    /// Before the first increment.
+    pub fn new(model: &Model) -> Self {
+        Way {
+            length: 0.0,
+            step: 0.0,
+            first: 0.0,
+            measured: model.arc.along,
+            ahead: (model.path[1] - model.path[0]).signum(),
+            aim: Aim::Tangent,
+            left: 0.0,
+            known: false,
+            sign: 1.0,
+            row: Arc::default(),
+            last: Arc::default(),
+            last_load: 0.0,
+        }
+    }
+
+    /// The equation that the next solve obeys.
+    pub(super) fn along(&self) -> Along<'_> {
+        let step = self.left;
+        match self.aim {
+            Aim::Tangent if self.last.is_empty() => Along::Load { step },
+            Aim::Tangent => Along::Displacements {
+                row: &self.last,
+                step,
+            },
+            Aim::Plane => Along::Displacements {
+                row: &self.row,
+                step,
+            },
+            Aim::Dof { dof, .. } => Along::Dof { dof, step },
+            Aim::Slip(contact) => Along::Slip { contact, step },
+            Aim::Load(_) => Along::Load { step },
+        }
+    }
+
+    /// Sets out on an increment, or on another attempt at it, from displacements `start`; `increment` is that of the load
+    /// factor.
+    pub(super) fn begin(&mut self, start: &[f64], increment: f64) {
+        if !self.known {
+            self.aim = Aim::Tangent;
+            self.left = if self.last.is_empty() {
+                self.ahead * increment
+            } else {
+                1.0
+            };
+            return;
+        }
+        self.left = self.sign * self.step;
+        self.aim = match self.measured {
+            Measured::Displacements => Aim::Plane,
+            Measured::Dof(dof) => Aim::Dof {
+                dof,
+                to: start[dof] + self.left,
+            },
+            Measured::Slip(contact) => Aim::Slip(contact),
+        };
+    }
+
+    /// What is left of the present constraint once displacements are `u`.
+    pub(super) fn remaining(&self, u: &[f64], start: &[f64]) -> f64 {
+        match self.aim {
+            Aim::Plane => self.step - self.gone(u, start),
+            Aim::Dof { dof, to } => to - u[dof],
+            Aim::Tangent | Aim::Slip(_) | Aim::Load(_) => 0.0,
+        }
+    }
+
+    /// Way from the start along the tangent.
+    pub(super) fn gone(&self, u: &[f64], start: &[f64]) -> f64 {
+        let moved = u.iter().zip(start).map(|(u, start)| u - start);
+        self.row.iter().zip(moved).map(|(c, moved)| c * moved).sum()
+    }
+}
