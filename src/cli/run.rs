@@ -11,6 +11,7 @@ use crate::explain::number::six;
 use crate::explain::page;
 use crate::explain::report;
 use crate::linear::norms::Norms;
+use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::outside::files::Output;
 use crate::outside::shown;
@@ -30,6 +31,8 @@ use std::time::{Duration, Instant};
 const MOST_WARNINGS: u32 = 10;
 /// Slave nodes whose modes and forces are told at the end.
 const MOST_SLAVES: usize = 40;
+/// Stretches of equal stability that are told at the end.
+const MOST_STRETCHES: usize = 8;
 /// Time between two lines of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
 
@@ -175,6 +178,8 @@ struct Tally<'a> {
     /// Norms of the accepted increment whose forces are known the least.
     noisiest: Norms,
     quiet: bool,
+    /// Stability of the accepted states.
+    stability: Stretches,
     /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
@@ -201,6 +206,7 @@ impl<'a> Run<'a> {
                 notes: 0,
                 noisiest: Norms::default(),
                 quiet,
+                stability: Stretches::default(),
                 monitors: Vec::new(),
                 slaves: Vec::new(),
             },
@@ -289,6 +295,9 @@ impl<'a> Run<'a> {
             self.tally.majors,
             self.tally.steps,
         ));
+        if let Some(stability) = self.tally.stability.told() {
+            tell(&stability);
+        }
         if !monitors {
             return;
         }
@@ -334,15 +343,22 @@ impl Tally<'_> {
     fn accept(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
         self.monitors.clear();
         stepper.monitors(&mut self.monitors);
+        let wanted = outputs.csv.is_some() || !self.quiet;
+        let stability = wanted.then(|| stepper.stability());
         let event = stepper.event();
         self.slaves.clone_from(&event.nodes);
         self.warn(event);
         let (minors, monitors) = (self.minors, &self.monitors);
-        let sent = send(&mut outputs.csv, || table::csv_row(event, minors, monitors));
+        let mut sent = Sent::Well;
+        if let Some(stability) = stability {
+            self.stability.add(event.load_factor, stability);
+            let row = || table::csv_row(event, minors, monitors, stability);
+            sent = send(&mut outputs.csv, row)?;
+        }
         self.accepted += 1;
         self.majors += u64::from(event.position.major);
         self.minors = 0;
-        sent
+        Ok(sent)
     }
 
     /// Tells modes and forces of the last accepted increment, for a scene that asks for no numbers itself.
@@ -403,6 +419,32 @@ impl Tally<'_> {
                 "warning: increment {increment} (load {load}) was accepted{although}"
             ));
         }
+    }
+}
+
+/// Stretches of a history whose accepted states are equally stable, each with the load that it begins at.
+#[derive(Default)]
+struct Stretches(Vec<(f64, Stability)>);
+
+impl Stretches {
+    fn add(&mut self, load: f64, stability: Stability) {
+        if self.0.last().is_none_or(|(_, last)| *last != stability) {
+            self.0.push((load, stability));
+        }
+    }
+
+    /// One line for all; `None` where nothing was accepted, and where all is stable.
+    fn told(&self) -> Option<String> {
+        if self.0.iter().all(|(_, s)| *s == Stability::Stable) {
+            return None;
+        }
+        let stretch = |(load, stability): &(f64, Stability)| format!("{stability} from load {load}");
+        let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
+        let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
+            0 => String::new(),
+            more => format!(", and {more} changes more; --csv has all"),
+        };
+        Some(format!("stability: {}{more}", first.join(", ")))
     }
 }
 

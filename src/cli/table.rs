@@ -4,7 +4,8 @@
 //! and `-inf`.
 //!
 //! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
-//! is 1 where it ends on another branch of equilibrium than it began on, else 0.
+//! is 1 where it ends on another branch of equilibrium than it began on, else 0. `stability` is that of the accepted state
+//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`.
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
@@ -12,6 +13,7 @@
 //! (infinite where none was tested). A minor iteration that could not be solved has no rows.
 
 use crate::explain::names;
+use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::step::event::{Event, Failure, Outcome};
 use crate::study::csv::field;
@@ -24,12 +26,12 @@ pub fn csv_header(model: &Model) -> String {
         line.push(',');
         line.push_str(&field(&monitor.name));
     }
-    line.push_str(",jumped\n");
+    line.push_str(",jumped,stability\n");
     line
 }
 
 /// The row of an increment that was just accepted.
-pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
+pub fn csv_row(event: &Event, minors: u64, monitors: &[f64], stability: Stability) -> String {
     let at = event.position;
     let mut line = format!(
         "{},{:?},{},{minors}",
@@ -40,7 +42,7 @@ pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
         let _ = write!(line, ",{value:?}");
     }
     let jumped = matches!(event.outcome, Outcome::Increment { jumped: true, .. });
-    line.push_str(if jumped { ",1\n" } else { ",0\n" });
+    let _ = writeln!(line, ",{},{stability}", u8::from(jumped));
     line
 }
 

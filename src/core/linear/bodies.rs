@@ -14,6 +14,7 @@ use crate::linalg::SolveError;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{self, Singular};
 use crate::linear::source::{At, Solved, Source};
+use crate::linear::stability::Stability;
 use crate::linear::system::System;
 use crate::model::{Axis, Mode, Model, Settings, Watched};
 use std::sync::Arc;
@@ -335,6 +336,10 @@ impl Source for Bodies {
             ground.find_anchor(state, ground.positions[contact.node]);
             state.slip = state.drift;
         }
+    }
+
+    fn stability(&mut self, at: &At<'_>) -> Stability {
+        self.system.stability(&self.model, at)
     }
 
     fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {

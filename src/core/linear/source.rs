@@ -14,6 +14,7 @@ use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
+use crate::linear::stability::Stability;
 use crate::model::{Friction, Settings, Watched};
 
 /// The state about which a source linearises.
@@ -179,6 +180,11 @@ pub trait Source: Send {
         _accepted: &[ContactState],
         _contacts: &mut [ContactState],
     ) {
+    }
+
+    /// Stability of the state of the last linearisation, with the modes that its contacts have.
+    fn stability(&mut self, _at: &At<'_>) -> Stability {
+        Stability::NotKnown
     }
 
     /// Value of a monitor in the state of the last linearisation.

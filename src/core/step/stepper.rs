@@ -19,6 +19,7 @@ use crate::linear::bodies::Bodies;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::{Solved, Source};
+use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::step::event::{Event, Failure, Outcome, Position};
 use crate::step::intervene::{Intervention, Refusal};
@@ -198,6 +199,15 @@ impl Stepper {
         let at = self.state.at();
         let monitors = self.model.monitors.iter();
         out.extend(monitors.map(|monitor| self.source.monitor(&monitor.of, &at)));
+    }
+
+    /// Stability of the state at the start of the present major iteration (after an accepted increment: at its end), with the
+    /// modes that its nodes have. It costs a factorization, and changes nothing.
+    pub fn stability(&mut self) -> Stability {
+        if !self.linearise() {
+            return Stability::NotKnown;
+        }
+        self.source.stability(&self.state.at())
     }
 
     /// Linearises about the present state, unless that is done; false where it cannot be.
