@@ -438,7 +438,8 @@ impl Stretches {
         if self.0.iter().all(|(_, s)| *s == Stability::Stable) {
             return None;
         }
-        let stretch = |(load, stability): &(f64, Stability)| format!("{stability} from load {load}");
+        let stretch =
+            |(load, stability): &(f64, Stability)| format!("{stability} from load {load}");
         let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
         let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
             0 => String::new(),

@@ -34,3 +34,5 @@ mod scales;
 mod examples;
 // Forces that are not unique, and matrices that are indefinite by rounding.
 mod families;
+// Stability of accepted states, against closed forms and a tangent by differences of forces.
+mod stability;

@@ -16,6 +16,7 @@ use crate::linear::singular::{self, Singular};
 use crate::linear::source::{At, Solved, Source};
 use crate::linear::stability::Stability;
 use crate::linear::system::System;
+use crate::linear::tangent::Tangent;
 use crate::model::{Axis, Mode, Model, Settings, Watched};
 use std::sync::Arc;
 
@@ -29,6 +30,8 @@ pub struct Bodies {
     model: Arc<Model>,
     system: System,
     bench: Bench,
+    /// What stability is told by, once it is asked for.
+    tangent: Option<Tangent>,
     /// Whether the stresses tell the force of each contact ([`stresses_tell`]).
     told: Vec<bool>,
     /// Whether any contact starts inside, and is pushed out over the first leg.
@@ -67,6 +70,7 @@ impl Bodies {
                 contact: vec![[0.0; 2]; nodes],
                 load: vec![0.0; model.dofs.len()],
             },
+            tangent: None,
             told: (0..contacts).map(|k| stresses_tell(&model, k)).collect(),
             overlaps: model.contacts.iter().any(|contact| contact.overlap > 0.0),
             model,
@@ -339,7 +343,11 @@ impl Source for Bodies {
     }
 
     fn stability(&mut self, at: &At<'_>) -> Stability {
-        self.system.stability(&self.model, at)
+        let (system, model) = (&self.system, &self.model);
+        let tangent = self
+            .tangent
+            .get_or_insert_with(|| Tangent::new(model, system));
+        tangent.stability(system, model, at)
     }
 
     fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {

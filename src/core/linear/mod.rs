@@ -7,7 +7,7 @@
 //! - `augmented` (eqn 9) and `reduced` (eqn 6): the two ways to solve a minor iteration; `condensation`: the bodies
 //!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `ordering`: the order of
 //!   elimination.
-//! - [`singular`]: why there is no solution; [`stability`]: which way a state of equilibrium leads; [`estimate`]: what a scene takes of time and memory.
+//! - [`singular`]: why there is no solution; [`stability`]: which way a state of equilibrium leads, by its `tangent`; [`estimate`]: what a scene takes of time and memory.
 
 mod augmented;
 pub mod bodies;
@@ -25,4 +25,5 @@ mod sizes;
 pub mod source;
 pub mod stability;
 mod system;
+mod tangent;
 mod violation;

@@ -20,7 +20,6 @@ use crate::linear::estimate::{Estimate, condensable};
 use crate::linear::norms::Norms;
 use crate::linear::sizes::Sizes;
 use crate::linear::source::{At, Solved};
-use crate::linear::stability::Tangent;
 use crate::model::{Geometry, Model, Settings};
 use std::sync::Arc;
 
@@ -45,8 +44,6 @@ pub struct System {
     /// Whether `whole` is scaled for the present linearisation.
     pub(super) scaled: bool,
     pub(super) bodies: Option<Condensation>,
-    /// What stability is told by, once it is asked for.
-    pub(super) tangent: Option<Tangent>,
     pub(super) estimate: Estimate,
     /// Whether the scene's bodies may be condensed by [`Condensation`].
     pub(super) condensable: bool,
@@ -94,7 +91,6 @@ impl System {
             whole: None,
             scaled: false,
             bodies: None,
-            tangent: None,
             estimate: Estimate::of(model),
             condensable: condensable(model),
             pairing: Vec::new(),
