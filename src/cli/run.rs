@@ -19,7 +19,7 @@ use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::scene::gaps;
 use crate::step::drive::{RunEnd, Until};
-use crate::step::event::{Event, Outcome};
+use crate::step::event::{Event, Moves, Outcome};
 use crate::step::stepper::Stepper;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -114,7 +114,7 @@ impl Outputs {
 
     fn headers(&mut self, model: &Model) -> Result<Sent, Error> {
         let csv = send(&mut self.csv, || table::csv_header(model))?;
-        let trace = send(&mut self.trace, || table::TRACE_HEADER.to_owned())?;
+        let trace = send(&mut self.trace, || table::trace_header(model))?;
         Ok(self.after(first_closed(csv, trace)))
     }
 
@@ -335,7 +335,8 @@ impl Tally<'_> {
                 let sent = first_closed(sent, self.accept(stepper, outputs)?);
                 return Ok(outputs.after(sent));
             }
-            Outcome::Minor | Outcome::Major { .. } => {}
+            Outcome::Moves(Moves::LetsGo { .. }) => self.note(event),
+            Outcome::Minor | Outcome::Major { .. } | Outcome::Moves(_) => {}
         }
         Ok(outputs.after(sent))
     }
@@ -352,7 +353,8 @@ impl Tally<'_> {
         let mut sent = Sent::Well;
         if let Some(stability) = stability {
             self.stability.add(event.load_factor, stability);
-            let row = || table::csv_row(event, minors, monitors, stability);
+            let model = &self.scene.model;
+            let row = || table::csv_row(model, event, minors, monitors, stability);
             sent = send(&mut outputs.csv, row)?;
         }
         self.accepted += 1;

@@ -5,17 +5,21 @@
 //!
 //! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
 //! is 1 where it ends on another branch of equilibrium than it began on, else 0. `stability` is that of the accepted state
-//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`.
+//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`. With
+//! `history.jumps: dynamic` there are three columns more, of the damped motion that a jump is: `let_go`, the load factor of the last
+//! equilibrium, `steps`, and `dissipated`, the work that its viscosity took.
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
 //! its end. `t_max` is that of the row's own F_n, `margin` the distance of the deciding inequality from switching
-//! (infinite where none was tested). A minor iteration that could not be solved has no rows.
+//! (infinite where none was tested). With `history.jumps: dynamic`, `drag` comes last: c / Δt of the
+//! damped motion that the row is part of, 0 outside. A minor iteration that could not be solved has no rows.
 
 use crate::explain::names;
 use crate::linear::stability::Stability;
-use crate::model::Model;
+use crate::model::{Jumps, Model};
 use crate::step::event::{Event, Failure, Outcome};
+use crate::step::motion::Motion;
 use crate::study::csv::field;
 use std::fmt::Write;
 
@@ -26,12 +30,22 @@ pub fn csv_header(model: &Model) -> String {
         line.push(',');
         line.push_str(&field(&monitor.name));
     }
-    line.push_str(",jumped,stability\n");
+    line.push_str(",jumped,stability");
+    if moves(model) {
+        line.push_str(",let_go,steps,dissipated");
+    }
+    line.push('\n');
     line
 }
 
 /// The row of an increment that was just accepted.
-pub fn csv_row(event: &Event, minors: u64, monitors: &[f64], stability: Stability) -> String {
+pub fn csv_row(
+    model: &Model,
+    event: &Event,
+    minors: u64,
+    monitors: &[f64],
+    stability: Stability,
+) -> String {
     let at = event.position;
     let mut line = format!(
         "{},{:?},{},{minors}",
@@ -41,14 +55,44 @@ pub fn csv_row(event: &Event, minors: u64, monitors: &[f64], stability: Stabilit
         // Writing to a string does not fail.
         let _ = write!(line, ",{value:?}");
     }
-    let jumped = matches!(event.outcome, Outcome::Increment { jumped: true, .. });
-    let _ = writeln!(line, ",{},{stability}", u8::from(jumped));
+    let (jumped, motion) = match event.outcome {
+        Outcome::Increment { jumped, motion, .. } => (jumped, motion),
+        _ => (false, None),
+    };
+    let _ = write!(line, ",{},{stability}", u8::from(jumped));
+    match motion {
+        Some(motion) => {
+            let Motion {
+                from,
+                steps,
+                dissipated,
+                ..
+            } = motion;
+            let _ = write!(line, ",{from:?},{steps},{dissipated:?}");
+        }
+        None if moves(model) => line.push_str(",,0,0.0"),
+        None => {}
+    }
+    line.push('\n');
     line
 }
 
+/// Whether a scene may go on in damped motions, and has columns for them.
+fn moves(model: &Model) -> bool {
+    model.jumps == Jumps::Dynamic
+}
+
 /// The first line of `--trace`.
-pub const TRACE_HEADER: &str =
-    "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual\n";
+pub fn trace_header(model: &Model) -> String {
+    let mut line =
+        "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual"
+            .to_owned();
+    if moves(model) {
+        line.push_str(",drag");
+    }
+    line.push('\n');
+    line
+}
 
 /// The rows of a minor iteration.
 pub fn trace_rows(model: &Model, event: &Event) -> String {
@@ -56,7 +100,7 @@ pub fn trace_rows(model: &Model, event: &Event) -> String {
     let mut lines = String::new();
     for (slave, r) in event.nodes.iter().enumerate() {
         let d = &r.decision;
-        let _ = writeln!(
+        let _ = write!(
             lines,
             "{},{},{},{},{},{},{},{},{:?},{:?},{:?},{:?},{:?},{:?},{residual:?}",
             at.increment,
@@ -74,6 +118,10 @@ pub fn trace_rows(model: &Model, event: &Event) -> String {
             r.slip,
             d.margin(),
         );
+        if moves(model) {
+            let _ = write!(lines, ",{:?}", event.drag);
+        }
+        lines.push('\n');
     }
     lines
 }

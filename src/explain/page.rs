@@ -230,6 +230,9 @@ impl Page {
                     motion / predicted.max(f64::MIN_POSITIVE)
                 ));
             }
+            Failure::Restless { .. } => self.facts.push(
+                "why: past the load at which equilibrium ends nothing stops what moves".into(),
+            ),
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
         }
     }

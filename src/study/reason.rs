@@ -29,6 +29,8 @@ pub enum Reason {
     NotFound,
     /// Round-off leaves no accuracy.
     RoundOff,
+    /// A damped motion came to no rest.
+    Restless,
     /// The increment leapt to a state far from the one that was predicted.
     Jump,
 }
@@ -46,6 +48,7 @@ impl Reason {
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
             Reason::RoundOff => 'r',
+            Reason::Restless => 'w',
             Reason::Jump => 'b',
         }
     }
@@ -63,6 +66,7 @@ impl From<&Failure> for Reason {
             Failure::OverConstrained { .. } => Reason::OverConstrained,
             Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
+            Failure::Restless { .. } => Reason::Restless,
             Failure::Leapt { .. } => Reason::Jump,
             Failure::RoundOff { .. } => Reason::RoundOff,
             Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
@@ -84,6 +88,7 @@ impl fmt::Display for Reason {
             Reason::NoAnswer => "no-answer",
             Reason::NotFound => "not-found",
             Reason::RoundOff => "round-off",
+            Reason::Restless => "restless",
             Reason::Jump => "jump",
         })
     }

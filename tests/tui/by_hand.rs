@@ -73,6 +73,7 @@ pub fn model(slaves: usize) -> Model {
             equations: 0,
             inner: 0,
         },
+        drag: 0.0,
         nodes,
         loads: vec![],
         prescribed: vec![],

@@ -11,6 +11,7 @@ use crate::fem::assembly::history_len;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
+use crate::linear::drag::add_drag;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{self, Singular};
 use crate::linear::source::{At, Solved, Source};
@@ -141,7 +142,7 @@ impl Source for Bodies {
 
     fn aim(&mut self, at: &At<'_>) -> bool {
         let constant = self.model.prescribed.is_empty() && !self.overlaps;
-        let holds = constant && at.accepted.history.is_empty();
+        let holds = constant && at.accepted.history.is_empty() && !self.system.is_dragged(at);
         if holds {
             self.system.aim(&self.model, at);
         }
@@ -305,6 +306,7 @@ impl Source for Bodies {
         for load in &model.loads {
             bench.load[load.dof] += load.value * load.scale.at(at.last_target);
         }
+        add_drag(model, at, &self.system.sizes, &mut bench.load);
         let forces = Forces {
             internal: self.system.internal(),
             load: &bench.load,
@@ -340,6 +342,10 @@ impl Source for Bodies {
             ground.find_anchor(state, ground.positions[contact.node]);
             state.slip = state.drift;
         }
+    }
+
+    fn damps(&self) -> bool {
+        true
     }
 
     fn stability(&mut self, at: &At<'_>) -> Stability {

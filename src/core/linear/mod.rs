@@ -6,7 +6,7 @@
 //!   large, what is nothing, and what double precision leaves.
 //! - `augmented` (eqn 9) and `reduced` (eqn 6): the two ways to solve a minor iteration; `condensation`: the bodies
 //!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `ordering`: the order of
-//!   elimination.
+//!   elimination; `drag`: what resists a damped motion.
 //! - [`singular`]: why there is no solution; [`stability`]: which way a state of equilibrium leads, by its `tangent`; [`estimate`]: what a scene takes of time and memory.
 
 mod augmented;
@@ -15,6 +15,7 @@ mod condensation;
 pub mod condensed;
 pub mod constant;
 mod coupling;
+mod drag;
 pub mod estimate;
 pub mod norms;
 mod ordering;

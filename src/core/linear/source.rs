@@ -41,6 +41,8 @@ pub struct At<'a> {
     pub entered: &'a [Input],
     /// Largest displacement change in the last major iteration over the scene's length.
     pub correction: f64,
+    /// Drag of a damped motion since the last accepted state (force by length), on every displacement.
+    pub drag: Option<f64>,
     /// The settings as the user has them.
     pub chosen: &'a Settings,
     /// The settings in force: the strategy is the rung that the ladder has come to.
@@ -180,6 +182,11 @@ pub trait Source: Send {
         _accepted: &[ContactState],
         _contacts: &mut [ContactState],
     ) {
+    }
+
+    /// Whether it takes the drag of a damped motion into account.
+    fn damps(&self) -> bool {
+        false
     }
 
     /// Stability of the state of the last linearisation, with the modes that its contacts have.

@@ -4,7 +4,8 @@
 //! It is assembled anew, whatever the minor iterations solve, and asked for only where somebody wants to know.
 
 use super::coupling::Interface;
-use super::sizes::Balanced;
+use super::drag::stiffen;
+use super::sizes::{Balanced, Sizes};
 use super::source::At;
 use super::stability::{Conditions, Dense, Stability, ZERO, sliding, smooth};
 use super::system::System;
@@ -70,7 +71,7 @@ impl Tangent {
         if last.len() > MOST {
             return None;
         }
-        self.assemble(model, at);
+        self.assemble(&system.sizes, model, at);
         let dense = self.condense(system, model, at, last.clone())?;
         let conditions = conditions(system, model, at, &last)?;
         let basis = conditions.admissible(last.len());
@@ -94,7 +95,7 @@ impl Tangent {
         (0..reached.len()).filter(|&e| reached[e]).collect()
     }
 
-    fn assemble(&mut self, model: &Model, at: &At<'_>) {
+    fn assemble(&mut self, sizes: &Sizes, model: &Model, at: &At<'_>) {
         let dofs = model.dofs.len();
         let (mut force, mut size, step) = (vec![0.0; dofs], vec![0.0; dofs], vec![0.0; dofs]);
         let mut coupling = vec![0.0; model.dofs.equations];
@@ -111,6 +112,8 @@ impl Tangent {
             history: at.accepted.history,
         };
         self.assembly.assemble(&model.dofs, moved, out);
+        let diagonal = |e: usize| self.pattern.slot(e, e);
+        stiffen(model, at, sizes, diagonal, &mut self.values);
     }
 
     fn condense(

@@ -213,6 +213,7 @@ impl State {
         let controls = Arc::make_mut(&mut self.controls);
         controls.increment = increment;
         controls.least = least(model.least, increment).min(increment);
+        self.motion = None;
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);
         self.start_again();
         Ok(())

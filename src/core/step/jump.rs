@@ -46,6 +46,13 @@ impl Stepper {
             motion,
             predicted: state.pace.expected(size),
         };
+        if jumps == Jumps::Dynamic
+            && size <= state.controls.least
+            && suspect.size > size
+            && !suspect.jumps(motion, size)
+        {
+            return self.settle(after, verdict, motion / size);
+        }
         if jumps != Jumps::Accept && !state.pace.over {
             if let Some(cut) = self.cut(&why) {
                 self.state.pace.suspect = Some(suspect);
@@ -54,7 +61,7 @@ impl Stepper {
             if suspect.size > size && !suspect.jumps(motion, size) {
                 return self.settle(after, verdict, motion / size);
             }
-            if jumps == Jumps::Stop {
+            if matches!(jumps, Jumps::Stop | Jumps::Dynamic) {
                 self.next_major();
                 return Outcome::Failed(why);
             }

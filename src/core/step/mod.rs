@@ -5,9 +5,11 @@
 //! - `minor`, `major`, `increment`: the three levels; `search`: what happens where the modes do not settle.
 //! - [`sub_increment`]: increments whole and cut; `jump`: those that end on another branch of equilibrium; `verdict`:
 //!   what becomes of a state that the judge refuses.
+//! - `damped`: damped motion past a limit point; [`motion`]: what it carries along.
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
+mod damped;
 pub mod drive;
 pub mod event;
 mod increment;
@@ -16,6 +18,7 @@ mod jump;
 mod major;
 pub mod major_history;
 mod minor;
+pub mod motion;
 pub mod pace;
 mod search;
 pub mod state;

@@ -13,6 +13,7 @@ use crate::model::least;
 use crate::model::{Friction, Model, Settings};
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
+use crate::step::motion::Motion;
 use crate::step::pace::Pace;
 use crate::step::sub_increment::SubIncrement;
 use crate::strategy;
@@ -64,6 +65,9 @@ pub struct State {
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
+    /// The damped motion past a limit point that is under way; every step of it is an attempt of the increment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -190,6 +194,7 @@ impl State {
             net: false,
             correction: 0.0,
             pace: Pace::default(),
+            motion: None,
             status: Status::Running,
         }
     }
@@ -216,6 +221,7 @@ impl State {
             friction: &self.controls.friction,
             entered: self.minor_history.first(self.nodes.len()),
             correction: self.correction,
+            drag: self.motion.and_then(|motion| motion.drag()),
             chosen: &self.controls.settings,
             settings: self.settings(),
         }

@@ -58,6 +58,7 @@ impl Stepper {
             event: Event {
                 position: Position::default(),
                 load_factor: 0.0,
+                drag: 0.0,
                 nodes: Vec::with_capacity(model.contacts.len()),
                 before: Norms::default(),
                 outcome: Outcome::Minor,
@@ -88,6 +89,7 @@ impl Stepper {
         self.state.status = Status::Running;
         self.event.position = self.state.next;
         self.event.load_factor = self.state.load_factor;
+        self.event.drag = self.state.at().drag.unwrap_or(0.0);
         self.event.nodes.clear();
         self.event.outcome = self.iterate();
         if let Outcome::Failed(failure) = &self.event.outcome {

@@ -18,6 +18,16 @@ impl Stepper {
     /// Accepts a converged state, or does with it what the judge makes necessary.
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
         let verdict = self.source.judge(&self.state.at(), &after);
+        if self.state.motion.is_some() {
+            let worst = worst_of(&verdict);
+            return match worst.filter(|found| found.law == Law::Slip && !self.state.net) {
+                Some(why) => {
+                    self.count_net_slip();
+                    Outcome::Refused { why, after }
+                }
+                None => self.end_step(after, verdict, worst),
+            };
+        }
         let Some(worst) = worst_of(&verdict) else {
             return self.land(after, verdict);
         };
