@@ -231,7 +231,7 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     }
     if let Some(motion) = motion {
         text += &format!(
-            ": a damped motion of {} steps from the equilibrium at load {}, viscosity took {}",
+            ", by a damped motion of {} steps from the equilibrium at load {}, viscosity took {}",
             motion.steps,
             motion.from,
             six(motion.dissipated)

@@ -36,3 +36,5 @@ mod examples;
 mod families;
 // Stability of accepted states, against closed forms and a tangent by differences of forces.
 mod stability;
+// Damped motions past limit points: where a scene lets go and where it rests.
+mod dynamic;

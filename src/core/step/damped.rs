@@ -39,6 +39,10 @@ const RESTING: f64 = 0.01;
 const AGAIN: f64 = 64.0;
 /// Largest drag, over the stiffness: a step that fails with it does not fail of going too far.
 const STIFFEST: f64 = 1e9;
+/// Smallest drag, over the stiffness: nodes that still do not rest without it never will.
+const SOFTEST: f64 = 1e-12;
+/// A motion shorter than this part of the scene's length is no jump: the increment failed of something else than a limit point.
+const JUMP: f64 = 1e-3;
 /// Most steps of a motion.
 const MOST_STEPS: u32 = 5000;
 
@@ -118,9 +122,10 @@ impl Stepper {
         if motion.coming_to_rest {
             // The other branch has a pace of its own.
             self.state.pace = Pace::default();
-            return self.accept(after, verdict, worst, true);
+            let jumped = motion.travelled + moved > JUMP * self.model.length;
+            return self.accept(after, verdict, worst, jumped);
         }
-        if motion.steps + 1 >= MOST_STEPS {
+        if motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
             self.next_major();
             return Outcome::Failed(Failure::Restless {
                 steps: motion.steps,
@@ -138,6 +143,7 @@ impl Stepper {
         verdict: Verdict,
     ) -> Outcome {
         motion.steps += 1;
+        motion.travelled += moved;
         motion.dissipated += motion.drag * self.square_of_motion();
         if moved < SHORT * stride {
             let room = SHORT * stride / moved.max(f64::MIN_POSITIVE);

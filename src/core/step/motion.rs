@@ -13,6 +13,8 @@ pub struct Motion {
     pub drag: f64,
     /// Steps that are done.
     pub steps: u32,
+    /// Sum of the largest displacements of these steps (length).
+    pub travelled: f64,
     /// Work that the viscosity has taken in them (force times length), never negative.
     pub dissipated: f64,
     /// Whether the present attempt is the one without drag that is to end in equilibrium.
@@ -29,6 +31,7 @@ impl Motion {
             stiffness,
             drag: stiffness,
             steps: 0,
+            travelled: 0.0,
             dissipated: 0.0,
             coming_to_rest: false,
             tried: f64::MAX,
