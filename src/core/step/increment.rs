@@ -67,7 +67,8 @@ impl Stepper {
             return controls.least;
         }
         let largest = self.model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
-        let wanted = controls.settings.limit_load * largest;
+        // The smallest half is less than twice the least.
+        let wanted = controls.settings.limit_load * largest / 2.0;
         // Halves are counted in 32 bits.
         let whole = (self.state.sub_increment.to - self.state.sub_increment.from).abs();
         wanted.max(whole * SMALLEST_HALF).min(controls.least)
