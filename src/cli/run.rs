@@ -49,6 +49,9 @@ pub struct Args {
     /// Writes the state at the end, or where the solve failed
     #[arg(long, value_name = "FILE")]
     snapshot: Option<PathBuf>,
+    /// Tells whether each accepted state is stable: a column of --csv, and a line at the end
+    #[arg(long)]
+    stability: bool,
     /// Overwrites files that exist
     #[arg(long)]
     force: bool,
@@ -67,7 +70,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             tell(&format!("warning: {warning}"));
         }
     }
-    let mut run = Run::new(&scene, args.quiet);
+    let mut run = Run::new(&scene, args);
     let end = run.go(&mut outputs, &interrupt)?;
     run.tally.progress.clear();
     let snapshot = outputs.close()?;
@@ -112,8 +115,8 @@ impl Outputs {
         })
     }
 
-    fn headers(&mut self, model: &Model) -> Result<Sent, Error> {
-        let csv = send(&mut self.csv, || table::csv_header(model))?;
+    fn headers(&mut self, model: &Model, stability: bool) -> Result<Sent, Error> {
+        let csv = send(&mut self.csv, || table::csv_header(model, stability))?;
         let trace = send(&mut self.trace, || table::trace_header(model))?;
         Ok(self.after(first_closed(csv, trace)))
     }
@@ -178,8 +181,8 @@ struct Tally<'a> {
     /// Norms of the accepted increment whose forces are known the least.
     noisiest: Norms,
     quiet: bool,
-    /// Stability of the accepted states.
-    stability: Stretches,
+    /// Stability of the accepted states, where it is asked for.
+    stability: Option<Stretches>,
     /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
@@ -192,7 +195,8 @@ type Ended = RunEnd<Closed>;
 struct Closed;
 
 impl<'a> Run<'a> {
-    fn new(scene: &'a Scene, quiet: bool) -> Self {
+    fn new(scene: &'a Scene, args: &Args) -> Self {
+        let quiet = args.quiet;
         Run {
             stepper: Stepper::new(Arc::new(scene.model.clone())),
             tally: Tally {
@@ -206,7 +210,7 @@ impl<'a> Run<'a> {
                 notes: 0,
                 noisiest: Norms::default(),
                 quiet,
-                stability: Stretches::default(),
+                stability: args.stability.then(Stretches::default),
                 monitors: Vec::new(),
                 slaves: Vec::new(),
             },
@@ -215,7 +219,8 @@ impl<'a> Run<'a> {
 
     fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<Ended, Error> {
         let Run { stepper, tally } = self;
-        if outputs.headers(&tally.scene.model)? == Sent::Closed {
+        let stability = tally.stability.is_some();
+        if outputs.headers(&tally.scene.model, stability)? == Sent::Closed {
             return Ok(RunEnd::Stopped(Closed));
         }
         let came = || interrupt.came();
@@ -295,7 +300,8 @@ impl<'a> Run<'a> {
             self.tally.majors,
             self.tally.steps,
         ));
-        if let Some(stability) = self.tally.stability.told() {
+        let stability = self.tally.stability.as_ref();
+        if let Some(stability) = stability.and_then(Stretches::told) {
             tell(&stability);
         }
         if !monitors {
@@ -344,19 +350,17 @@ impl Tally<'_> {
     fn accept(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
         self.monitors.clear();
         stepper.monitors(&mut self.monitors);
-        let wanted = outputs.csv.is_some() || !self.quiet;
-        let stability = wanted.then(|| stepper.stability());
+        let stability = self.stability.is_some().then(|| stepper.stability());
         let event = stepper.event();
         self.slaves.clone_from(&event.nodes);
         self.warn(event);
         let (minors, monitors) = (self.minors, &self.monitors);
-        let mut sent = Sent::Well;
-        if let Some(stability) = stability {
-            self.stability.add(event.load_factor, stability);
-            let model = &self.scene.model;
-            let row = || table::csv_row(model, event, minors, monitors, stability);
-            sent = send(&mut outputs.csv, row)?;
+        if let Some((stretches, stability)) = self.stability.as_mut().zip(stability) {
+            stretches.add(event.load_factor, stability);
         }
+        let model = &self.scene.model;
+        let row = || table::csv_row(model, event, minors, monitors, stability);
+        let sent = send(&mut outputs.csv, row)?;
         self.accepted += 1;
         self.majors += u64::from(event.position.major);
         self.minors = 0;
@@ -435,9 +439,9 @@ impl Stretches {
         }
     }
 
-    /// One line for all; `None` where nothing was accepted, and where all is stable.
+    /// One line for all; `None` where nothing was accepted.
     fn told(&self) -> Option<String> {
-        if self.0.iter().all(|(_, s)| *s == Stability::Stable) {
+        if self.0.is_empty() {
             return None;
         }
         let stretch =

@@ -4,10 +4,10 @@
 //! and `-inf`.
 //!
 //! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
-//! is 1 where it ends on another branch of equilibrium than it began on, else 0. `stability` is that of the accepted state
-//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`. With
-//! `history.jumps: dynamic` there are three columns more, of the damped motion that a jump is: `let_go`, the load factor of the last
-//! equilibrium, `steps`, and `dissipated`, the work that its viscosity took.
+//! is 1 where it ends on another branch of equilibrium than it began on, else 0. With `history.jumps: dynamic` there are three
+//! columns more, of the damped motion that a jump is: `let_go`, the load factor of the last equilibrium, `steps`, and
+//! `dissipated`, the work that its viscosity took. With `--stability` that of the accepted state comes last
+//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`.
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
@@ -24,15 +24,18 @@ use crate::study::csv::field;
 use std::fmt::Write;
 
 /// The first line of `--csv`.
-pub fn csv_header(model: &Model) -> String {
+pub fn csv_header(model: &Model, stability: bool) -> String {
     let mut line = "increment,load,majors,minors".to_owned();
     for monitor in &model.monitors {
         line.push(',');
         line.push_str(&field(&monitor.name));
     }
-    line.push_str(",jumped,stability");
+    line.push_str(",jumped");
     if moves(model) {
         line.push_str(",let_go,steps,dissipated");
+    }
+    if stability {
+        line.push_str(",stability");
     }
     line.push('\n');
     line
@@ -44,7 +47,7 @@ pub fn csv_row(
     event: &Event,
     minors: u64,
     monitors: &[f64],
-    stability: Stability,
+    stability: Option<Stability>,
 ) -> String {
     let at = event.position;
     let mut line = format!(
@@ -59,7 +62,7 @@ pub fn csv_row(
         Outcome::Increment { jumped, motion, .. } => (jumped, motion),
         _ => (false, None),
     };
-    let _ = write!(line, ",{},{stability}", u8::from(jumped));
+    let _ = write!(line, ",{}", u8::from(jumped));
     match motion {
         Some(motion) => {
             let Motion {
@@ -72,6 +75,9 @@ pub fn csv_row(
         }
         None if moves(model) => line.push_str(",,0,0.0"),
         None => {}
+    }
+    if let Some(stability) = stability {
+        let _ = write!(line, ",{stability}");
     }
     line.push('\n');
     line
