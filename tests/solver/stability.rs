@@ -289,7 +289,12 @@ fn independently(model: &Model, state: &State) -> (Option<Stability>, f64) {
     let conditions = balance.conditions();
     let matrix = balance.derivative();
     let multipliers = conditions + model.dofs.inner;
-    let sign = matrix.determinant().signum() * if multipliers % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = matrix.determinant().signum()
+        * if multipliers.is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
     let rough = !model.contacts[0].friction.is_smooth();
     let slides = state.nodes.iter().any(|node| node.mode == Mode::Sliding);
     if rough && slides {
