@@ -53,7 +53,8 @@ impl Attempt {
                 Outcome::Increment { .. }
                 | Outcome::Cut { .. }
                 | Outcome::Leaps { .. }
-                | Outcome::Braked { .. } => ControlFlow::Break(()),
+                | Outcome::Braked { .. }
+                | Outcome::Moves(_) => ControlFlow::Break(()),
                 Outcome::Minor
                 | Outcome::Damped { .. }
                 | Outcome::Climbed { .. }

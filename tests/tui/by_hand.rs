@@ -158,6 +158,7 @@ pub fn event(position: (u32, u32, u32), nodes: Vec<ContactRecord>, outcome: Outc
         },
         load_factor: increment as f64 / 10.0,
         arc: None,
+        drag: 0.0,
         nodes,
         before: Norms::default(),
         outcome,

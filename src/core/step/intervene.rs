@@ -218,6 +218,7 @@ impl State {
         }
         controls.increment = increment;
         controls.least = least(model.least, increment).min(increment);
+        self.motion = None;
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);
         self.start_again();
         Ok(())

@@ -22,6 +22,9 @@ use crate::strategy;
 
 /// Motions below this part of the scene's length are no jumps: round-off makes as much of them.
 const NOTHING: f64 = 1e-9;
+/// Before a damped motion is to follow, no increment moves beyond this part of the scene's length without its halves being
+/// looked at: on its way it may have passed a limit point.
+const LONGEST: f64 = 0.03;
 
 impl Stepper {
     /// Accepts a state that the judge finds right, or cuts the increment where it may have jumped.
@@ -30,8 +33,9 @@ impl Stepper {
         let size = (state.load_factor - state.start.load_factor).abs();
         let motion = self.source.moved(&state.u, &state.start.u);
         let looks = !strategy::rungs(state.controls.settings.strategy).is_empty();
-        let beyond =
-            looks && motion > NOTHING * self.model().length && state.pace.is_exceeded(motion, size);
+        let far = self.can_move() && motion > LONGEST * self.model().length;
+        let sudden = looks && motion > NOTHING * self.model().length;
+        let beyond = far || sudden && state.pace.is_exceeded(motion, size);
         if !beyond {
             return self.settle(after, verdict, motion / size);
         }
@@ -46,6 +50,13 @@ impl Stepper {
             motion,
             predicted: state.pace.expected(size),
         };
+        if jumps == Jumps::Dynamic
+            && size <= state.controls.least
+            && suspect.size > size
+            && !suspect.jumps(motion, size)
+        {
+            return self.settle(after, verdict, motion / size);
+        }
         if jumps != Jumps::Accept && !state.pace.over {
             if let Some(cut) = self.cut(&why) {
                 self.state.pace.suspect = Some(suspect);
@@ -54,7 +65,7 @@ impl Stepper {
             if suspect.size > size && !suspect.jumps(motion, size) {
                 return self.settle(after, verdict, motion / size);
             }
-            if jumps == Jumps::Stop {
+            if matches!(jumps, Jumps::Stop | Jumps::Dynamic) {
                 self.next_major();
                 return Outcome::Failed(why);
             }

@@ -14,6 +14,7 @@ use crate::model::{Control, Friction, Model, Settings, SlipCount};
 use crate::step::brake::Brake;
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
+use crate::step::motion::Motion;
 use crate::step::pace::Pace;
 use crate::step::sub_increment::SubIncrement;
 use crate::step::way::Way;
@@ -72,6 +73,9 @@ pub struct State {
     /// How far the way along the path has come. `None` under load control.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Box<Way>>,
+    /// The damped motion past a limit point that is under way; every step of it is an attempt of the increment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -200,6 +204,7 @@ impl State {
             pace: Pace::default(),
             brake: Brake::default(),
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
+            motion: None,
             status: Status::Running,
         };
         state.set_out();
@@ -238,6 +243,7 @@ impl State {
             entered: self.minor_history.first(self.nodes.len()),
             correction: self.correction,
             brake: self.brake.stiffness,
+            drag: self.motion.and_then(|motion| motion.drag()),
             chosen: &self.controls.settings,
             settings: self.settings(),
             along: self.way.as_ref().map(|way| way.along()),

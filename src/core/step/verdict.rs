@@ -21,6 +21,16 @@ impl Stepper {
             return on;
         }
         let verdict = self.source.judge(&self.state.at(), &after);
+        if self.state.motion.is_some() {
+            let worst = worst_of(&verdict);
+            return match worst.filter(|found| found.law == Law::Slip && !self.state.net) {
+                Some(why) => {
+                    self.count_net_slip();
+                    Outcome::Refused { why, after }
+                }
+                None => self.end_step(after, verdict, worst),
+            };
+        }
         let Some(worst) = worst_of(&verdict) else {
             return match self.state.way {
                 Some(_) => self.land_on_way(after, verdict),
