@@ -112,6 +112,7 @@ mod tests {
             elements: vec![(1..=m).collect()],
             rigid: false,
             endless: false,
+            smooth: Vec::new(),
         }]
     }
 

@@ -6,11 +6,12 @@
 
 use super::shown::{NotMade, Shown};
 use super::timeline::{self, chosen, colour};
+use crate::contact::element::Element;
 use crate::contact::projection::tangent;
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
 use crate::explain::number::{plain, short};
-use crate::explain::outline::{Bounds, Point, clip, curve, extent};
+use crate::explain::outline::{self, Bounds, Point, clip, curve, extent};
 use crate::explain::round_off::RoundOff;
 use crate::model::{BodyKind, Mode, Model};
 use crate::step::event::Outcome;
@@ -294,8 +295,8 @@ fn surfaces(
 ) {
     for surface in &model.surfaces {
         let mut walked = 0.5 * SPACING;
-        for element in &surface.elements {
-            let points: Vec<Point> = element.iter().map(|&node| now(node)).collect();
+        for element in Element::all(surface) {
+            let points = outline::element(element, now);
             stroke(sheet, window, &points, &pen(2.6, BLACK));
             for chain in window.inside(&curve(&points)) {
                 for pair in chain.windows(2) {
