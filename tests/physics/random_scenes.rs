@@ -14,7 +14,7 @@ const SCENES: u64 = 60;
 
 #[test]
 fn no_accepted_increment_of_a_random_scene_is_wrong() {
-    let rows = tally::run(1, 0..SCENES, |_| {});
+    let rows = tally::run(1, 0..SCENES, &[], |_| {});
     let wrong: Vec<String> = rows
         .iter()
         .filter(|row| row.is_wrong())
@@ -28,9 +28,20 @@ fn no_accepted_increment_of_a_random_scene_is_wrong() {
 }
 
 #[test]
+fn none_is_wrong_on_smooth_surfaces_either() {
+    let smooth = [("surfaces.*.smooth".to_owned(), "true".to_owned())];
+    let rows = tally::run(1, 0..SCENES, &smooth, |_| {});
+    let wrong = rows.iter().filter(|row| row.is_wrong());
+    let wrong: Vec<String> = wrong.map(|row| row.line()).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let accepted: usize = rows.iter().map(|row| row.trial.increments).sum();
+    assert!(accepted > 500, "only {accepted} increments were judged");
+}
+
+#[test]
 fn random_scenes_are_sound_and_depend_on_seed_and_number_alone() {
     for number in 0..20 * FAMILIES.len() as u64 {
-        let (drawn, _) = tally::scene(3, number);
+        let (drawn, _) = tally::scene(3, number, &[]);
         assert_eq!(drawn, draw(3, number));
         assert_ne!(drawn.text, draw(4, number).text);
     }
