@@ -320,6 +320,7 @@ impl Tally<'_> {
             Outcome::Climbed { .. }
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
+            | Outcome::Detour { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {

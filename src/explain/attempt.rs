@@ -50,9 +50,10 @@ impl Attempt {
                     majors.push(Major::of(stepper.state(), after));
                     ControlFlow::Continue(())
                 }
-                Outcome::Increment { .. } | Outcome::Cut { .. } | Outcome::Leaps { .. } => {
-                    ControlFlow::Break(())
-                }
+                Outcome::Increment { .. }
+                | Outcome::Cut { .. }
+                | Outcome::Leaps { .. }
+                | Outcome::Detour { .. } => ControlFlow::Break(()),
                 Outcome::Minor
                 | Outcome::Damped { .. }
                 | Outcome::Climbed { .. }

@@ -104,7 +104,7 @@ fn step(
     let end = stepper.drive(until, |stepper| match &stepper.event().outcome {
         Outcome::Increment { .. } => ControlFlow::Break(Ok(stepper.state().clone())),
         // Cutting is done here.
-        Outcome::Cut { why, .. } | Outcome::Leaps { why, .. } => {
+        Outcome::Cut { why, .. } | Outcome::Leaps { why, .. } | Outcome::Detour { why, .. } => {
             ControlFlow::Break(Err(why.clone()))
         }
         _ => ControlFlow::Continue(()),

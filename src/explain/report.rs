@@ -117,6 +117,11 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: {}; nothing is near: the increment is taken whole, {size}",
             describe_failure(model, why)
         ),
+        Outcome::Detour { why, by, size } => format!(
+            "{at}: {}; the halves have failed: tries {}, from {size} on",
+            describe_failure(model, why),
+            by.words()
+        ),
         Outcome::Major { after, settled } => {
             let how = if *settled {
                 "minors settled"

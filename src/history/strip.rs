@@ -50,7 +50,7 @@ impl PointKind {
             Outcome::Minor => PointKind::Minor,
             Outcome::Damped { .. } => PointKind::Damped,
             Outcome::Climbed { .. } => PointKind::Climbed,
-            Outcome::Cut { .. } | Outcome::Leaps { .. } => PointKind::Cut,
+            Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Detour { .. } => PointKind::Cut,
             Outcome::Major { .. } => PointKind::Major,
             Outcome::Refused { .. } => PointKind::Refused,
             Outcome::Increment { last, jumped, .. } => match (last, jumped) {

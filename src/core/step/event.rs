@@ -7,6 +7,7 @@ use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::Strategy;
+use crate::step::detour::Detour;
 use crate::step::major_history::MajorCycle;
 use serde::{Deserialize, Serialize};
 
@@ -72,6 +73,15 @@ pub enum Outcome {
         /// What its halves failed of.
         why: Failure,
         /// Size of the whole (load factor).
+        size: f64,
+    },
+    /// The halves of an increment failed: it is started again on a way round.
+    Detour {
+        /// What was tried last failed of.
+        why: Failure,
+        /// The way that is tried now.
+        by: Detour,
+        /// Size of the part that is tried (load factor).
         size: f64,
     },
     /// The minor iterations are done, but equilibrium is not reached: another major iteration.

@@ -1,9 +1,10 @@
-//! Increments: accepted, cut into halves, damped, or failed.
+//! Increments: accepted, cut into halves, led round, damped, or failed.
 
 use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::Mode;
+use crate::step::detour::{Detour, Way};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
@@ -19,9 +20,16 @@ const SMALLEST_PART: f64 = 1e-6;
 impl Stepper {
     /// The increment fails; on the ladder it is cut, where that can help and it is not at its smallest yet.
     pub(super) fn fail(&mut self, why: Failure) -> Outcome {
-        match self.cut(&why) {
-            Some(cut) => cut,
-            None => Outcome::Failed(why),
+        let cut = self.cut(&why).or_else(|| self.detour(&why));
+        cut.unwrap_or(Outcome::Failed(why))
+    }
+
+    /// Whether an increment that failed so may succeed with another size.
+    pub(super) fn size_helps(&self, why: &Failure) -> bool {
+        match why {
+            Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
+            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
+            _ => true,
         }
     }
 
@@ -29,11 +37,7 @@ impl Stepper {
     /// where the increment is at its smallest.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
         let controls = &self.state.controls;
-        let helps = match why {
-            Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
-            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
-            _ => true,
-        };
+        let helps = self.size_helps(why);
         let half = self.state.sub_increment.halved();
         let least = controls.least * (1.0 - ROUNDING);
         if strategy::rungs(controls.settings.strategy).is_empty()
@@ -46,6 +50,32 @@ impl Stepper {
         self.restart(half);
         let (why, size) = (why.clone(), half.size());
         Some(Outcome::Cut { why, size })
+    }
+
+    /// Starts the increment again on the next detour. `None` where the strategy cuts nothing, where smaller increments cannot
+    /// help, and where all detours have been tried.
+    pub(super) fn detour(&mut self, why: &Failure) -> Option<Outcome> {
+        let state = &self.state;
+        let chosen = &state.controls.settings;
+        if strategy::rungs(chosen.strategy).is_empty()
+            || matches!(why, Failure::Leapt { .. })
+            || !self.size_helps(why)
+        {
+            return None;
+        }
+        let last = state.detour.map(|way| way.by);
+        let from = state.detour.map_or(state.sub_increment, |way| way.from);
+        let by = Detour::after(last, chosen)?;
+        let start = state.start.load_factor;
+        let part = match by {
+            Detour::Section => from.rest(start).section(),
+            Detour::Back => from,
+            _ => from.rest(start),
+        };
+        self.state.detour = Some(Way { by, from });
+        self.restart(part);
+        let (why, size) = (why.clone(), part.size());
+        Some(Outcome::Detour { why, by, size })
     }
 
     /// Starts the increment again, up to the end of this part.
@@ -138,6 +168,7 @@ impl Stepper {
             let (start, increment) = (&self.state.start, self.state.controls.increment);
             SubIncrement::whole(&self.model, start.place(), increment)
         };
+        self.state.detour = None;
         self.state.sub_increment = self.state.sub_increment.next().unwrap_or_else(whole);
         self.state.begin();
         self.linearised = self.linearised && self.source.aim(&self.state.at());

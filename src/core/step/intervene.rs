@@ -214,6 +214,7 @@ impl State {
         controls.increment = increment;
         controls.least = least(model.least, increment).min(increment);
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);
+        self.detour = None;
         self.start_again();
         Ok(())
     }

@@ -3,11 +3,12 @@
 //! - [`stepper`]: the algorithm box; [`state`]: plain data from which everything goes on; [`event`]: what a minor
 //!   iteration did, typed.
 //! - `minor`, `major`, `increment`: the three levels; `search`: what happens where the modes do not settle.
-//! - [`sub_increment`]: increments whole and cut; `jump`: those that end on another branch of equilibrium; `verdict`:
+//! - [`sub_increment`]: increments whole and cut; [`detour`]: ways round one whose halves all fail; `jump`: those that end on another branch of equilibrium; `verdict`:
 //!   what becomes of a state that the judge refuses.
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
+pub mod detour;
 pub mod drive;
 pub mod event;
 mod increment;

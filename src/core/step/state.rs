@@ -11,6 +11,7 @@ use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::{Accepted, At};
 use crate::model::least;
 use crate::model::{Friction, Model, Settings};
+use crate::step::detour::Way;
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
 use crate::step::pace::Pace;
@@ -64,6 +65,9 @@ pub struct State {
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
+    /// The way round that is tried, where the halves of the increment have failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detour: Option<Way>,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -190,13 +194,20 @@ impl State {
             net: false,
             correction: 0.0,
             pace: Pace::default(),
+            detour: None,
             status: Status::Running,
         }
     }
 
-    /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
+    /// The settings in force: the strategy is what the ladder has come to, T_max enters as it wants, and a detour changes
+    /// what it is to change.
     pub fn settings(&self) -> Settings {
-        strategy::in_force(&self.controls.settings, self.search.rung)
+        let rung = self.search.rung;
+        let settings = strategy::in_force(&self.controls.settings, rung);
+        match self.detour {
+            Some(way) => way.by.in_force(settings, rung),
+            None => settings,
+        }
     }
 
     /// What a source may look at.

@@ -183,6 +183,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         | Outcome::Climbed { .. }
         | Outcome::Cut { .. }
         | Outcome::Leaps { .. }
+        | Outcome::Detour { .. }
         | Outcome::Refused { .. }
         | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
         Outcome::Increment {
