@@ -72,7 +72,8 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     if let Some((number, file)) = &asked.write {
-        if let Err(error) = std::fs::write(file, tally::scene(asked.seed, *number, &[]).0.text) {
+        if let Err(error) = std::fs::write(file, outside::families::draw(asked.seed, *number).text)
+        {
             eprintln!("{file}: {error}");
             return ExitCode::from(2);
         }
@@ -88,7 +89,13 @@ fn main() -> ExitCode {
         }
     }
     if let Some(number) = asked.only {
-        let (drawn, scene) = tally::scene(asked.seed, number, &asked.set);
+        let (drawn, scene) = match tally::scene(asked.seed, number, &asked.set) {
+            Ok((drawn, scene)) => (drawn, scene),
+            Err((drawn, refused)) => {
+                println!("{}\n{refused}", drawn.text);
+                return ExitCode::from(2);
+            }
+        };
         println!("{}", drawn.text);
         show(&format!("scene {number}"), &scene);
         return ExitCode::SUCCESS;

@@ -41,7 +41,7 @@ fn none_is_wrong_on_smooth_surfaces_either() {
 #[test]
 fn random_scenes_are_sound_and_depend_on_seed_and_number_alone() {
     for number in 0..20 * FAMILIES.len() as u64 {
-        let (drawn, _) = tally::scene(3, number, &[]);
+        let (drawn, _) = tally::scene(3, number, &[]).unwrap_or_else(|(_, why)| panic!("{why}"));
         assert_eq!(drawn, draw(3, number));
         assert_ne!(drawn.text, draw(4, number).text);
     }
