@@ -7,8 +7,7 @@
 //! 1. in two parts that are no halves: first the smaller part of the golden section, which no sum of halves meets;
 //! 2. with T_max in the equations ([`crate::model::BoundUpdate::Consistent`]) from the first rung on;
 //! 3. with nodes that touch held at the foot of where they were ([`crate::model::Touch::Start`]);
-//! 4. with Newton's method on the first rung;
-//! 5. in parts that are finer than the least increment, down to a sixteenth of it.
+//! 4. with Newton's method on the first rung.
 //!
 //! Each of them is cut into halves as before, and holds until a part of the increment is accepted; then everything is as the
 //! settings have it. Where none helps, the last half is tried once more as it was at first, so that the state in which the
@@ -31,22 +30,16 @@ pub enum Detour {
     Start,
     /// Newton's method on the first rung.
     Newton,
-    /// Parts that are finer than the least increment.
-    Finer,
     /// The last half again, as it was: nothing else helped.
     Back,
 }
 
-/// How many times finer than the least increment parts may become where nothing else helps.
-pub const FINER: f64 = 16.0;
-
 /// The detours that are tried, one after the other.
-const DETOURS: [Detour; 6] = [
+const DETOURS: [Detour; 5] = [
     Detour::Section,
     Detour::Consistent,
     Detour::Start,
     Detour::Newton,
-    Detour::Finer,
     Detour::Back,
 ];
 
@@ -64,7 +57,7 @@ impl Detour {
     pub(super) fn after(last: Option<Detour>, chosen: &Settings) -> Option<Detour> {
         let next = last.map_or(0, |last| last as usize + 1);
         let changes = |detour: &Detour| match detour {
-            Detour::Section | Detour::Finer | Detour::Back => true,
+            Detour::Section | Detour::Back => true,
             _ => detour.in_force(strategy::in_force(chosen, 0), 0) != strategy::in_force(chosen, 0),
         };
         DETOURS[next.min(DETOURS.len())..]
@@ -76,7 +69,7 @@ impl Detour {
     /// What it makes of the settings in force on a rung.
     pub(super) fn in_force(self, mut settings: Settings, rung: usize) -> Settings {
         match self {
-            Detour::Section | Detour::Finer | Detour::Back => {}
+            Detour::Section | Detour::Back => {}
             Detour::Consistent => settings.t_max = BoundUpdate::Consistent,
             Detour::Start => settings.touch = Touch::Start,
             Detour::Newton if rung == 0 => {
@@ -95,7 +88,6 @@ impl Detour {
             Detour::Consistent => "T_max in the equations",
             Detour::Start => "touching nodes held where they were",
             Detour::Newton => "semismooth Newton first",
-            Detour::Finer => "finer parts than the least increment",
             Detour::Back => "the last half as it was, since nothing else helps",
         }
     }
@@ -126,7 +118,7 @@ mod tests {
             t_max: BoundUpdate::Consistent,
             ..plain
         };
-        let left = [Detour::Section, Detour::Newton, Detour::Finer, Detour::Back];
+        let left = [Detour::Section, Detour::Newton, Detour::Back];
         assert_eq!(all(&own), left);
     }
 }

@@ -4,7 +4,7 @@ use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::Mode;
-use crate::step::detour::{Detour, FINER, Way};
+use crate::step::detour::{Detour, Way};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
@@ -39,8 +39,7 @@ impl Stepper {
         let controls = &self.state.controls;
         let helps = self.size_helps(why);
         let half = self.state.sub_increment.halved();
-        let finer = self.state.detour.is_some_and(|way| way.by == Detour::Finer);
-        let least = controls.least * (1.0 - ROUNDING) / if finer { FINER } else { 1.0 };
+        let least = controls.least * (1.0 - ROUNDING);
         if strategy::rungs(controls.settings.strategy).is_empty()
             || !helps
             || half.size() < least
@@ -70,7 +69,6 @@ impl Stepper {
         let start = state.start.load_factor;
         let part = match by {
             Detour::Section => from.rest(start).section(),
-            Detour::Finer => from.halved(),
             Detour::Back => from,
             _ => from.rest(start),
         };
