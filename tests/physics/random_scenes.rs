@@ -8,6 +8,7 @@ use crate::outside::tally;
 use crate::outside::trial::End;
 use stickslip::model::Friction;
 use stickslip::scene::Scene;
+use stickslip::step::detour::Detour;
 
 /// As many as a few seconds allow.
 const SCENES: u64 = 60;
@@ -36,6 +37,22 @@ fn none_is_wrong_on_smooth_surfaces_either() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let accepted: usize = rows.iter().map(|row| row.trial.increments).sum();
     assert!(accepted > 500, "only {accepted} increments were judged");
+}
+
+/// Halves of their increments all fail; each of these scenes gets through on another way round.
+#[test]
+fn increments_whose_halves_all_fail_are_finished_on_a_way_round_and_none_is_wrong() {
+    for (number, by) in [
+        (25, Detour::Start),
+        (96, Detour::Section),
+        (142, Detour::Consistent),
+    ] {
+        let rows = tally::run(1, number..number + 1, &[], |_| {});
+        let row = &rows[0];
+        assert_eq!(row.trial.end, End::Finished, "{}", row.line());
+        assert!(row.trial.detours.contains(&by), "{}", row.line());
+        assert!(!row.is_wrong(), "{}", row.line());
+    }
 }
 
 #[test]

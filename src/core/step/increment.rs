@@ -3,7 +3,7 @@
 use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::Mode;
+use crate::model::{BodyKind, Mode};
 use crate::step::detour::{Detour, Way};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::Status;
@@ -53,13 +53,15 @@ impl Stepper {
     }
 
     /// Starts the increment again on the next detour. `None` where the strategy cuts nothing, where smaller increments cannot
-    /// help, and where all detours have been tried.
+    /// help, where all detours have been tried, and where all bodies are given by numbers: what fails there is the
+    /// interface problem itself, of which the ladder has tried all that it knows.
     pub(super) fn detour(&mut self, why: &Failure) -> Option<Outcome> {
         let state = &self.state;
         let chosen = &state.controls.settings;
         if strategy::rungs(chosen.strategy).is_empty()
             || matches!(why, Failure::Leapt { .. })
             || !self.size_helps(why)
+            || self.is_given()
         {
             return None;
         }
@@ -76,6 +78,12 @@ impl Stepper {
         self.restart(part);
         let (why, size) = (why.clone(), part.size());
         Some(Outcome::Detour { why, by, size })
+    }
+
+    /// Whether all bodies are given by numbers.
+    fn is_given(&self) -> bool {
+        let mut bodies = self.model.bodies.iter();
+        bodies.all(|body| matches!(body.kind, BodyKind::Linear(_)))
     }
 
     /// Starts the increment again, up to the end of this part.

@@ -118,3 +118,41 @@ fn tidy(load_factor: f64, path: &[f64]) -> f64 {
         load_factor
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_section_and_what_follows_it_make_up_the_increment_however_it_is_cut() {
+        let whole = SubIncrement {
+            from: 0.25,
+            to: 0.5,
+            ..SubIncrement::default()
+        };
+        // A quarter of it is done when it fails.
+        let left = SubIncrement {
+            cut: 4,
+            part: 4,
+            ..whole
+        }
+        .rest(0.3125);
+        assert_eq!((left.from, left.target(), left.cut), (0.3125, 0.5, 0));
+        let mut piece = left.section().halved();
+        let mut ends = Vec::new();
+        loop {
+            ends.push(piece.target());
+            match piece.next() {
+                Some(next) => piece = next,
+                None => break,
+            }
+        }
+        let golden = 0.3125 + 0.1875 * 0.5 * (3.0 - 5_f64.sqrt());
+        assert_eq!(ends.len(), 3);
+        assert!((ends[0] - 0.5 * (0.3125 + golden)).abs() < 1e-15);
+        assert!((ends[1] - golden).abs() < 1e-15);
+        assert_eq!(ends[2], 0.5);
+        // A section of what follows ends where that ends, too.
+        assert_eq!(left.section().section().rest, Some(0.5));
+    }
+}
