@@ -15,3 +15,6 @@ pub mod stick_point;
 pub mod table1;
 pub mod table2;
 pub mod tracking;
+
+#[cfg(test)]
+mod tests;
