@@ -59,7 +59,7 @@ impl Stepper {
         let state = &self.state;
         let chosen = &state.controls.settings;
         if strategy::rungs(chosen.strategy).is_empty()
-            || matches!(why, Failure::Leapt { .. })
+            || matches!(why, Failure::Leapt { .. }) && state.detour.is_none()
             || !self.size_helps(why)
             || self.is_given()
         {
