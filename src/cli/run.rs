@@ -337,6 +337,7 @@ impl Tally<'_> {
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
             | Outcome::Braked { .. }
+            | Outcome::Detour { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {

@@ -54,6 +54,7 @@ impl Attempt {
                 | Outcome::Cut { .. }
                 | Outcome::Leaps { .. }
                 | Outcome::Braked { .. }
+                | Outcome::Detour { .. }
                 | Outcome::Moves(_) => ControlFlow::Break(()),
                 Outcome::Minor
                 | Outcome::Damped { .. }

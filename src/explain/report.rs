@@ -154,6 +154,11 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             )
         }
         Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
+        Outcome::Detour { why, by, size } => format!(
+            "{at}: {}; the halves have failed: tries {}, from {size} on",
+            describe_failure(model, why),
+            by.words()
+        ),
         Outcome::Major { after, settled } => {
             let how = if *settled {
                 "minors settled"

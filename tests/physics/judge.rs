@@ -43,6 +43,7 @@ impl Stage {
             elements: self.elements.clone(),
             rigid: true,
             endless: false,
+            smooth: Vec::new(),
         }];
         let slaves = [Contact {
             node: 0,

@@ -52,6 +52,7 @@ pub fn model(slaves: usize) -> Model {
             elements: vec![vec![count + 2, count + 1], vec![count + 1, count]],
             rigid: true,
             endless: false,
+            smooth: Vec::new(),
         }],
         contacts: (0..slaves)
             .map(|node| Contact {

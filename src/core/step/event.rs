@@ -7,6 +7,7 @@ use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::Strategy;
+use crate::step::detour::Detour;
 use crate::step::major_history::MajorCycle;
 use crate::step::motion::Motion;
 use serde::{Deserialize, Serialize};
@@ -96,6 +97,15 @@ pub enum Outcome {
     },
     /// A damped motion past a limit point begins, has made a step, or makes one again.
     Moves(Moves),
+    /// The halves of an increment failed: it is started again on a way round.
+    Detour {
+        /// What was tried last failed of.
+        why: Failure,
+        /// The way that is tried now.
+        by: Detour,
+        /// Size of the part that is tried (load factor).
+        size: f64,
+    },
     /// The minor iterations are done, but equilibrium is not reached: another major iteration.
     Major {
         /// Norms at the end of this major iteration.

@@ -1,9 +1,10 @@
-//! Increments: accepted, cut into halves, damped, or failed.
+//! Increments: accepted, cut into halves, led round, damped, or failed.
 
 use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::{BodyKind, Factor, Mode};
+use crate::model::{BodyKind, Factor, Jumps, Mode};
+use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome, Slow};
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
@@ -24,9 +25,22 @@ impl Stepper {
         if let Failure::LadderEnded { scales, .. } = &mut why {
             *scales = self.scales();
         }
-        match self.cut(&why).or_else(|| self.brake(&why)) {
-            Some(again) => again,
-            None => Outcome::Failed(why),
+        let again = self.cut(&why).or_else(|| self.try_otherwise(&why));
+        again.unwrap_or(Outcome::Failed(why))
+    }
+
+    /// What is tried where no smaller increment helps.
+    pub(super) fn try_otherwise(&mut self, why: &Failure) -> Option<Outcome> {
+        self.detour(why).or_else(|| self.brake(why))
+    }
+
+    /// Whether an increment that failed so may succeed with another size.
+    fn size_helps(&self, why: &Failure) -> bool {
+        match why {
+            Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
+            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
+            Failure::LadderEnded { scales, .. } => !scales,
+            _ => true,
         }
     }
 
@@ -36,12 +50,7 @@ impl Stepper {
         if self.state.motion.is_some() {
             return self.slow_down(Slow::Failed(why.clone()));
         }
-        let helps = match why {
-            Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
-            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
-            Failure::LadderEnded { scales, .. } => !scales,
-            _ => true,
-        };
+        let helps = self.size_helps(why);
         if self.state.way.is_some() {
             return self.cut_along(why, helps);
         }
@@ -90,6 +99,42 @@ impl Stepper {
         // Halves are counted in 32 bits.
         let whole = (self.state.sub_increment.to - self.state.sub_increment.from).abs();
         wanted.max(whole * SMALLEST_HALF).min(controls.least)
+    }
+
+    /// Starts the increment again on the next detour. `None` where the strategy cuts nothing, where smaller increments cannot
+    /// help, where all detours have been tried, and where all bodies are given by numbers: what fails there is the
+    /// interface problem itself, of which the ladder has tried all that it knows.
+    pub(super) fn detour(&mut self, why: &Failure) -> Option<Outcome> {
+        let state = &self.state;
+        let chosen = &state.controls.settings;
+        if strategy::rungs(chosen.strategy).is_empty()
+            || matches!(why, Failure::Leapt { .. }) && state.detour.is_none()
+            || !self.size_helps(why)
+            || state.way.is_some()
+            || self.model.jumps == Jumps::Dynamic
+            || self.is_given()
+        {
+            return None;
+        }
+        let last = state.detour.map(|way| way.by);
+        let from = state.detour.map_or(state.sub_increment, |way| way.from);
+        let by = Detour::after(last, chosen)?;
+        let start = state.start.load_factor;
+        let part = match by {
+            Detour::Section => from.rest(start).section(),
+            Detour::Back => from,
+            _ => from.rest(start),
+        };
+        self.state.detour = Some(Route { by, from });
+        self.restart(part);
+        let (why, size) = (why.clone(), part.size());
+        Some(Outcome::Detour { why, by, size })
+    }
+
+    /// Whether all bodies are given by numbers.
+    fn is_given(&self) -> bool {
+        let mut bodies = self.model.bodies.iter();
+        bodies.all(|body| matches!(body.kind, BodyKind::Linear(_)))
     }
 
     /// Starts the increment again, up to the end of this part.
@@ -232,6 +277,7 @@ impl Stepper {
             let (start, increment) = (&self.state.start, self.state.controls.increment);
             SubIncrement::whole(&self.model, start.place(), increment)
         };
+        self.state.detour = None;
         self.state.sub_increment = self.state.sub_increment.next().unwrap_or_else(whole);
         self.state.begin();
         self.linearised = self.linearised && self.source.aim(&self.state.at());

@@ -9,12 +9,16 @@
 //! has shrunk by less than the fourth root is one, and is accepted marked. A change of modes, a node that opens
 //! or slides or touches, or a load that sets in, shrinks.
 //!
+//! A way round ([`crate::step::detour`]) must not jump: what lies on another branch is no answer to halves that fail, and where a
+//! structure lets go may not depend on the increment.
+//!
 //! Near a limit point the halves may have no end at all, where the whole increment has one beyond. Where they fail, the suspected
 //! increment is taken whole after all, and is a jump if it still moves beyond what is expected.
 
 use crate::contact::laws::Verdict;
 use crate::linear::norms::Norms;
 use crate::model::Jumps;
+use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome};
 use crate::step::pace::{Pace, Suspect};
 use crate::step::stepper::Stepper;
@@ -57,7 +61,12 @@ impl Stepper {
         {
             return self.settle(after, verdict, motion / size);
         }
-        if jumps != Jumps::Accept && !state.pace.over {
+        let round = |route: Route| route.by != Detour::Back;
+        if jumps != Jumps::Accept && self.state.detour.is_some_and(round) {
+            self.next_major();
+            return self.fail(why);
+        }
+        if jumps != Jumps::Accept && !self.state.pace.over {
             if let Some(cut) = self.cut(&why) {
                 self.state.pace.suspect = Some(suspect);
                 return cut;

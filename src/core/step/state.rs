@@ -12,6 +12,7 @@ use crate::linear::source::{Accepted, At};
 use crate::model::least;
 use crate::model::{Control, Friction, Model, Settings, SlipCount};
 use crate::step::brake::Brake;
+use crate::step::detour::Route;
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
 use crate::step::motion::Motion;
@@ -76,6 +77,9 @@ pub struct State {
     /// The damped motion past a limit point that is under way; every step of it is an attempt of the increment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
+    /// The way round that is tried, where the halves of the increment have failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detour: Option<Route>,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -205,15 +209,21 @@ impl State {
             brake: Brake::default(),
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             motion: None,
+            detour: None,
             status: Status::Running,
         };
         state.set_out();
         state
     }
 
-    /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
+    /// The settings in force: the strategy is what the ladder has come to, T_max enters as it wants, and a detour changes
+    /// what it is to change.
     pub fn settings(&self) -> Settings {
-        let mut settings = strategy::in_force(&self.controls.settings, self.search.rung);
+        let rung = self.search.rung;
+        let mut settings = strategy::in_force(&self.controls.settings, rung);
+        if let Some(route) = self.detour {
+            settings = route.by.in_force(settings, rung);
+        }
         if self.brake.on && !self.net {
             settings.slip = SlipCount::Major;
         }
