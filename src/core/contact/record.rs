@@ -2,8 +2,6 @@
 
 use crate::contact::corner::{Side, split};
 use crate::contact::projection::SurfacePoint;
-#[cfg(doc)]
-use crate::contact::state::ContactState;
 use crate::contact::table2::Decision;
 use crate::model::{Friction, Mode};
 use serde::{Deserialize, Serialize};
@@ -36,7 +34,7 @@ pub struct ContactRecord {
     pub normal: [f64; 2],
     /// Position of S* at the start of this major iteration.
     pub foot: [f64; 2],
-    /// Half the angle between the normals of the two sides that hold it ([`ContactState::corner`]), in radians; `None` where
+    /// Half the angle between the normals of the two sides that hold it ([`crate::contact::state::ContactState::corner`]), in radians; `None` where
     /// one side alone does.
     pub corner: Option<f64>,
     /// Whether a force component (normal, tangential) is left to the supports, since no unknown takes part in its equation.

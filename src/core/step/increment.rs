@@ -216,6 +216,7 @@ impl Stepper {
         let unsettled = self.state.unsettled;
         let leg = self.leg_reached();
         let bounded = self.go_along(leg);
+        self.settle_contacts();
         let motion = self.state.motion.take();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
