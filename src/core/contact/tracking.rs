@@ -200,9 +200,9 @@ impl Ground<'_> {
             return;
         };
         if half > 0.0 {
-            node.corner = Some(half);
+            // What sticks between two elements that bend needs no corner's friction.
             if node.mode == Mode::Sliding {
-                node.mode = Mode::Fixed;
+                (node.corner, node.mode) = (Some(half), Mode::Fixed);
             }
         } else if node.mode != Mode::Sliding && corner::holds(friction, half) {
             node.corner = Some(half);
