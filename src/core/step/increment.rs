@@ -118,8 +118,11 @@ impl Stepper {
         }
         let last = state.detour.map(|way| way.by);
         let from = state.detour.map_or(state.sub_increment, |way| way.from);
-        let by = Detour::after(last, chosen)?;
         let start = state.start.load_factor;
+        let mut by = Detour::after(last, chosen)?;
+        if by == Detour::Section && from.rest(start).section().size() < state.controls.least {
+            by = Detour::after(Some(by), chosen)?;
+        }
         let part = match by {
             Detour::Section => from.rest(start).section(),
             Detour::Back => from,
