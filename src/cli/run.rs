@@ -336,7 +336,6 @@ impl Tally<'_> {
             Outcome::Climbed { .. }
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
-            | Outcome::Braked { .. }
             | Outcome::Detour { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),

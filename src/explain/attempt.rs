@@ -53,7 +53,6 @@ impl Attempt {
                 Outcome::Increment { .. }
                 | Outcome::Cut { .. }
                 | Outcome::Leaps { .. }
-                | Outcome::Braked { .. }
                 | Outcome::Detour { .. }
                 | Outcome::Moves(_) => ControlFlow::Break(()),
                 Outcome::Minor

@@ -138,11 +138,6 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: {}; nothing is near: the increment is taken whole, {size}",
             describe_failure(model, why)
         ),
-        Outcome::Braked { why, stiffness } => format!(
-            "{at}: {}; the increment is tried once more, sliding held back by {}",
-            describe_failure(model, why),
-            four(*stiffness)
-        ),
         Outcome::HeldBack { why, stiffness } => {
             let why = why.as_ref().map_or_else(
                 || "a node slides too far, or against its force".to_owned(),

@@ -53,7 +53,6 @@ impl PointKind {
             Outcome::Cut { .. }
             | Outcome::Leaps { .. }
             | Outcome::Detour { .. }
-            | Outcome::Braked { .. }
             | Outcome::Moves(_) => PointKind::Cut,
             Outcome::HeldBack { .. } => PointKind::Damped,
             Outcome::Major { .. } => PointKind::Major,

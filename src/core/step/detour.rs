@@ -7,7 +7,8 @@
 //! 1. in two parts that are no halves: first the smaller part of the golden section, which no sum of halves meets;
 //! 2. with T_max in the equations ([`crate::model::BoundUpdate::Consistent`]) from the first rung on;
 //! 3. with nodes that touch held at the foot of where they were ([`crate::model::Touch::Start`]);
-//! 4. with Newton's method on the first rung.
+//! 4. with Newton's method on the first rung;
+//! 5. with sliding held back ([`crate::step::brake`]): alone of these it may end on another branch of equilibrium, marked.
 //!
 //! Each of them is cut into halves as before, and holds until a part of the increment is accepted; then everything is as the
 //! settings have it. Where none helps, the last half is tried once more as it was at first, so that the state in which the
@@ -30,16 +31,19 @@ pub enum Detour {
     Start,
     /// Newton's method on the first rung.
     Newton,
+    /// Sliding is held back ([`crate::step::brake`]).
+    Held,
     /// The last half again, as it was: nothing else helped.
     Back,
 }
 
 /// The detours that are tried, one after the other.
-const DETOURS: [Detour; 5] = [
+const DETOURS: [Detour; 6] = [
     Detour::Section,
     Detour::Consistent,
     Detour::Start,
     Detour::Newton,
+    Detour::Held,
     Detour::Back,
 ];
 
@@ -57,7 +61,7 @@ impl Detour {
     pub(super) fn after(last: Option<Detour>, chosen: &Settings) -> Option<Detour> {
         let next = last.map_or(0, |last| last as usize + 1);
         let changes = |detour: &Detour| match detour {
-            Detour::Section | Detour::Back => true,
+            Detour::Section | Detour::Held | Detour::Back => true,
             _ => detour.in_force(strategy::in_force(chosen, 0), 0) != strategy::in_force(chosen, 0),
         };
         DETOURS[next.min(DETOURS.len())..]
@@ -69,7 +73,7 @@ impl Detour {
     /// What it makes of the settings in force on a rung.
     pub(super) fn in_force(self, mut settings: Settings, rung: usize) -> Settings {
         match self {
-            Detour::Section | Detour::Back => {}
+            Detour::Section | Detour::Held | Detour::Back => {}
             Detour::Consistent => settings.t_max = BoundUpdate::Consistent,
             Detour::Start => settings.touch = Touch::Start,
             Detour::Newton if rung == 0 => {
@@ -88,6 +92,7 @@ impl Detour {
             Detour::Consistent => "T_max in the equations",
             Detour::Start => "touching nodes held where they were",
             Detour::Newton => "semismooth Newton first",
+            Detour::Held => "sliding held back",
             Detour::Back => "the last half as it was, since nothing else helps",
         }
     }
@@ -118,7 +123,7 @@ mod tests {
             t_max: BoundUpdate::Consistent,
             ..plain
         };
-        let left = [Detour::Section, Detour::Newton, Detour::Back];
+        let left = [Detour::Section, Detour::Newton, Detour::Held, Detour::Back];
         assert_eq!(all(&own), left);
     }
 }

@@ -81,14 +81,7 @@ pub enum Outcome {
         /// Size of the whole (load factor).
         size: f64,
     },
-    /// The increment failed, and is started again with sliding held back ([`crate::step::brake`]).
-    Braked {
-        /// What the increment failed of.
-        why: Failure,
-        /// Stiffness that holds sliding back (force by length).
-        stiffness: f64,
-    },
-    /// Sliding is held back more, and the major iteration starts again.
+    /// Sliding is held back ([`crate::step::brake`]), and is so more from here on; the major iteration starts again.
     HeldBack {
         /// What its minor iterations failed of. `None` where they settled, and a node slid too far or against its force.
         why: Option<Failure>,

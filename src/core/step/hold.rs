@@ -8,7 +8,6 @@ use crate::step::brake::Brake;
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::{Progress, State};
 use crate::step::stepper::Stepper;
-use crate::strategy;
 
 /// Slip in one major iteration beyond which it is taken back, relative to the scene's length.
 const FAR: f64 = 0.02;
@@ -30,8 +29,8 @@ pub(super) struct Held {
 }
 
 impl Stepper {
-    /// Starts the increment again with sliding held back. `None` where this was tried, or cannot help.
-    pub(super) fn brake(&mut self, why: &Failure) -> Option<Outcome> {
+    /// Whether an increment that failed so may succeed where sliding is held back.
+    pub(super) fn can_hold(&self, why: &Failure) -> bool {
         let helps = matches!(
             why,
             Failure::MajorCycle(_)
@@ -40,29 +39,19 @@ impl Stepper {
                 | Failure::LadderEnded { .. }
                 | Failure::NoAnswer { .. }
                 | Failure::Refused(_)
+                | Failure::Leapt { .. }
         );
-        // What runs away drowns in round-off before it is out of all bounds.
-        let drowned = matches!(why, Failure::RoundOff { .. }) && self.state.next.major > 2;
-        let settings = &self.state.controls.settings;
         let touches = |node: &ContactState| node.mode != Mode::Free;
         let mut nodes = self.state.nodes.iter().chain(&self.state.start.nodes);
-        let any = nodes.any(touches);
-        let cuts = !strategy::rungs(settings.strategy).is_empty() && self.source.brakes();
-        if self.state.brake.on
-            || !(helps || drowned)
-            || !any
-            || !cuts
-            || matches!(self.model.jumps, Jumps::Stop | Jumps::Dynamic)
-            || self.state.way.is_some()
-        {
-            return None;
-        }
-        self.restart(self.state.sub_increment);
-        self.state.brake = Brake::new(self.source.spring());
-        Some(Outcome::Braked {
-            why: why.clone(),
-            stiffness: self.state.brake.stiffness,
-        })
+        (helps || self.drowned(why))
+            && nodes.any(touches)
+            && self.source.brakes()
+            && self.model.jumps != Jumps::Stop
+    }
+
+    /// Whether a failure by round-off is one of what ran away: it drowns in that before it is out of all bounds.
+    pub(super) fn drowned(&self, why: &Failure) -> bool {
+        matches!(why, Failure::RoundOff { .. }) && self.state.next.major > 2
     }
 
     /// The modes of a major iteration do not settle: it begins again with a greater κ, with which they do in the end. `None`

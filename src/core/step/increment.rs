@@ -4,6 +4,7 @@ use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::{BodyKind, Factor, Jumps, Mode};
+use crate::step::brake::Brake;
 use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome, Slow};
 use crate::step::state::Status;
@@ -25,13 +26,8 @@ impl Stepper {
         if let Failure::LadderEnded { scales, .. } = &mut why {
             *scales = self.scales();
         }
-        let again = self.cut(&why).or_else(|| self.try_otherwise(&why));
+        let again = self.cut(&why).or_else(|| self.detour(&why));
         again.unwrap_or(Outcome::Failed(why))
-    }
-
-    /// What is tried where no smaller increment helps.
-    pub(super) fn try_otherwise(&mut self, why: &Failure) -> Option<Outcome> {
-        self.detour(why).or_else(|| self.brake(why))
     }
 
     /// Whether an increment that failed so may succeed with another size.
@@ -102,34 +98,44 @@ impl Stepper {
     }
 
     /// Starts the increment again on the next detour. `None` where the strategy cuts nothing, where smaller increments cannot
-    /// help, where all detours have been tried, and where all bodies are given by numbers: what fails there is the
-    /// interface problem itself, of which the ladder has tried all that it knows.
+    /// help, and where all detours have been tried. Where all bodies are given by numbers it is the interface problem itself
+    /// that fails, of which the ladder has tried all that it knows; there sliding can be held back at most.
     pub(super) fn detour(&mut self, why: &Failure) -> Option<Outcome> {
         let state = &self.state;
         let chosen = &state.controls.settings;
         if strategy::rungs(chosen.strategy).is_empty()
             || matches!(why, Failure::Leapt { .. }) && state.detour.is_none()
-            || !self.size_helps(why)
+            || !(self.size_helps(why) || self.drowned(why))
             || state.way.is_some()
             || self.model.jumps == Jumps::Dynamic
-            || self.is_given()
         {
             return None;
         }
         let last = state.detour.map(|way| way.by);
         let from = state.detour.map_or(state.sub_increment, |way| way.from);
-        let start = state.start.load_factor;
+        let rest = from.rest(state.start.load_factor);
+        let too_fine = rest.section().size() < state.controls.least;
         let mut by = Detour::after(last, chosen)?;
-        if by == Detour::Section && from.rest(start).section().size() < state.controls.least {
+        let given = self.is_given();
+        let helps = |by: Detour| match by {
+            Detour::Held => self.can_hold(why),
+            Detour::Back => last.is_some(),
+            Detour::Section => !given && !too_fine,
+            _ => !given,
+        };
+        while !helps(by) {
             by = Detour::after(Some(by), chosen)?;
         }
         let part = match by {
-            Detour::Section => from.rest(start).section(),
-            Detour::Back => from,
-            _ => from.rest(start),
+            Detour::Section => rest.section(),
+            Detour::Held | Detour::Back => from,
+            _ => rest,
         };
         self.state.detour = Some(Route { by, from });
         self.restart(part);
+        if by == Detour::Held {
+            self.state.brake = Brake::new(self.source.spring());
+        }
         let (why, size) = (why.clone(), part.size());
         Some(Outcome::Detour { why, by, size })
     }

@@ -61,7 +61,7 @@ impl Stepper {
         {
             return self.settle(after, verdict, motion / size);
         }
-        let round = |route: Route| route.by != Detour::Back;
+        let round = |route: Route| !matches!(route.by, Detour::Held | Detour::Back);
         if jumps != Jumps::Accept && self.state.detour.is_some_and(round) {
             self.next_major();
             return self.fail(why);

@@ -48,7 +48,7 @@ impl Stepper {
         match self.cut(&why) {
             Some(cut) => cut,
             None if worst.law == Law::Touch => self.accept(after, verdict, Some(worst), false),
-            None => self.try_otherwise(&why).unwrap_or_else(|| {
+            None => self.detour(&why).unwrap_or_else(|| {
                 self.next_major();
                 Outcome::Failed(why)
             }),

@@ -183,7 +183,6 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         | Outcome::Climbed { .. }
         | Outcome::Cut { .. }
         | Outcome::Leaps { .. }
-        | Outcome::Braked { .. }
         | Outcome::HeldBack { .. }
         | Outcome::Moves(_)
         | Outcome::Detour { .. }
