@@ -105,8 +105,9 @@ documented! {
         Lemke,
         /// All assumptions of what the nodes do, tried; for few nodes.
         Census,
-        /// Lemke's pivoting with the friction force in two parts, from all nodes free: it ends in an answer wherever forces that
-        /// move nothing take no energy.
+        /// Lemke's pivoting with the friction force in two parts, from all nodes free. Wherever forces that move nothing take
+        /// no energy, its path ends in an answer, however long it is; each of eight starts is given up after 8 pivots per
+        /// row.
         Copositive,
         /// Projected Gauss-Seidel: Coulomb's law at one node after the other, the forces of all others held, and then a solve
         /// for the modes that this comes to.
