@@ -74,13 +74,20 @@ fn bench(strategy: &str, which: &[usize], limit: f64) {
         let scene = Scene::from_text("hyperstatic.dat", &text, &set).expect("a scene");
         let mut stepper = Stepper::new(Arc::new(scene.model));
         let from = Instant::now();
-        let (mut end, mut rung) = (false, 0);
+        let (mut end, mut climbed) = (false, Vec::new());
         while let Some(event) = stepper.step() {
             steps += 1;
             match event.outcome {
-                Outcome::Failed(_) => break,
+                Outcome::Failed(ref why) => {
+                    climbed.push(format!("{why:?}"));
+                    break;
+                }
                 Outcome::Increment { last, .. } => end = last,
-                Outcome::Climbed { .. } => rung += 1,
+                Outcome::Climbed { to, .. } => climbed.push(format!(
+                    "{} at {:.1} s",
+                    to.name(),
+                    from.elapsed().as_secs_f64()
+                )),
                 _ if from.elapsed().as_secs_f64() > limit => break,
                 _ => {}
             }
@@ -89,9 +96,8 @@ fn bench(strategy: &str, which: &[usize], limit: f64) {
         longest = longest.max(seconds);
         if !end || seconds > 1.0 {
             let contacts = problem.mu.len();
-            eprintln!(
-                "{k}: {contacts} contacts, {seconds:.1} s, {rung} rungs climbed, solved: {end}"
-            );
+            let climbed = climbed.join(", ");
+            eprintln!("{k}: {contacts} contacts, {seconds:.1} s, solved: {end}; {climbed}");
         }
         match broken(&problem, &forces(&stepper)) {
             _ if !end => failed.push(k),
