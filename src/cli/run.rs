@@ -11,6 +11,7 @@ use crate::explain::number::six;
 use crate::explain::page;
 use crate::explain::report;
 use crate::linear::norms::Norms;
+use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::outside::files::Output;
 use crate::outside::shown;
@@ -18,7 +19,7 @@ use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::scene::gaps;
 use crate::step::drive::{RunEnd, Until};
-use crate::step::event::{Event, Outcome};
+use crate::step::event::{Event, Moves, Outcome};
 use crate::step::stepper::Stepper;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -30,6 +31,8 @@ use std::time::{Duration, Instant};
 const MOST_WARNINGS: u32 = 10;
 /// Slave nodes whose modes and forces are told at the end.
 const MOST_SLAVES: usize = 40;
+/// Stretches of equal stability that are told at the end.
+const MOST_STRETCHES: usize = 8;
 /// Time between two lines of progress.
 const PROGRESS: Duration = Duration::from_millis(100);
 
@@ -46,6 +49,9 @@ pub struct Args {
     /// Writes the state at the end, or where the solve failed
     #[arg(long, value_name = "FILE")]
     snapshot: Option<PathBuf>,
+    /// Tells whether each accepted state is stable: a column of --csv, and a line at the end
+    #[arg(long)]
+    stability: bool,
     /// Overwrites files that exist
     #[arg(long)]
     force: bool,
@@ -64,7 +70,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             tell(&format!("warning: {warning}"));
         }
     }
-    let mut run = Run::new(&scene, args.quiet);
+    let mut run = Run::new(&scene, args);
     let end = run.go(&mut outputs, &interrupt)?;
     run.tally.progress.clear();
     let snapshot = outputs.close()?;
@@ -109,8 +115,8 @@ impl Outputs {
         })
     }
 
-    fn headers(&mut self, model: &Model) -> Result<Sent, Error> {
-        let csv = send(&mut self.csv, || table::csv_header(model))?;
+    fn headers(&mut self, model: &Model, stability: bool) -> Result<Sent, Error> {
+        let csv = send(&mut self.csv, || table::csv_header(model, stability))?;
         let trace = send(&mut self.trace, || table::trace_header(model))?;
         Ok(self.after(first_closed(csv, trace)))
     }
@@ -175,6 +181,8 @@ struct Tally<'a> {
     /// Norms of the accepted increment whose forces are known the least.
     noisiest: Norms,
     quiet: bool,
+    /// Stability of the accepted states, where it is asked for.
+    stability: Option<Stretches>,
     /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
@@ -187,7 +195,8 @@ type Ended = RunEnd<Closed>;
 struct Closed;
 
 impl<'a> Run<'a> {
-    fn new(scene: &'a Scene, quiet: bool) -> Self {
+    fn new(scene: &'a Scene, args: &Args) -> Self {
+        let quiet = args.quiet;
         Run {
             stepper: Stepper::new(Arc::new(scene.model.clone())),
             tally: Tally {
@@ -201,6 +210,7 @@ impl<'a> Run<'a> {
                 notes: 0,
                 noisiest: Norms::default(),
                 quiet,
+                stability: args.stability.then(Stretches::default),
                 monitors: Vec::new(),
                 slaves: Vec::new(),
             },
@@ -209,7 +219,8 @@ impl<'a> Run<'a> {
 
     fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<Ended, Error> {
         let Run { stepper, tally } = self;
-        if outputs.headers(&tally.scene.model)? == Sent::Closed {
+        let stability = tally.stability.is_some();
+        if outputs.headers(&tally.scene.model, stability)? == Sent::Closed {
             return Ok(RunEnd::Stopped(Closed));
         }
         let came = || interrupt.came();
@@ -289,6 +300,10 @@ impl<'a> Run<'a> {
             self.tally.majors,
             self.tally.steps,
         ));
+        let stability = self.tally.stability.as_ref();
+        if let Some(stability) = stability.and_then(Stretches::told) {
+            tell(&stability);
+        }
         if !monitors {
             return;
         }
@@ -322,13 +337,18 @@ impl Tally<'_> {
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
             | Outcome::Braked { .. }
+            | Outcome::Detour { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {
                 let sent = first_closed(sent, self.accept(stepper, outputs)?);
                 return Ok(outputs.after(sent));
             }
-            Outcome::Minor | Outcome::Major { .. } | Outcome::HeldBack { .. } => {}
+            Outcome::Moves(Moves::LetsGo { .. }) => self.note(event),
+            Outcome::Minor
+            | Outcome::Major { .. }
+            | Outcome::HeldBack { .. }
+            | Outcome::Moves(_) => {}
         }
         Ok(outputs.after(sent))
     }
@@ -336,15 +356,21 @@ impl Tally<'_> {
     fn accept(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
         self.monitors.clear();
         stepper.monitors(&mut self.monitors);
+        let stability = self.stability.is_some().then(|| stepper.stability());
         let event = stepper.event();
         self.slaves.clone_from(&event.nodes);
         self.warn(event);
         let (minors, monitors) = (self.minors, &self.monitors);
-        let sent = send(&mut outputs.csv, || table::csv_row(event, minors, monitors));
+        if let Some((stretches, stability)) = self.stability.as_mut().zip(stability) {
+            stretches.add(event.load_factor, stability);
+        }
+        let model = &self.scene.model;
+        let row = || table::csv_row(model, event, minors, monitors, stability);
+        let sent = send(&mut outputs.csv, row)?;
         self.accepted += 1;
         self.majors += u64::from(event.position.major);
         self.minors = 0;
-        sent
+        Ok(sent)
     }
 
     /// Tells modes and forces of the last accepted increment, for a scene that asks for no numbers itself.
@@ -405,6 +431,33 @@ impl Tally<'_> {
                 "warning: increment {increment} (load {load}) was accepted{although}"
             ));
         }
+    }
+}
+
+/// Stretches of a history whose accepted states are equally stable, each with the load that it begins at.
+#[derive(Default)]
+struct Stretches(Vec<(f64, Stability)>);
+
+impl Stretches {
+    fn add(&mut self, load: f64, stability: Stability) {
+        if self.0.last().is_none_or(|(_, last)| *last != stability) {
+            self.0.push((load, stability));
+        }
+    }
+
+    /// One line for all; `None` where nothing was accepted.
+    fn told(&self) -> Option<String> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let stretch =
+            |(load, stability): &(f64, Stability)| format!("{stability} from load {load}");
+        let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
+        let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
+            0 => String::new(),
+            more => format!(", and {more} changes more; --csv has all"),
+        };
+        Some(format!("stability: {}{more}", first.join(", ")))
     }
 }
 

@@ -4,8 +4,11 @@
 //! and `-inf`.
 //!
 //! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
-//! is 1 where it ends on another branch of equilibrium than it began on, else 0. With `history.control: arc` the last monitor is
-//! `arc`, the way along the path of equilibrium.
+//! is 1 where it ends on another branch of equilibrium than it began on, else 0. With `history.jumps: dynamic` there are three
+//! columns more, of the damped motion that a jump is: `let_go`, the load factor of the last equilibrium, `steps`, and
+//! `dissipated`, the work that its viscosity took. With `--stability` that of the accepted state comes last
+//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`. With `history.control: arc` the last
+//! monitor is `arc`, the way along the path of equilibrium.
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
@@ -13,28 +16,44 @@
 //! (infinite where none was tested). `contact` is 1; a node that is held where two sides meet has a second row, and both have
 //! what their side gives (F_n, F_t and T_max in its own frame), of all splits the one of least norm. With `history.control:
 //! arc` one more column comes last, `arc`, the way along the path at the start of the increment, and where it is accepted
-//! at its end. A minor iteration that could not be solved has no rows.
+//! at its end; with `history.jumps: dynamic` it is `drag`, c / Δt of the damped motion that the row is part of, 0
+//! outside. A minor iteration that could not be solved has no rows.
 
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
-use crate::model::{Control, Friction, Model};
+use crate::linear::stability::Stability;
+use crate::model::{Control, Friction, Jumps, Model};
 use crate::step::event::{Event, Failure, Outcome};
+use crate::step::motion::Motion;
 use crate::study::csv::field;
 use std::fmt::Write;
 
 /// The first line of `--csv`.
-pub fn csv_header(model: &Model) -> String {
+pub fn csv_header(model: &Model, stability: bool) -> String {
     let mut line = "increment,load,majors,minors".to_owned();
     for monitor in &model.monitors {
         line.push(',');
         line.push_str(&field(&monitor.name));
     }
-    line.push_str(",jumped\n");
+    line.push_str(",jumped");
+    if moves(model) {
+        line.push_str(",let_go,steps,dissipated");
+    }
+    if stability {
+        line.push_str(",stability");
+    }
+    line.push('\n');
     line
 }
 
 /// The row of an increment that was just accepted.
-pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
+pub fn csv_row(
+    model: &Model,
+    event: &Event,
+    minors: u64,
+    monitors: &[f64],
+    stability: Option<Stability>,
+) -> String {
     let at = event.position;
     let mut line = format!(
         "{},{:?},{},{minors}",
@@ -44,20 +63,49 @@ pub fn csv_row(event: &Event, minors: u64, monitors: &[f64]) -> String {
         // Writing to a string does not fail.
         let _ = write!(line, ",{value:?}");
     }
-    let jumped = matches!(event.outcome, Outcome::Increment { jumped: true, .. });
-    line.push_str(if jumped { ",1\n" } else { ",0\n" });
+    let (jumped, motion) = match event.outcome {
+        Outcome::Increment { jumped, motion, .. } => (jumped, motion),
+        _ => (false, None),
+    };
+    let _ = write!(line, ",{}", u8::from(jumped));
+    match motion {
+        Some(motion) => {
+            let Motion {
+                from,
+                steps,
+                dissipated,
+                ..
+            } = motion;
+            let _ = write!(line, ",{from:?},{steps},{dissipated:?}");
+        }
+        None if moves(model) => line.push_str(",,0,0.0"),
+        None => {}
+    }
+    if let Some(stability) = stability {
+        let _ = write!(line, ",{stability}");
+    }
+    line.push('\n');
     line
+}
+
+/// Whether a scene may go on in damped motions, and has columns for them.
+fn moves(model: &Model) -> bool {
+    model.jumps == Jumps::Dynamic
 }
 
 /// The first line of `--trace`.
 pub fn trace_header(model: &Model) -> String {
-    let arc = match model.control {
-        Control::Load => "",
-        Control::Arc => ",arc",
-    };
-    format!(
-        "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual,contact{arc}\n"
-    )
+    let mut line =
+        "increment,attempt,major,minor,node,mode,next,rule,gap,f_n,f_t,t_max,slip,margin,residual,contact"
+            .to_owned();
+    if model.control == Control::Arc {
+        line.push_str(",arc");
+    }
+    if moves(model) {
+        line.push_str(",drag");
+    }
+    line.push('\n');
+    line
 }
 
 /// The rows of a minor iteration; `friction` is that in force, by slave.
@@ -83,6 +131,9 @@ pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String
         );
         if let Some(arc) = event.arc {
             let _ = write!(lines, ",{arc:?}");
+        }
+        if moves(model) {
+            let _ = write!(lines, ",{:?}", event.drag);
         }
         lines.push('\n');
     };

@@ -144,6 +144,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
         | Failure::Leapt { .. }
         | Failure::DoubledBack
         | Failure::Unmoved
+        | Failure::Restless { .. }
         | Failure::RoundOff { .. }
         | Failure::OverConstrained { .. } => {}
     }
@@ -187,9 +188,11 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
         }
         Failure::Diverged { .. } => &["the debugger, to see what moves"],
         Failure::Refused(_) => &["a smaller history.least"],
+        Failure::Restless { .. } => &["a support, or a surface, that stops what moves"],
         Failure::Leapt { .. } => match model.jumps {
             Jumps::Stop => &[
                 "history.jumps=cut, to go on on the other branch",
+                "history.jumps=dynamic, for a damped motion to the next equilibrium",
                 "a prescribed displacement instead of the load",
             ],
             _ => &["a prescribed displacement instead of the load"],

@@ -53,7 +53,9 @@ impl Attempt {
                 Outcome::Increment { .. }
                 | Outcome::Cut { .. }
                 | Outcome::Leaps { .. }
-                | Outcome::Braked { .. } => ControlFlow::Break(()),
+                | Outcome::Braked { .. }
+                | Outcome::Detour { .. }
+                | Outcome::Moves(_) => ControlFlow::Break(()),
                 Outcome::Minor
                 | Outcome::Damped { .. }
                 | Outcome::Climbed { .. }

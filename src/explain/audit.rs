@@ -4,6 +4,7 @@
 //! marked apart, and adds what contact of slave nodes with master surfaces cannot see: nodes of a master that lie inside
 //! a slave's body, and increments in which friction gave work.
 
+use crate::contact::element::Element;
 use crate::contact::feet::place;
 use crate::contact::laws::{Finding, Law};
 use crate::model::Model;
@@ -163,7 +164,8 @@ fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
 fn outline(solid: &Solid, now: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
     let at = |k: usize| -1.0 + 2.0 * k as f64 / POINTS as f64;
     let lines = solid.edges.iter().flat_map(|nodes| {
-        (0..POINTS).map(move |k| [at(k), at(k + 1)].map(|xi| place(nodes, now, xi)))
+        let edge = Element::lagrange(nodes);
+        (0..POINTS).map(move |k| [at(k), at(k + 1)].map(|xi| place(edge, now, xi)))
     });
     lines.collect()
 }

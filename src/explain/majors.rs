@@ -5,7 +5,7 @@ use super::attempt::{Attempt, Major};
 use super::names::{mode, slave};
 use super::number::four;
 use super::report::place;
-use crate::fem::lagrange;
+use crate::contact::element::Element;
 use crate::model::{Geometry, Mode, Model, ResidualMethod, Settings};
 use crate::step::major_history::{MajorCycle, Stop};
 use crate::step::state::State;
@@ -29,16 +29,19 @@ pub struct Kink {
 }
 
 impl Kink {
-    /// Between two elements, each by surface and element; `None` where they do not meet.
+    /// Between two elements, each by surface and element; `None` where they do not meet, and on a smooth surface.
     pub fn between(
         model: &Model,
         places: &[[f64; 2]],
         a: (usize, usize),
         b: (usize, usize),
     ) -> Option<Kink> {
-        let nodes =
-            |(surface, element): (usize, usize)| model.surfaces.get(surface)?.elements.get(element);
-        let (one, other) = (nodes(a)?, nodes(b)?);
+        let curve = |(surface, element): (usize, usize)| {
+            let surface = model.surfaces.get(surface)?;
+            let kinked = surface.smooth.is_empty() && element < surface.elements.len();
+            kinked.then(|| Element::of(surface, element))
+        };
+        let (one, other) = (curve(a)?, curve(b)?);
         let (before, after) = match () {
             _ if one.last() == other.first() => (one, other),
             _ if other.last() == one.first() => (other, one),
@@ -69,10 +72,10 @@ impl Kink {
 }
 
 /// dx/dξ of an element at ξ.
-fn slope(nodes: &[usize], places: &[[f64; 2]], xi: f64) -> [f64; 2] {
-    let shape = lagrange::shape(nodes.len(), xi);
+fn slope(element: Element<'_>, places: &[[f64; 2]], xi: f64) -> [f64; 2] {
+    let shape = element.shape(xi);
     let mut slope = [0.0; 2];
-    for (&node, d) in nodes.iter().zip(shape.d) {
+    for (&node, d) in element.nodes.iter().zip(shape.d) {
         slope[0] += d * places[node][0];
         slope[1] += d * places[node][1];
     }
@@ -111,6 +114,10 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
             (Some([a, b]), _) => {
                 let (one, other) = (place(model, Some(a)), place(model, Some(b)));
                 let kink = Kink::between(model, &places, a, b);
+                let is_smooth = |surface: usize| {
+                    let surface = model.surfaces.get(surface);
+                    surface.is_some_and(|surface| !surface.smooth.is_empty())
+                };
                 let meet = kink.map_or(String::new(), |kink| format!(", {}", kink.words()));
                 lines.push(format!(
                     "where: {name}, now at {here}, hops between {one} and {other}{meet}; {moves}"
@@ -121,6 +128,7 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
                         four(kink.degrees)
                     ),
                     Some(_) => "why: in a concave corner both sides press on it, and it can be held by one of them only: the other then lets it in".to_owned(),
+                    None if is_smooth(a.0) && is_smooth(b.0) => "why: the surface is smooth and its normal the same on both, but its curvature is not: the steps from each of them are too long".to_owned(),
                     None => "why: the two elements do not meet, and from each of them the other one is nearer".to_owned(),
                 });
             }

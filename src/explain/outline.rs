@@ -1,6 +1,7 @@
 //! The shape of a state as lines, for all who draw it: where nodes are, the curves of elements, what is to be seen, and
 //! what of a line lies in a window.
 
+use crate::contact::element::Element;
 use crate::fem::lagrange;
 use crate::model::Model;
 
@@ -28,6 +29,20 @@ pub fn curve(nodes: &[Point]) -> Vec<Point> {
             })
         })
         .collect()
+}
+
+/// The points whose Lagrange curve is that of an element of a master surface, whose nodes are at `place`.
+pub fn element(element: Element<'_>, place: impl Fn(usize) -> Point) -> Vec<Point> {
+    let nodes: Vec<Point> = element.nodes.iter().map(|&node| place(node)).collect();
+    if !element.is_smooth() {
+        return nodes;
+    }
+    let count = element.degree() + 1;
+    let at = |k: usize| {
+        let shares = element.shape(lagrange::node(count, k)).n;
+        [0, 1].map(|axis| nodes.iter().zip(shares).map(|(x, n)| n * x[axis]).sum())
+    };
+    (0..count).map(at).collect()
 }
 
 /// A rectangle in the scene.

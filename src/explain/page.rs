@@ -236,6 +236,9 @@ impl Page {
             Failure::Unmoved => self.facts.push(
                 "why: the tangent at the start of the increment moves other things, but not what history.arc measures".into(),
             ),
+            Failure::Restless { .. } => self.facts.push(
+                "why: past the load at which equilibrium ends nothing stops what moves".into(),
+            ),
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
         }
     }

@@ -5,7 +5,7 @@ use super::number::six;
 use super::report;
 use crate::model::Model;
 use crate::step::drive::{RunEnd, Until};
-use crate::step::event::{Failure, Outcome};
+use crate::step::event::{Failure, Moves, Outcome};
 use crate::step::intervene::Intervention;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -104,9 +104,11 @@ fn step(
     let end = stepper.drive(until, |stepper| match &stepper.event().outcome {
         Outcome::Increment { .. } => ControlFlow::Break(Ok(stepper.state().clone())),
         // Cutting is done here.
-        Outcome::Cut { why, .. } | Outcome::Leaps { why, .. } | Outcome::Braked { why, .. } => {
-            ControlFlow::Break(Err(why.clone()))
-        }
+        Outcome::Cut { why, .. }
+        | Outcome::Leaps { why, .. }
+        | Outcome::Detour { why, .. }
+        | Outcome::Braked { why, .. } => ControlFlow::Break(Err(why.clone())),
+        Outcome::Moves(Moves::LetsGo { why, .. }) => ControlFlow::Break(Err(why.clone())),
         _ => ControlFlow::Continue(()),
     });
     match end {

@@ -311,6 +311,7 @@ pub fn end_words(end: &TrialEnd) -> String {
         TrialEnd::Failed(Failure::Diverged { .. }) => "diverged".into(),
         TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
         TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
+        TrialEnd::Failed(Failure::Restless { .. }) => "no rest".into(),
         TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
         TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),
         TrialEnd::Failed(Failure::Unmoved) => "does not move".into(),

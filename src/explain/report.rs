@@ -4,14 +4,14 @@ use crate::contact::table2::{Decision, Rule, Tested};
 use crate::explain::advice;
 use crate::explain::judged;
 use crate::explain::names::{mode, position, slave};
-use crate::explain::number::four;
+use crate::explain::number::{four, six};
 use crate::interface::census;
 use crate::interface::method::NotFound;
 use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{Motion, RigidMotion, Singular};
 use crate::model::{Mode, Model};
-use crate::step::event::{Event, Failure, Outcome, Position};
+use crate::step::event::{Event, Failure, Moves, Outcome, Position, Slow};
 use crate::step::intervene::Intervention;
 use crate::step::major_history::{MajorCycle, Stop};
 use crate::step::state::State;
@@ -153,6 +153,12 @@ pub fn outcome(model: &Model, event: &Event) -> String {
                 four(*stiffness)
             )
         }
+        Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
+        Outcome::Detour { why, by, size } => format!(
+            "{at}: {}; the halves have failed: tries {}, from {size} on",
+            describe_failure(model, why),
+            by.words()
+        ),
         Outcome::Major { after, settled } => {
             let how = if *settled {
                 "minors settled"
@@ -179,6 +185,27 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             )
         }
         Outcome::Failed(failure) => format!("{at}: {}", describe_failure(model, failure)),
+    }
+}
+
+/// What a damped motion does.
+fn moves(model: &Model, moves: &Moves) -> String {
+    match moves {
+        Moves::LetsGo { why, load } => format!(
+            "{}; no equilibrium is near that of load {load}: a damped motion goes on from there",
+            describe_failure(model, why)
+        ),
+        Moves::Step { motion, number } => {
+            format!("step {number} of a damped motion: it moves by {motion:.3e}")
+        }
+        Moves::Slower(slow) => {
+            let why = match slow {
+                Slow::Failed(why) => describe_failure(model, why),
+                Slow::Far { motion } => format!("it would move by {motion:.3e} at once"),
+                Slow::Unstable => "it would end in an unstable state".to_owned(),
+            };
+            format!("{why}; the damped motion goes on slower")
+        }
     }
 }
 
@@ -227,6 +254,7 @@ pub fn reservations(model: &Model, event: &Event) -> String {
         unsettled,
         marked,
         jumped,
+        motion,
         ..
     } = &event.outcome
     else {
@@ -252,6 +280,14 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     }
     if *jumped {
         text += ", jumped: another branch from here";
+    }
+    if let Some(motion) = motion {
+        text += &format!(
+            ", by a damped motion of {} steps from the equilibrium at load {}, viscosity took {}",
+            motion.steps,
+            motion.from,
+            six(motion.dissipated)
+        );
     }
     text
 }
@@ -396,6 +432,9 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         }
         Failure::Refused(found) => {
             format!("refused, since {}", judged::finding(model, found))
+        }
+        Failure::Restless { steps } => {
+            format!("a damped motion of {steps} steps came to no rest")
         }
         Failure::Leapt { motion, predicted } => format!(
             "a jump to another branch: it moves by {motion:.3e}, where its tangent and the increments before predict {predicted:.1e}"

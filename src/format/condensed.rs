@@ -188,6 +188,7 @@ impl Problem {
                 along: FLOOR.to_owned(),
                 reverse: false,
                 endless: true,
+                smooth: false,
             }],
             slaves: self.contacts.iter().map(slave).collect(),
             friction: Friction::default(),

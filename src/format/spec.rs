@@ -424,6 +424,12 @@ described! {
         /// Goes on straight past both ends, for ever. For a straight, rigid surface. Default: false.
         #[serde(default)]
         pub endless: bool,
+        /// One smooth curve through all nodes of the chain, so that the normal does not jump between its elements: from node
+        /// to node a cubic, whose slope at a node is that of the parabola through it and its two neighbours. A sharp corner is
+        /// rounded, too: where there is a real one, make two surfaces. Default: false, where each element is a curve of its
+        /// own.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        pub smooth: bool,
     }
 }
 

@@ -50,7 +50,11 @@ impl PointKind {
             Outcome::Minor => PointKind::Minor,
             Outcome::Damped { .. } => PointKind::Damped,
             Outcome::Climbed { .. } => PointKind::Climbed,
-            Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Braked { .. } => PointKind::Cut,
+            Outcome::Cut { .. }
+            | Outcome::Leaps { .. }
+            | Outcome::Detour { .. }
+            | Outcome::Braked { .. }
+            | Outcome::Moves(_) => PointKind::Cut,
             Outcome::HeldBack { .. } => PointKind::Damped,
             Outcome::Major { .. } => PointKind::Major,
             Outcome::Refused { .. } => PointKind::Refused,

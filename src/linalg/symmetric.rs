@@ -37,6 +37,8 @@ const BACKWARD_LIMIT: f64 = 1e-12;
 pub struct SymmetricFactors {
     pattern: Arc<Pattern>,
     symbolic: SymbolicCholesky<usize>,
+    /// All unknowns, in the order of their elimination.
+    order: Vec<usize>,
     /// The unknowns that come last, in their order.
     last: Vec<usize>,
     /// Places of the diagonal of `last` in the array of values.
@@ -92,6 +94,7 @@ impl SymmetricFactors {
             lower: vec![0.0; last.len().pow(2)],
             upper: vec![0.0; last.len().pow(2)],
             last: last.to_vec(),
+            order,
             diagonal,
             symbolic,
             pattern,
@@ -152,6 +155,22 @@ impl SymmetricFactors {
             Ok(())
         } else {
             Err(SolveError::Singular)
+        }
+    }
+
+    /// D of the last factorization, by unknown: with the unknowns before them all eliminated, what is left of the diagonal.
+    /// By Sylvester's law as many are negative as K has negative eigenvalues.
+    pub fn pivots(&self, out: &mut [f64]) {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
+            unreachable!("the symbolic part is forced to be supernodal");
+        };
+        let factors = SupernodalLdltRef::new(symbolic, &self.factors);
+        for s in 0..symbolic.n_supernodes() {
+            let node = factors.supernode(s);
+            let (values, start) = (node.val(), node.start());
+            for column in 0..values.ncols() {
+                out[self.order[start + column]] = values[(column, column)];
+            }
         }
     }
 
@@ -291,6 +310,25 @@ mod tests {
             factors.solve(b.as_slice(), &mut x).unwrap();
             assert!((a * DVector::from_vec(x) - b).amax() < 1e-12);
         }
+    }
+
+    #[test]
+    fn as_many_pivots_are_negative_as_eigenvalues() {
+        let mut seen = Vec::new();
+        for pull in [0.0, 2.0, 2.9, 4.55] {
+            let (pattern, a) = grid(9, pull);
+            let last: Vec<usize> = (0..81).filter(|i| i % 9 == 0).collect();
+            let mut factors = SymmetricFactors::new(pattern.clone(), &last).unwrap();
+            factors.factor(&values(&pattern, &a), 0.0).unwrap();
+            let mut pivots = vec![0.0; 81];
+            factors.pivots(&mut pivots);
+            let negative = pivots.iter().filter(|d| **d < 0.0).count();
+            let eigenvalues = a.symmetric_eigenvalues();
+            let exact = eigenvalues.iter().filter(|value| **value < 0.0).count();
+            assert_eq!(negative, exact, "pull {pull}");
+            seen.push(exact);
+        }
+        assert!(seen[0] == 0 && seen[1] > 0 && seen[1] < seen[3], "{seen:?}");
     }
 
     #[test]

@@ -173,14 +173,29 @@ fn solid_line(name: &str, solid: &Solid) -> String {
 }
 
 fn surface_line(surface: &Surface) -> String {
+    if !surface.smooth.is_empty() {
+        let pieces = plural(surface.elements.len(), "piece");
+        return format!(
+            "{}: a smooth curve of {pieces}, {}",
+            surface.name,
+            kind(surface)
+        );
+    }
     let per = surface.elements.first().map_or(0, Vec::len);
     let elements = plural(surface.elements.len(), "interface element");
-    let kind = if surface.rigid {
+    format!(
+        "{}: {elements} of {per} nodes, {}",
+        surface.name,
+        kind(surface)
+    )
+}
+
+fn kind(surface: &Surface) -> &'static str {
+    if surface.rigid {
         "rigid, no unknowns"
     } else {
         "deformable, moves with its body"
-    };
-    format!("{}: {elements} of {per} nodes, {kind}", surface.name)
+    }
 }
 
 fn slaves_line(model: &Model) -> String {

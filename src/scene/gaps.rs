@@ -1,6 +1,7 @@
 //! How the slave nodes stand over their surfaces before anything is solved: the gaps that a scene starts with, what is
 //! doubtful about them, and what `settings.initial_gaps` makes of them.
 
+use crate::contact::element::Element;
 use crate::contact::projection::{SurfacePoint, project, projection_at};
 use crate::fem::lagrange;
 use crate::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
@@ -134,11 +135,9 @@ fn turned(model: &Model) -> Vec<String> {
                 let (spot, _) = (*stand)?;
                 let own = outward[contact.node]?;
                 (spot.surface == surface).then(|| {
-                    let n = normal(
-                        &model.surfaces[surface].elements[spot.element],
-                        &model.nodes,
-                        spot.xi,
-                    );
+                    let element = Element::of(&model.surfaces[surface], spot.element);
+                    let slopes = element.shape(spot.xi).d;
+                    let n = normal(element.nodes, &model.nodes, &slopes);
                     own[0] * n[0] + own[1] * n[1]
                 })
             });
@@ -156,11 +155,10 @@ fn turned(model: &Model) -> Vec<String> {
         .collect()
 }
 
-/// Unit normal on the right of an element's walk.
-fn normal(element: &[usize], nodes: &[Node], xi: f64) -> [f64; 2] {
-    let shape = lagrange::shape(element.len(), xi);
+/// Unit normal on the right of an element's walk, where its shape functions have these slopes.
+fn normal(element: &[usize], nodes: &[Node], slopes: &[f64]) -> [f64; 2] {
     let mut slope = [0.0; 2];
-    for (&node, d) in element.iter().zip(shape.d) {
+    for (&node, d) in element.iter().zip(slopes) {
         slope[0] += d * nodes[node].at[0];
         slope[1] += d * nodes[node].at[1];
     }
@@ -179,7 +177,7 @@ fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
             let count = edge.len().saturating_sub(1).max(1);
             for (k, &node) in edge.iter().enumerate() {
                 let xi = -1.0 + 2.0 * k as f64 / count as f64;
-                let n = normal(edge, &model.nodes, xi);
+                let n = normal(edge, &model.nodes, &lagrange::shape(edge.len(), xi).d);
                 let sum = all[node].get_or_insert([0.0; 2]);
                 *sum = [sum[0] + n[0], sum[1] + n[1]];
             }

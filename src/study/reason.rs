@@ -29,6 +29,8 @@ pub enum Reason {
     NotFound,
     /// Round-off leaves no accuracy.
     RoundOff,
+    /// A damped motion came to no rest.
+    Restless,
     /// The increment leapt to a state far from the one that was predicted.
     Jump,
     /// The way along the path doubles back, or cannot be measured.
@@ -48,6 +50,7 @@ impl Reason {
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
             Reason::RoundOff => 'r',
+            Reason::Restless => 'w',
             Reason::Jump => 'b',
             Reason::OffPath => 'p',
         }
@@ -66,6 +69,7 @@ impl From<&Failure> for Reason {
             Failure::OverConstrained { .. } => Reason::OverConstrained,
             Failure::Refused(_) => Reason::Refused,
             Failure::NoAnswer { .. } => Reason::NoAnswer,
+            Failure::Restless { .. } => Reason::Restless,
             Failure::Leapt { .. } => Reason::Jump,
             Failure::DoubledBack | Failure::Unmoved => Reason::OffPath,
             Failure::RoundOff { .. } => Reason::RoundOff,
@@ -88,6 +92,7 @@ impl fmt::Display for Reason {
             Reason::NoAnswer => "no-answer",
             Reason::NotFound => "not-found",
             Reason::RoundOff => "round-off",
+            Reason::Restless => "restless",
             Reason::Jump => "jump",
             Reason::OffPath => "off-path",
         })

@@ -4,6 +4,7 @@
 //! cargo bench --bench random_scenes -- 10000 --seed 1              scenes 0 to 9,999 of seed 1, and their tables
 //! cargo bench --bench random_scenes -- 10000 --list FILE           writes a line for every scene as well
 //! cargo bench --bench random_scenes -- --seed 1 --only 157         one scene, with all that is wrong in it
+//! cargo bench --bench random_scenes -- 1000 --set surfaces.*.smooth=true   each scene changed in some way
 //! cargo bench --bench random_scenes -- --write 157 FILE.ron        writes one scene to a file, to be run or debugged
 //! cargo bench --bench random_scenes -- --file FILE.ron --set refine=2    the same for any scene, changed in some way
 //! ```
@@ -71,7 +72,8 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     if let Some((number, file)) = &asked.write {
-        if let Err(error) = std::fs::write(file, tally::scene(asked.seed, *number).0.text) {
+        if let Err(error) = std::fs::write(file, outside::families::draw(asked.seed, *number).text)
+        {
             eprintln!("{file}: {error}");
             return ExitCode::from(2);
         }
@@ -87,7 +89,13 @@ fn main() -> ExitCode {
         }
     }
     if let Some(number) = asked.only {
-        let (drawn, scene) = tally::scene(asked.seed, number);
+        let (drawn, scene) = match tally::scene(asked.seed, number, &asked.set) {
+            Ok((drawn, scene)) => (drawn, scene),
+            Err((drawn, refused)) => {
+                println!("{}\n{refused}", drawn.text);
+                return ExitCode::from(2);
+            }
+        };
         println!("{}", drawn.text);
         show(&format!("scene {number}"), &scene);
         return ExitCode::SUCCESS;
@@ -129,12 +137,17 @@ fn many(asked: &Asked) -> ExitCode {
     let count = asked.count.unwrap_or(SCENES);
     let done = AtomicUsize::new(0);
     let start = Instant::now();
-    let rows = tally::run(asked.seed, asked.from..asked.from + count, |_| {
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        if done.is_multiple_of(500) {
-            eprintln!("{done} scenes, {:.0} s", start.elapsed().as_secs_f64());
-        }
-    });
+    let rows = tally::run(
+        asked.seed,
+        asked.from..asked.from + count,
+        &asked.set,
+        |_| {
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if done.is_multiple_of(500) {
+                eprintln!("{done} scenes, {:.0} s", start.elapsed().as_secs_f64());
+            }
+        },
+    );
     println!(
         "{count} scenes from {} on of seed {}\n",
         asked.from, asked.seed

@@ -14,7 +14,8 @@ const MOST: usize = 9;
 /// Panels of three Gauss points each, for the length of a part of an element.
 const PANELS: usize = 8;
 
-/// A chain of elements, each a Lagrange curve through its nodes at equal steps of ξ from −1 to 1.
+/// A chain of elements, each a Lagrange curve through its nodes at equal steps of ξ from −1 to 1. A smooth chain is one of
+/// cubics, each through four points of the smooth curve.
 #[derive(Debug, Clone)]
 pub struct Chain {
     elements: Vec<Vec<Point>>,
@@ -74,6 +75,47 @@ impl Chain {
             closed: elements.len() > 1 && first == last,
             endless,
             elements,
+        }
+    }
+
+    /// The smooth chain through nodes in walking order, of whose positions `at` are the present ones and `knots` those that the
+    /// parameter is measured along. From one node to the next it is the blend of two parabolas: that through both and the
+    /// node before fades out, that through both and the node behind fades in.
+    pub fn smooth(at: &[Point], knots: &[Point], closed: bool) -> Self {
+        let last = at.len() - 1;
+        let way = |k: usize| norm(minus(knots[k + 1], knots[k]));
+        // Around a closed chain the first node comes again at the end.
+        let before = |k: usize| match k {
+            0 if closed => Some((at[last - 1], way(last - 1))),
+            0 => None,
+            _ => Some((at[k - 1], way(k - 1))),
+        };
+        let behind = |k: usize| match k + 2 {
+            far if far <= last => Some((at[far], way(k + 1))),
+            _ if closed => Some((at[1], way(0))),
+            _ => None,
+        };
+        let piece = |k: usize| {
+            let (b, c, h) = (at[k], at[k + 1], way(k));
+            let early = before(k).map(|(a, way)| [(-way, a), (0.0, b), (h, c)]);
+            let late = behind(k).map(|(d, way)| [(0.0, b), (h, c), (h + way, d)]);
+            let place = |part: f64| {
+                let s = part * h;
+                match (early, late) {
+                    (Some(early), Some(late)) => {
+                        let (one, other) = (newton(&early, s), newton(&late, s));
+                        [0, 1].map(|x| (1.0 - part) * one[x] + part * other[x])
+                    }
+                    (Some(only), None) | (None, Some(only)) => newton(&only, s),
+                    (None, None) => [0, 1].map(|x| (1.0 - part) * b[x] + part * c[x]),
+                }
+            };
+            [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(place).to_vec()
+        };
+        Chain {
+            elements: (0..last).map(piece).collect(),
+            closed,
+            endless: false,
         }
     }
 
@@ -254,6 +296,15 @@ impl Chain {
         }
         found
     }
+}
+
+/// The parabola through three points at given parameters, by divided differences.
+fn newton(points: &[(f64, Point); 3], s: f64) -> Point {
+    let [(p, a), (q, b), (r, c)] = *points;
+    [0, 1].map(|x| {
+        let (first, second) = ((b[x] - a[x]) / (q - p), (c[x] - b[x]) / (r - q));
+        a[x] + (s - p) * (first + (s - q) * (second - first) / (r - p))
+    })
 }
 
 /// Shape functions of m nodes at equal steps, and their derivatives.

@@ -9,7 +9,7 @@
 //! vertex explains is counted apart.
 
 use super::chain::{At, Chain, Place, Point, Seen as Sight, cross, dot, norm};
-use stickslip::model::{Friction, Model};
+use stickslip::model::{Friction, Model, Surface};
 
 /// Lengths that are no larger than this part of the scene's extent are nothing.
 pub const LENGTH: f64 = 1e-8;
@@ -139,8 +139,20 @@ pub fn judge(
 }
 
 fn chains(model: &Model, state: &Seen) -> Vec<Chain> {
-    let chain =
-        |s: &stickslip::model::Surface| Chain::new(&s.elements, &state.positions, s.endless);
+    let chain = |s: &Surface| {
+        if s.smooth.is_empty() {
+            return Chain::new(&s.elements, &state.positions, s.endless);
+        }
+        // Of the pieces only the nodes that they go through are taken, one after the other.
+        let pieces = s.elements.iter().zip(&s.smooth);
+        let ends = pieces.map(|(nodes, piece)| [nodes[piece.first], nodes[piece.first + 1]]);
+        let mut walk: Vec<usize> = ends.flatten().collect();
+        walk.dedup();
+        let at: Vec<_> = walk.iter().map(|&n| state.positions[n]).collect();
+        let knots: Vec<_> = walk.iter().map(|&n| model.nodes[n].at).collect();
+        let closed = walk.len() > 2 && walk.first() == walk.last();
+        Chain::smooth(&at, &knots, closed)
+    };
     model.surfaces.iter().map(chain).collect()
 }
 

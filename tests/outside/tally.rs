@@ -41,6 +41,9 @@ impl Row {
             trial.vertices,
             trial.unexplained,
         );
+        for detour in &trial.detours {
+            let _ = write!(line, " by-{detour:?}");
+        }
         if self.forgiven {
             line += " forgiven";
         }
@@ -77,28 +80,51 @@ fn end(end: &End) -> String {
         }
         End::Endless => "endless".into(),
         End::Panicked => "panicked".into(),
+        End::Refused => "refused".into(),
     }
 }
 
-/// A drawn scene, checked.
-pub fn scene(seed: u64, number: u64) -> (Drawn, Scene) {
+/// A path of a scene and its value there. `surfaces.*.` stands for every surface.
+pub type Set = (String, String);
+
+/// A drawn scene, changed and checked; or why it is refused.
+pub fn scene(seed: u64, number: u64, set: &[Set]) -> Result<(Drawn, Scene), (Drawn, String)> {
     let drawn = draw(seed, number);
-    match Scene::from_text("random.ron", &drawn.text, &[]) {
-        Ok(scene) => (drawn, scene),
-        Err(refused) => panic!("scene {number} of seed {seed}: {refused}\n{}", drawn.text),
+    let made = Scene::from_text("random.ron", &drawn.text, &[]);
+    let changed = made.and_then(|scene| {
+        let ids: Vec<_> = scene.spec.surfaces.iter().map(|s| s.id.clone()).collect();
+        let each = set.iter().flat_map(|(path, value)| {
+            let of = |id: &String| {
+                (
+                    path.replace("surfaces.*.", &format!("surfaces.{id}.")),
+                    value,
+                )
+            };
+            let count = if path.contains(".*.") { ids.len() } else { 1 };
+            ids[..count].iter().map(of).collect::<Vec<_>>()
+        });
+        each.into_iter()
+            .try_fold(scene, |scene, (path, value)| scene.with(&path, value))
+    });
+    match changed {
+        Ok(scene) => Ok((drawn, scene)),
+        Err(refused) => Err((drawn, refused.to_string())),
     }
 }
 
 /// Runs scenes on all cores; the rows are in order.
-pub fn run(seed: u64, numbers: Range<u64>, done: impl Fn(&Row) + Sync) -> Vec<Row> {
+pub fn run(seed: u64, numbers: Range<u64>, set: &[Set], done: impl Fn(&Row) + Sync) -> Vec<Row> {
     let one = |number: u64| {
-        let (drawn, scene) = scene(seed, number);
+        let (drawn, forgiven, trial) = match scene(seed, number, set) {
+            Ok((drawn, scene)) => (drawn, forgives(&scene), attempt(&scene)),
+            Err((drawn, _)) => (drawn, false, Trial::before(End::Refused)),
+        };
         let row = Row {
             number,
             family: drawn.family,
-            forgiven: forgives(&scene),
+            forgiven,
             plain: drawn.text.contains("settings: ()"),
-            trial: attempt(&scene),
+            trial,
         };
         done(&row);
         row

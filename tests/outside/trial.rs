@@ -8,6 +8,7 @@ use stickslip::model::Model;
 use stickslip::model::{AtLimit, Component, SlipCount, Sticking, Ties};
 use stickslip::model::{BodyKind, Form, Monitor, Watched};
 use stickslip::scene::Scene;
+use stickslip::step::detour::Detour;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::state::IncrementStart;
 use stickslip::step::stepper::Stepper;
@@ -32,6 +33,8 @@ pub enum End {
     /// It was given up.
     Endless,
     Panicked,
+    /// The program refuses to read it: the draw made a scene that makes no sense.
+    Refused,
 }
 
 /// A law that was broken, and in which accepted increment.
@@ -55,9 +58,23 @@ pub struct Trial {
     pub vertices: usize,
     /// Accepted states of a node that touched, and whose friction no touch point on its way explains.
     pub unexplained: usize,
+    /// The ways round on which increments were accepted whose halves had failed.
+    pub detours: Vec<Detour>,
 }
 
 impl Trial {
+    /// Nothing was accepted yet, and this would be the end.
+    pub fn before(end: End) -> Self {
+        Trial {
+            end,
+            increments: 0,
+            wrong: Vec::new(),
+            vertices: 0,
+            unexplained: 0,
+            detours: Vec::new(),
+        }
+    }
+
     /// Accepted increments that are wrong.
     pub fn wrong_increments(&self) -> usize {
         let mut numbers: Vec<usize> = self.wrong.iter().map(|w| w.increment).collect();
@@ -78,13 +95,7 @@ pub fn forgives(scene: &Scene) -> bool {
 
 /// Runs a scene and judges it.
 pub fn attempt(scene: &Scene) -> Trial {
-    let mut trial = Trial {
-        end: End::Panicked,
-        increments: 0,
-        wrong: Vec::new(),
-        vertices: 0,
-        unexplained: 0,
-    };
+    let mut trial = Trial::before(End::Panicked);
     // The trial is whole at every increment, whatever the solver does.
     let _ = catch_unwind(AssertUnwindSafe(|| trial.run(scene)));
     trial
@@ -100,13 +111,18 @@ impl Trial {
             force: ROUNDING * stiffness(&model),
         };
         let mut passages = Passages::default();
+        let mut detour = None;
         for _ in 0..PATIENCE {
             if stepper.step().is_none() {
                 self.end = End::Finished;
                 return;
             }
             match &stepper.event().outcome {
-                Outcome::Increment { .. } => {}
+                Outcome::Increment { .. } => self.detours.extend(detour.take()),
+                Outcome::Detour { by, .. } => {
+                    (detour, passages) = (Some(*by), Passages::default());
+                    continue;
+                }
                 Outcome::Failed(failure) => {
                     self.end = failed(failure, &passages);
                     return;

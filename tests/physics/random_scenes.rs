@@ -8,13 +8,14 @@ use crate::outside::tally;
 use crate::outside::trial::End;
 use stickslip::model::Friction;
 use stickslip::scene::Scene;
+use stickslip::step::detour::Detour;
 
 /// As many as a few seconds allow.
 const SCENES: u64 = 60;
 
 #[test]
 fn no_accepted_increment_of_a_random_scene_is_wrong() {
-    let rows = tally::run(1, 0..SCENES, |_| {});
+    let rows = tally::run(1, 0..SCENES, &[], |_| {});
     let wrong: Vec<String> = rows
         .iter()
         .filter(|row| row.is_wrong())
@@ -28,9 +29,36 @@ fn no_accepted_increment_of_a_random_scene_is_wrong() {
 }
 
 #[test]
+fn none_is_wrong_on_smooth_surfaces_either() {
+    let smooth = [("surfaces.*.smooth".to_owned(), "true".to_owned())];
+    let rows = tally::run(1, 0..SCENES, &smooth, |_| {});
+    let wrong = rows.iter().filter(|row| row.is_wrong());
+    let wrong: Vec<String> = wrong.map(|row| row.line()).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let accepted: usize = rows.iter().map(|row| row.trial.increments).sum();
+    assert!(accepted > 500, "only {accepted} increments were judged");
+}
+
+/// Halves of their increments all fail; each of these scenes gets through on another way round.
+#[test]
+fn increments_whose_halves_all_fail_are_finished_on_a_way_round_and_none_is_wrong() {
+    for (number, by) in [
+        (1, Detour::Section),
+        (25, Detour::Newton),
+        (96, Detour::Section),
+    ] {
+        let rows = tally::run(1, number..number + 1, &[], |_| {});
+        let row = &rows[0];
+        assert_eq!(row.trial.end, End::Finished, "{}", row.line());
+        assert!(row.trial.detours.contains(&by), "{}", row.line());
+        assert!(!row.is_wrong(), "{}", row.line());
+    }
+}
+
+#[test]
 fn random_scenes_are_sound_and_depend_on_seed_and_number_alone() {
     for number in 0..20 * FAMILIES.len() as u64 {
-        let (drawn, _) = tally::scene(3, number);
+        let (drawn, _) = tally::scene(3, number, &[]).unwrap_or_else(|(_, why)| panic!("{why}"));
         assert_eq!(drawn, draw(3, number));
         assert_ne!(drawn.text, draw(4, number).text);
     }

@@ -8,10 +8,10 @@ use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::event::Failure;
 
-type Row = HashMap<String, String>;
+pub type Row = HashMap<String, String>;
 
 /// Largest error of a monitor over the rows of a reference whose load factor an increment met.
-fn error(run: &Run, rows: &[Row], load: &str, ours: &str, theirs: &str) -> f64 {
+pub fn error(run: &Run, rows: &[Row], load: &str, ours: &str, theirs: &str) -> f64 {
     let scale = rows
         .iter()
         .map(|r| number(r, theirs).abs())

@@ -372,6 +372,12 @@ fn each_fault_has_one_message_with_its_place() {
             7,
             "only a straight surface can be endless",
         ),
+        (
+            "endless: true",
+            "endless: true, smooth: true",
+            7,
+            "an endless surface is straight, and smooth as it is",
+        ),
         ("f_n: 0.0", "f_n: inf", 8, "must be a finite number"),
         (
             "surfaces: [(id: \"f\", along: \"f\"",

@@ -40,3 +40,7 @@ mod examples;
 mod structures;
 // Forces that are not unique, and matrices that are indefinite by rounding.
 mod families;
+// Stability of accepted states, against closed forms and a tangent by differences of forces.
+mod stability;
+// Damped motions past limit points: where a scene lets go and where it rests.
+mod dynamic;

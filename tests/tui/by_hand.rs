@@ -52,6 +52,7 @@ pub fn model(slaves: usize) -> Model {
             elements: vec![vec![count + 2, count + 1], vec![count + 1, count]],
             rigid: true,
             endless: false,
+            smooth: Vec::new(),
         }],
         contacts: (0..slaves)
             .map(|node| Contact {
@@ -158,6 +159,7 @@ pub fn event(position: (u32, u32, u32), nodes: Vec<ContactRecord>, outcome: Outc
         },
         load_factor: increment as f64 / 10.0,
         arc: None,
+        drag: 0.0,
         nodes,
         before: Norms::default(),
         outcome,

@@ -176,6 +176,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
         unsettled,
         marked: None,
         jumped: false,
+        motion: None,
         last: false,
     };
     assert_eq!(say(done(0)), " ✓ load 0.3 accepted");

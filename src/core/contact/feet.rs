@@ -4,12 +4,13 @@
 //! depend on that, so here every element is searched. With x(ξ) the curve and p the point, the derivative of half the
 //! squared distance, (x − p) · x', changes its sign from minus to plus at a closest point inside an element.
 
+use crate::contact::element::Element;
 use crate::contact::projection::SurfacePoint;
-use crate::fem::lagrange::{MAX_NODES, Shape, shape};
+use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
 use std::sync::LazyLock;
 
-/// Intervals in which an element of m > 2 nodes is searched, for each of its nodes but one.
+/// Intervals in which a curved element is searched, for each degree of its curve.
 const INTERVALS: usize = 2;
 /// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
 const STEPS: u32 = 60;
@@ -19,14 +20,20 @@ const BULGE: f64 = 0.5;
 /// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
 static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
     let of = |m: usize| {
-        let intervals = if m == 2 { 1 } else { INTERVALS * (m - 1) };
-        let at = |k: usize| -1.0 + 2.0 * k as f64 / intervals as f64;
-        (0..=intervals).map(|k| (at(k), shape(m, at(k)))).collect()
+        let at = |k: usize| node(intervals(m - 1) + 1, k);
+        (0..=intervals(m - 1))
+            .map(|k| (at(k), shape(m, at(k))))
+            .collect()
     };
     (0..=MAX_NODES)
         .map(|m| if m < 2 { Vec::new() } else { of(m) })
         .collect()
 });
+
+/// Intervals in which an element whose curve has this degree is searched.
+fn intervals(degree: usize) -> usize {
+    if degree == 1 { 1 } else { INTERVALS * degree }
+}
 
 /// Makes the table that every search uses, so that the first search does not allocate.
 pub fn prepare() {
@@ -65,12 +72,13 @@ pub fn find(
     let mut least = f64::INFINITY;
     for &surface in candidates {
         let chain = &surfaces[surface];
-        for (element, nodes) in chain.elements.iter().enumerate() {
-            if !chain.endless && lies_beyond(nodes, positions, point, reach.min(least + slack)) {
+        for (element, curve) in Element::all(chain).enumerate() {
+            let reach = reach.min(least + slack);
+            if !chain.endless && lies_beyond(curve.nodes, positions, point, reach) {
                 continue;
             }
             let mut found = |xi: f64| {
-                let at = place(nodes, positions, xi);
+                let at = place(curve, positions, xi);
                 let distance = length([point[0] - at[0], point[1] - at[1]]);
                 if distance <= least + slack {
                     least = least.min(distance);
@@ -83,9 +91,9 @@ pub fn find(
                 }
             };
             if chain.endless {
-                found(on_line(nodes, positions, point));
+                found(on_line(curve, positions, point));
             } else {
-                minima(nodes, positions, point, &mut found);
+                minima(curve, positions, point, &mut found);
             }
         }
     }
@@ -94,18 +102,30 @@ pub fn find(
 }
 
 /// Gives every local minimum of the distance over an element.
-fn minima(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], found: &mut impl FnMut(f64)) {
-    let grid = &GRID[nodes.len()];
-    let slope = |s: &Shape| slope(nodes, positions, point, s);
-    let mut left = (-1.0, slope(&grid[0].1));
+fn minima(
+    element: Element<'_>,
+    positions: &[[f64; 2]],
+    point: [f64; 2],
+    found: &mut impl FnMut(f64),
+) {
+    let (nodes, count) = (element.nodes, intervals(element.degree()));
+    let at = |k: usize| {
+        if element.is_smooth() {
+            let xi = node(count + 1, k);
+            return (xi, slope(nodes, positions, point, &element.shape(xi)));
+        }
+        let (xi, s) = &GRID[nodes.len()][k];
+        (*xi, slope(nodes, positions, point, s))
+    };
+    let mut left = at(0);
     if left.1 >= 0.0 {
         found(-1.0);
     }
-    for (xi, s) in &grid[1..] {
-        let right = (*xi, slope(s));
-        let at_end = *xi == 1.0 && right.1 == 0.0;
+    for k in 1..=count {
+        let right = at(k);
+        let at_end = k == count && right.1 == 0.0;
         if left.1 < 0.0 && right.1 >= 0.0 && !at_end {
-            found(root(nodes, positions, point, [left, right]));
+            found(root(element, positions, point, [left, right]));
         }
         left = right;
     }
@@ -117,15 +137,16 @@ fn minima(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], found: &mut 
 /// The root of (x − p) · x' between two ξ, each with its value, between which it changes its sign from minus to plus:
 /// Newton's method, and halving where that leaves the interval.
 fn root(
-    nodes: &[usize],
+    element: Element<'_>,
     positions: &[[f64; 2]],
     point: [f64; 2],
     [(mut low, below), (mut high, above)]: [(f64, f64); 2],
 ) -> f64 {
+    let nodes = element.nodes;
     // Both values come along: where a straight line between them vanishes is near.
     let mut xi = low - below * (high - low) / (above - below);
     for _ in 0..STEPS {
-        let s = shape(nodes.len(), xi);
+        let s = element.shape(xi);
         let value = slope(nodes, positions, point, &s);
         let newton = xi - value / rise(nodes, positions, point, &s);
         if (newton - xi).abs() <= f64::EPSILON {
@@ -167,21 +188,21 @@ fn rise(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> 
 }
 
 /// ξ of the foot on the endless straight line through an element's ends.
-fn on_line(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
-    let (start, end) = (place(nodes, positions, -1.0), place(nodes, positions, 1.0));
+fn on_line(element: Element<'_>, positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
+    let [start, end] = [-1.0, 1.0].map(|xi| place(element, positions, xi));
     let along = [end[0] - start[0], end[1] - start[1]];
     let to = [point[0] - start[0], point[1] - start[1]];
     2.0 * (to[0] * along[0] + to[1] * along[1]) / squared(along).max(f64::MIN_POSITIVE) - 1.0
 }
 
 /// Position of a point of an element.
-pub fn place(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
-    blend(nodes, positions, &shape(nodes.len(), xi).n)
+pub fn place(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
+    blend(element.nodes, positions, &element.shape(xi).n)
 }
 
 /// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
-pub fn direction(nodes: &[usize], positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
-    let d = blend(nodes, positions, &shape(nodes.len(), xi).d);
+pub fn direction(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
+    let d = blend(element.nodes, positions, &element.shape(xi).d);
     let size = length(d);
     (size > 0.0).then(|| [d[0] / size, d[1] / size])
 }
@@ -223,6 +244,7 @@ mod tests {
             elements,
             rigid: true,
             endless,
+            smooth: Vec::new(),
         }]
     }
 
@@ -271,7 +293,7 @@ mod tests {
             "{xis:?}"
         );
         let above = all([0.3, 1.2], &half_circle, &x, 0.0);
-        let exact = place(&[0, 1, 2, 3, 4], &x, above[0].spot.xi);
+        let exact = place(Element::of(&half_circle[0], 0), &x, above[0].spot.xi);
         assert!((above[0].distance - (1.2_f64.hypot(0.3) - 1.0)).abs() < 2e-3);
         assert_eq!(above[0].at, exact);
     }

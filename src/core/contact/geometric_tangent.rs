@@ -91,67 +91,105 @@ pub fn geometric_tangent(
 mod tests {
     use super::*;
     use crate::contact::projection::{project, projection_at};
-    use crate::fem::lagrange::shape;
-    use crate::model::Surface;
+    use crate::contact::smooth::smooth;
+    use crate::model::{Node, Surface};
 
     /// Force on every degree of freedom (slave first) for constant components, about a projection made anew.
-    fn forces(m: usize, positions: &[[f64; 2]], f: [f64; 2]) -> Vec<f64> {
-        let surfaces = surface(m);
-        let spot = project(positions[0], &surfaces, &[0], positions, None).unwrap();
-        let at = projection_at(&surfaces, spot, positions, positions[0]);
+    fn forces(surfaces: &[Surface], positions: &[[f64; 2]], f: [f64; 2]) -> Vec<f64> {
+        let spot = project(positions[0], surfaces, &[0], positions, None).unwrap();
+        let at = projection_at(surfaces, spot, positions, positions[0]);
         let t = tangent(at.normal);
         let force = [0, 1].map(|a| f[0] * at.normal[a] + f[1] * t[a]);
-        let mut all = force.to_vec();
-        (0..m).for_each(|i| all.extend(force.map(|f| -at.shape[i] * f)));
+        let mut all = vec![0.0; 2 * positions.len()];
+        all[..2].copy_from_slice(&force);
+        for (&n, share) in surfaces[0].elements[spot.element].iter().zip(at.shape) {
+            (0..2).for_each(|a| all[2 * n + a] -= share * force[a]);
+        }
         all
     }
 
-    fn surface(m: usize) -> Vec<Surface> {
-        vec![Surface {
+    fn surface(m: usize) -> Surface {
+        Surface {
             name: "s".into(),
             elements: vec![(1..=m).collect()],
             rigid: false,
             endless: false,
-        }]
+            smooth: Vec::new(),
+        }
+    }
+
+    /// Compares with central differences, at node 0 over the surface.
+    fn check(surface: Surface, x: &[[f64; 2]], what: &str) {
+        let (surfaces, f) = ([surface], [2.0, -0.7]);
+        let spot = project(x[0], &surfaces, &[0], x, None).unwrap();
+        let at = projection_at(&surfaces, spot, x, x[0]);
+        let curve = at.curve.unwrap();
+        let nodes = &surfaces[0].elements[spot.element];
+        let variation = |dof: usize| {
+            let place = nodes.iter().position(|&n| n == dof / 2);
+            let (weight, slope) = match place {
+                Some(i) => (at.shape[i], at.shape_slope[i]),
+                None if dof < 2 => (-1.0, 0.0),
+                None => (0.0, 0.0),
+            };
+            Variation::new(&at, &curve, dof % 2, weight, slope)
+        };
+        for j in 0..2 * x.len() {
+            let h = 1e-6;
+            let mut moved = x.to_vec();
+            moved[j / 2][j % 2] += h;
+            let plus = forces(&surfaces, &moved, f);
+            moved[j / 2][j % 2] -= 2.0 * h;
+            let minus = forces(&surfaces, &moved, f);
+            for i in 0..2 * x.len() {
+                let difference = (plus[i] - minus[i]) / (2.0 * h);
+                let exact = geometric_tangent(&at, &curve, f, &variation(i), &variation(j));
+                assert!(
+                    (difference - exact).abs() < 1e-7,
+                    "{what} ({i}, {j}): {difference} {exact}"
+                );
+            }
+        }
+    }
+
+    fn arc(count: usize) -> impl Iterator<Item = [f64; 2]> {
+        let place = move |k: usize| 2.2 * k as f64 / (count - 1) as f64;
+        (0..count).map(move |k| [place(k), 0.8 * (0.7 * place(k)).sin() + 0.1 * place(k)])
     }
 
     #[test]
     fn the_geometric_tangent_is_the_derivative_of_the_force_with_the_projection_made_anew() {
         for m in 2..=5 {
             for gap in [-0.1, 0.0, 0.15] {
-                let arc = |k: usize| 2.2 * k as f64 / (m - 1) as f64;
                 let mut x = vec![[1.1 + 0.2 * gap, 0.9 - gap]];
-                x.extend((0..m).map(|k| [arc(k), 0.8 * (0.7 * arc(k)).sin() + 0.1 * arc(k)]));
-                let f = [2.0, -0.7];
-                let surfaces = surface(m);
-                let spot = project(x[0], &surfaces, &[0], &x, None).unwrap();
-                let at = projection_at(&surfaces, spot, &x, x[0]);
-                let curve = at.curve.unwrap();
-                let d = shape(m, spot.xi).d;
-                let variation = |dof: usize| {
-                    let (weight, slope) = if dof < 2 {
-                        (-1.0, 0.0)
-                    } else {
-                        (at.shape[dof / 2 - 1], d[dof / 2 - 1])
-                    };
-                    Variation::new(&at, &curve, dof % 2, weight, slope)
-                };
-                for j in 0..2 * (m + 1) {
-                    let h = 1e-6;
-                    let mut moved = x.clone();
-                    moved[j / 2][j % 2] += h;
-                    let plus = forces(m, &moved, f);
-                    moved[j / 2][j % 2] -= 2.0 * h;
-                    let minus = forces(m, &moved, f);
-                    for i in 0..2 * (m + 1) {
-                        let difference = (plus[i] - minus[i]) / (2.0 * h);
-                        let exact = geometric_tangent(&at, &curve, f, &variation(i), &variation(j));
-                        assert!(
-                            (difference - exact).abs() < 1e-7,
-                            "m {m} gap {gap} ({i}, {j}): {difference} {exact}"
-                        );
-                    }
-                }
+                x.extend(arc(m));
+                check(surface(m), &x, &format!("m {m} gap {gap}"));
+            }
+        }
+    }
+
+    #[test]
+    fn on_a_smooth_chain_it_is_so_too_on_every_piece() {
+        let even: Vec<[f64; 2]> = [[0.0; 2]].into_iter().chain(arc(6)).collect();
+        let nodes: Vec<Node> = even
+            .iter()
+            .map(|&at| Node {
+                name: String::new(),
+                at,
+            })
+            .collect();
+        let mut chain = surface(6);
+        smooth(&mut chain, &nodes);
+        for (k, over) in [0.2, 0.75, 1.1, 1.5, 2.05].into_iter().enumerate() {
+            for gap in [-0.1, 0.0, 0.15] {
+                let mut x: Vec<[f64; 2]> = even.iter().map(|[x, y]| [*x, 1.1 * y]).collect();
+                x[0] = [
+                    over + 0.2 * gap,
+                    1.1 * (0.8 * (0.7 * over).sin() + 0.1 * over) - gap,
+                ];
+                let spot = project(x[0], &[chain.clone()], &[0], &x, None).unwrap();
+                assert_eq!(spot.element, k);
+                check(chain.clone(), &x, &format!("piece {k} gap {gap}"));
             }
         }
     }

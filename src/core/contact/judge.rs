@@ -3,7 +3,7 @@
 //! A state is judged from positions and forces alone, now and in the last accepted state. Nothing of the iterations'
 //! bookkeeping (modes, S*, anchors, counted slip) is used. The laws:
 //!
-//! - g >= 0; no force acts across a gap; F_n >= 0; |F_t| <= tan φ F_n + c (eqn 20);
+//! - g >= 0, also over surfaces that are not the nearest, which a node has gone through; no force acts across a gap; F_n >= 0; |F_t| <= tan φ F_n + c (eqn 20);
 //! - a node that touches in both states has a net slip: the way along the surface from foot to foot, across the borders of
 //!   elements. If it is not zero, friction opposes it and is at its limit;
 //! - a node that was open, or on another surface, may have touched anywhere on its way. Only friction that is at its limit
@@ -15,11 +15,11 @@
 //! bodies make forces less exact and positions not.
 
 use crate::contact::corner::{Side, beyond_sum, beyond_vertex, half_angle};
+use crate::contact::element::{Element, closed};
 use crate::contact::feet::{self, Foot, direction, place};
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::stick_point::distance;
-use crate::fem::lagrange::shape;
 use crate::model::Friction;
 use crate::model::{Contact, Surface};
 
@@ -75,6 +75,7 @@ fn further(at: [f64; 2], way: Option<&[f64; 2]>) -> [f64; 2] {
 pub struct Judge {
     feet: Vec<Foot>,
     earlier: Vec<Foot>,
+    others: Vec<Foot>,
     sides: Vec<Touching>,
     /// The state that was judged last, which is mostly the one accepted before the next.
     last: Stood,
@@ -173,6 +174,7 @@ impl Judge {
         Judge {
             feet: Vec::with_capacity(FEW),
             earlier: Vec::with_capacity(FEW),
+            others: Vec::with_capacity(FEW),
             sides: Vec::with_capacity(FEW),
             last: Stood::with_capacity(nodes, slaves),
             next: Stood::with_capacity(nodes, slaves),
@@ -248,6 +250,14 @@ impl Judge {
             return;
         };
         let gap = signed_gap(&foot, point, seen);
+        let through = through(seen, slave, foot.spot.surface, near, &mut self.others);
+        if through > near {
+            let numbers = Numbers {
+                gap: -through,
+                ..Numbers::default()
+            };
+            report(Law::Penetration, through / length, numbers);
+        }
         let numbers = Numbers {
             gap,
             ..Numbers::default()
@@ -308,8 +318,8 @@ impl Judge {
                     xi: end,
                     ..foot.spot
                 };
-                let nodes = &seen.surfaces[border.surface].elements[border.element];
-                let at = place(nodes, seen.now, end);
+                let element = Element::of(&seen.surfaces[border.surface], border.element);
+                let at = place(element, seen.now, end);
                 let there = size([point[0] - at[0], point[1] - at[1]]) <= near;
                 there.then(|| beyond_border(seen, border)).flatten()
             });
@@ -348,6 +358,42 @@ impl Judge {
     }
 }
 
+/// How far a slave node has gone through one of its surfaces since the last accepted state (length), without being nearest
+/// to it; 0 where it has not. Only where it was over the surface and now is under it, not where it went round an end.
+fn through(seen: &Seen, slave: usize, nearest: usize, near: f64, feet: &mut Vec<Foot>) -> f64 {
+    let surfaces = &seen.contacts[slave].surfaces;
+    let others = surfaces.iter().filter(|&&other| other != nearest);
+    let mut over = |other: usize, point: [f64; 2], positions: &[[f64; 2]]| {
+        feet::find(point, seen.surfaces, &[other], positions, 0.0, feet);
+        let foot = feet.first()?;
+        let surface = &seen.surfaces[other];
+        if foot.spot.xi.abs() == 1.0 && !surface.endless {
+            return None;
+        }
+        let t = direction(
+            Element::of(surface, foot.spot.element),
+            positions,
+            foot.spot.xi,
+        )?;
+        Some(dot(
+            [point[0] - foot.at[0], point[1] - foot.at[1]],
+            [t[1], -t[0]],
+        ))
+    };
+    others.fold(0.0, |most: f64, &other| {
+        let now = over(other, seen.point(slave), seen.now).filter(|gap| *gap < -near);
+        let Some(gap) = now else {
+            return most;
+        };
+        let was = over(other, seen.was(slave), seen.before);
+        if was.is_some_and(|was| was >= -near) {
+            most.max(-gap)
+        } else {
+            most
+        }
+    })
+}
+
 /// A side at a spot. `None` where dx/dξ = 0.
 fn touching(
     seen: &Seen,
@@ -356,10 +402,9 @@ fn touching(
     earlier: &[Foot],
     near: f64,
 ) -> Option<Touching> {
-    let nodes = &seen.surfaces[spot.surface].elements[spot.element];
-    let tangent = direction(nodes, seen.now, spot.xi)?;
-    let friction = &seen.friction[slave];
     let surface = &seen.surfaces[spot.surface];
+    let tangent = direction(Element::of(surface, spot.element), seen.now, spot.xi)?;
+    let friction = &seen.friction[slave];
     let way = |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave];
     let here = earlier.iter().find(|f| f.spot.surface == spot.surface);
     let was = seen.was(slave);
@@ -486,15 +531,19 @@ fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> 
 
 /// The same point as an end (xi = ±1) of the neighbouring element. `None` at an end of the chain.
 fn beyond_border(seen: &Seen, border: SurfacePoint) -> Option<SurfacePoint> {
-    let elements = &seen.surfaces[border.surface].elements;
-    let own = &elements[border.element];
+    let surface = &seen.surfaces[border.surface];
+    let count = surface.elements.len();
     let ahead = border.xi > 0.0;
-    let step = if ahead { 1 } else { elements.len() - 1 };
-    let element = (border.element + step) % elements.len();
+    let step = if ahead { 1 } else { count - 1 };
+    let element = (border.element + step) % count;
+    let (own, other) = (
+        Element::of(surface, border.element),
+        Element::of(surface, element),
+    );
     let (mine, its) = if ahead {
-        (own.last(), elements[element].first())
+        (own.last(), other.first())
     } else {
-        (own.first(), elements[element].last())
+        (own.first(), other.last())
     };
     (element != border.element && mine == its).then_some(SurfacePoint {
         element,
@@ -506,8 +555,8 @@ fn beyond_border(seen: &Seen, border: SurfacePoint) -> Option<SurfacePoint> {
 /// Distance with its sign: negative where the point lies inside.
 fn signed_gap(foot: &Foot, point: [f64; 2], seen: &Seen) -> f64 {
     let normal = |spot: SurfacePoint| {
-        let nodes = &seen.surfaces[spot.surface].elements[spot.element];
-        let t = direction(nodes, seen.now, spot.xi);
+        let element = Element::of(&seen.surfaces[spot.surface], spot.element);
+        let t = direction(element, seen.now, spot.xi);
         t.map_or([0.0; 2], |t| [t[1], -t[0]])
     };
     let mut n = normal(foot.spot);
@@ -546,33 +595,26 @@ fn is_past_end_at(
     if chain.endless || xi.abs() < 1.0 {
         return false;
     }
-    let nodes = &chain.elements[element];
-    let (end, other) = if xi > 0.0 {
-        (nodes.last(), chain.elements.first().and_then(|n| n.first()))
-    } else {
-        (nodes.first(), chain.elements.last().and_then(|n| n.last()))
-    };
     let is_last = if xi > 0.0 {
         element + 1 == chain.elements.len()
     } else {
         element == 0
     };
-    let closed = chain.elements.len() > 1 && end == other;
-    if !is_last || closed {
+    if !is_last || closed(chain) {
         return false;
     }
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
-    let t = direction(nodes, positions, xi).unwrap_or([0.0; 2]);
+    let t = direction(Element::of(chain, element), positions, xi).unwrap_or([0.0; 2]);
     xi * dot(to, t) > near
 }
 
 /// Puts a slave node's force on it, and its reverse on the nodes of the master.
 fn hand_on(seen: &Seen, node: usize, force: [f64; 2], foot: &Foot, contact: &mut [[f64; 2]]) {
-    let nodes = &seen.surfaces[foot.spot.surface].elements[foot.spot.element];
-    let n = shape(nodes.len(), foot.spot.xi).n;
+    let element = Element::of(&seen.surfaces[foot.spot.surface], foot.spot.element);
+    let n = element.shape(foot.spot.xi).n;
     for k in 0..2 {
         contact[node][k] += force[k];
-        for (&master, share) in nodes.iter().zip(n) {
+        for (&master, share) in element.nodes.iter().zip(n) {
             contact[master][k] -= share * force[k];
         }
     }

@@ -2,14 +2,20 @@
 
 pub mod balance;
 pub mod corner;
+pub mod crossing;
+pub mod element;
 pub mod feet;
 pub mod geometric_tangent;
 pub mod judge;
 pub mod laws;
 pub mod projection;
 pub mod record;
+pub mod smooth;
 pub mod state;
 pub mod stick_point;
 pub mod table1;
 pub mod table2;
 pub mod tracking;
+
+#[cfg(test)]
+mod tests;

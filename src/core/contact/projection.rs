@@ -1,12 +1,14 @@
 //! Projection of a slave node on the chains of interface elements that it may touch (Fig. 2).
 //!
 //! S* is the closest point of all candidate elements. Between two elements that meet at an angle the normal at the
-//! common node is the mean of the two; past an end of a chain there is nothing to touch. Frame: the outward normal n
+//! common node is the mean of the two; the pieces of a smooth chain ([`super::smooth`]) meet at none. Past an end of a
+//! chain there is nothing to touch. Frame: the outward normal n
 //! lies to the right of the walk along the chain, t is n turned 90 degrees anticlockwise, that is, t points along
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
 use crate::contact::corner;
-use crate::fem::lagrange::{MAX_NODES, samples, shape};
+use crate::contact::element::Element;
+use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
 
 /// How far past an end of a chain a node still counts as over it, in lengths of the last element.
@@ -40,8 +42,22 @@ pub struct Projection {
     pub shape: [f64; MAX_NODES],
     /// dN_i/dξ there.
     pub shape_slope: [f64; MAX_NODES],
-    /// Derivatives of the element's curve. `None` if S* lies on an end of the element.
+    /// Derivatives of the element's curve. `None` if S* lies on an end of the element, unless a
+    /// smooth chain goes on there.
     pub curve: Option<Curve>,
+}
+
+impl Projection {
+    /// The same place seen along another normal (unit): that of a corner in which a slave node at `slave` is held.
+    pub fn along(self, normal: [f64; 2], slave: [f64; 2]) -> Self {
+        let to = [slave[0] - self.foot[0], slave[1] - self.foot[1]];
+        Projection {
+            normal,
+            gap: to[0] * normal[0] + to[1] * normal[1],
+            curve: None,
+            ..self
+        }
+    }
 }
 
 /// Derivatives of the master element's curve at S*.
@@ -106,8 +122,8 @@ fn consider(
     best: &mut Option<Best>,
 ) {
     let surface = &surfaces[spot.surface];
-    let nodes = &surface.elements[spot.element];
-    let own = Bounds::new(nodes, positions);
+    let element = Element::of(surface, spot.element);
+    let own = Bounds::new(element.nodes, positions);
     if let Some(best) = best
         && !surface.endless
         && own.lies_beyond(slave, best.distance)
@@ -115,9 +131,9 @@ fn consider(
         return;
     }
     let (distance, xi) = if surface.endless {
-        closest_of_line(nodes, positions, slave)
+        closest_of_line(element, positions, slave)
     } else {
-        closest(nodes, positions, slave, warm.then_some(spot.xi))
+        closest(element, positions, slave, warm.then_some(spot.xi))
     };
     let slack = STAY_TOLERANCE * own.size();
     if best
@@ -158,13 +174,13 @@ pub fn element_size(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]
 }
 
 /// Half the angle (radians) between the normals of the two elements that meet at a border ([`corner::half_angle`]): positive
-/// where they form a concave corner, negative at a convex vertex. `None` where no two elements meet.
+/// where they form a concave corner, negative at a convex vertex. `None` where no two elements meet, and on a smooth chain, which has no corners.
 pub fn half_angle(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> Option<f64> {
+    if !surface.smooth.is_empty() {
+        return None;
+    }
     let (other, xi) = neighbour(surface, border)?;
-    let slope = |element: usize, xi: f64| {
-        let nodes = &surface.elements[element];
-        blend(nodes, positions, &shape(nodes.len(), xi).d)
-    };
+    let slope = |element: usize, xi: f64| slope_at(surface, element, xi, positions);
     let (own, across) = (slope(border.element, border.xi), slope(other, xi));
     Some(if border.xi > 0.0 {
         corner::half_angle(own, across)
@@ -181,13 +197,14 @@ pub fn projection_at(
     slave: [f64; 2],
 ) -> Projection {
     let surface = &surfaces[spot.surface];
-    let nodes = &surface.elements[spot.element];
-    let s = shape(nodes.len(), spot.xi);
+    let element = Element::of(surface, spot.element);
+    let (nodes, s) = (element.nodes, element.shape(spot.xi));
     let foot = blend(nodes, positions, &s.n);
     let slope = blend(nodes, positions, &s.d);
     let normal = normal_at(surface, spot, positions, slope);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
-    let inside = spot.xi.abs() != 1.0 || surface.endless;
+    let passes = !surface.smooth.is_empty() && neighbour(surface, spot).is_some();
+    let inside = spot.xi.abs() != 1.0 || surface.endless || passes;
     Projection {
         foot,
         normal,
@@ -201,6 +218,11 @@ pub fn projection_at(
     }
 }
 
+/// Outward normal of a spot's own element.
+pub fn normal(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [f64; 2] {
+    right_of(slope_at(surface, spot.element, spot.xi, positions))
+}
+
 /// Outward normal at a spot, dx/dξ of whose element is `slope`: the mean of both sides' where two elements meet.
 fn normal_at(
     surface: &Surface,
@@ -212,8 +234,7 @@ fn normal_at(
     let Some((other, xi)) = neighbour(surface, spot) else {
         return own;
     };
-    let nodes = &surface.elements[other];
-    let across = right_of(blend(nodes, positions, &shape(nodes.len(), xi).d));
+    let across = right_of(slope_at(surface, other, xi, positions));
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
 
@@ -229,16 +250,23 @@ pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePo
     }
 }
 
+/// dx/dξ at ξ of an element.
+fn slope_at(surface: &Surface, element: usize, xi: f64, positions: &[[f64; 2]]) -> [f64; 2] {
+    let element = Element::of(surface, element);
+    blend(element.nodes, positions, &element.shape(xi).d)
+}
+
 /// The element that meets the spot's own there, and ξ on it. `None` inside an element, and at an end of the chain.
 fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
     let count = surface.elements.len();
-    let own = &surface.elements[spot.element];
+    let own = Element::of(surface, spot.element);
+    let at = |other: usize| Element::of(surface, other);
     let (other, xi, node, met) = if spot.xi == 1.0 {
         let other = (spot.element + 1) % count;
-        (other, -1.0, own.last(), surface.elements[other].first())
+        (other, -1.0, own.last(), at(other).first())
     } else if spot.xi == -1.0 {
         let other = (spot.element + count - 1) % count;
-        (other, 1.0, own.first(), surface.elements[other].last())
+        (other, 1.0, own.first(), at(other).last())
     } else {
         return None;
     };
@@ -254,8 +282,8 @@ fn past_end(
     if surface.endless || spot.xi.abs() < 1.0 || neighbour(surface, spot).is_some() {
         return false;
     }
-    let nodes = &surface.elements[spot.element];
-    let s = shape(nodes.len(), spot.xi);
+    let element = Element::of(surface, spot.element);
+    let (nodes, s) = (element.nodes, element.shape(spot.xi));
     let (foot, slope) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
     let beyond = spot.xi * ((slave[0] - foot[0]) * slope[0] + (slave[1] - foot[1]) * slope[1]);
     beyond > END_TOLERANCE * Bounds::new(nodes, positions).size() * length(slope)
@@ -263,8 +291,8 @@ fn past_end(
 
 /// Distance to the closest point of the endless straight line through an element of two nodes, and its coordinate,
 /// which is not bounded.
-fn closest_of_line(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
-    let at = |xi: f64| blend(nodes, positions, &shape(nodes.len(), xi).n);
+fn closest_of_line(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
+    let at = |xi: f64| blend(element.nodes, positions, &element.shape(xi).n);
     let (start, end) = (at(-1.0), at(1.0));
     let (along, to) = (
         [end[0] - start[0], end[1] - start[1]],
@@ -278,36 +306,37 @@ fn closest_of_line(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2]) -> 
 
 /// Distance to the closest point of an element, and its coordinate; `guess` is a coordinate that may be close.
 fn closest(
-    nodes: &[usize],
+    element: Element<'_>,
     positions: &[[f64; 2]],
     slave: [f64; 2],
     guess: Option<f64>,
 ) -> (f64, f64) {
     let squared = |n: &[f64; MAX_NODES]| {
-        let to = away(slave, blend(nodes, positions, n));
+        let to = away(slave, blend(element.nodes, positions, n));
         to[0] * to[0] + to[1] * to[1]
     };
     let guess = guess.map(|xi| xi.clamp(-1.0, 1.0));
-    let guess = guess.map(|xi| (squared(&shape(nodes.len(), xi).n), xi));
-    let samples = samples(nodes.len()).iter();
-    let start = samples.map(|(xi, n)| (squared(n), *xi)).chain(guess).fold(
-        (f64::INFINITY, 0.0),
-        |best, now| {
+    let guess = guess.map(|xi| (squared(&element.shape(xi).n), xi));
+    let samples = (0..element.samples()).map(|k| element.sample(k));
+    let samples = samples.map(|(xi, n)| (squared(&n), xi));
+    let start = samples
+        .chain(guess)
+        .fold((f64::INFINITY, 0.0), |best, now| {
             if now.0 < best.0 { now } else { best }
-        },
-    );
-    let refined = descend(nodes, positions, slave, start.1);
-    let ended = (squared(&shape(nodes.len(), refined).n), refined);
+        });
+    let refined = descend(element, positions, slave, start.1);
+    let ended = (squared(&element.shape(refined).n), refined);
     let (squared, xi) = if ended.0 <= start.0 { ended } else { start };
     (squared.sqrt(), xi)
 }
 
 /// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton where the second derivative of the squared
 /// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'.
-fn descend(nodes: &[usize], positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
+fn descend(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
+    let nodes = element.nodes;
     let mut xi = start;
     for _ in 0..50 {
-        let s = shape(nodes.len(), xi);
+        let s = element.shape(xi);
         let (x, d, dd) = (
             blend(nodes, positions, &s.n),
             blend(nodes, positions, &s.d),
@@ -403,6 +432,7 @@ impl Bounds {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::lagrange::shape;
 
     fn surface(elements: Vec<Vec<usize>>) -> Vec<Surface> {
         vec![Surface {
@@ -410,6 +440,7 @@ mod tests {
             elements,
             rigid: true,
             endless: false,
+            smooth: Vec::new(),
         }]
     }
 

@@ -14,10 +14,10 @@
 //!
 //! Drift has the sign of slip, u_tS* − u_tS: what sticking must take back (Table 1).
 
+use crate::contact::element::{Element, closed};
 use crate::contact::projection::{
     Projection, STRAIGHT, SurfacePoint, half_angle, project, tangent,
 };
-use crate::fem::lagrange::shape;
 use crate::model::Surface;
 
 /// Gauss-Legendre points and weights for the length of an element. They are constants since they are needed in every major
@@ -77,10 +77,8 @@ pub fn distance(
     if from.element == to.element || !closed(surface) {
         return open;
     }
-    let whole: f64 = surface
-        .elements
-        .iter()
-        .map(|nodes| length(nodes, -1.0, 1.0, positions))
+    let whole: f64 = Element::all(surface)
+        .map(|element| length(element, -1.0, 1.0, positions))
         .sum();
     let other = open - whole.copysign(open);
     if other.abs() < open.abs() {
@@ -92,34 +90,34 @@ pub fn distance(
 
 /// The same for `from.element <= to.element`.
 fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
+    let part = |element: usize, from: f64, to: f64| {
+        length(Element::of(surface, element), from, to, positions)
+    };
     if from.element == to.element {
-        return length(&surface.elements[from.element], from.xi, to.xi, positions);
+        return part(from.element, from.xi, to.xi);
     }
-    let between = &surface.elements[from.element + 1..to.element];
-    length(&surface.elements[from.element], from.xi, 1.0, positions)
-        + between
-            .iter()
-            .map(|nodes| length(nodes, -1.0, 1.0, positions))
-            .sum::<f64>()
-        + length(&surface.elements[to.element], -1.0, to.xi, positions)
-}
-
-fn closed(surface: &Surface) -> bool {
-    let first = surface.elements.first().and_then(|nodes| nodes.first());
-    let last = surface.elements.last().and_then(|nodes| nodes.last());
-    surface.elements.len() > 1 && first == last
+    let between = from.element + 1..to.element;
+    part(from.element, from.xi, 1.0)
+        + between.map(|element| part(element, -1.0, 1.0)).sum::<f64>()
+        + part(to.element, -1.0, to.xi)
 }
 
 /// Length of an element's curve from one ξ to another; negative backwards.
-fn length(nodes: &[usize], from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
+fn length(element: Element<'_>, from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
     if from == to {
         return 0.0;
     }
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let speed = |xi: f64| {
-        let d = shape(nodes.len(), xi).d;
-        let sum =
-            |k: usize| -> f64 { nodes.iter().zip(d).map(|(&n, d)| d * positions[n][k]).sum() };
+        let d = element.shape(xi).d;
+        let sum = |k: usize| -> f64 {
+            element
+                .nodes
+                .iter()
+                .zip(d)
+                .map(|(&n, d)| d * positions[n][k])
+                .sum()
+        };
         let (x, y) = (sum(0), sum(1));
         (x * x + y * y).sqrt()
     };
@@ -141,6 +139,7 @@ mod tests {
             elements,
             rigid: true,
             endless: false,
+            smooth: Vec::new(),
         }
     }
 

@@ -11,10 +11,13 @@ use crate::fem::assembly::history_len;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
+use crate::linear::drag::add_drag;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{self, Singular};
 use crate::linear::source::{At, Solved, Source};
+use crate::linear::stability::Stability;
 use crate::linear::system::System;
+use crate::linear::tangent::Tangent;
 use crate::model::{Axis, Friction, Mode, Model, Settings, Watched};
 use std::sync::Arc;
 
@@ -28,6 +31,8 @@ pub struct Bodies {
     model: Arc<Model>,
     system: System,
     bench: Bench,
+    /// What stability is told by, once it is asked for.
+    tangent: Option<Tangent>,
     /// Whether the stresses tell the force of each contact ([`stresses_tell`]).
     told: Vec<bool>,
     /// Whether any contact starts inside, and is pushed out over the first leg.
@@ -66,6 +71,7 @@ impl Bodies {
                 contact: vec![[0.0; 2]; nodes],
                 load: vec![0.0; model.dofs.len()],
             },
+            tangent: None,
             told: (0..contacts).map(|k| stresses_tell(&model, k)).collect(),
             overlaps: model.contacts.iter().any(|contact| contact.overlap > 0.0),
             model,
@@ -147,7 +153,7 @@ impl Source for Bodies {
 
     fn aim(&mut self, at: &At<'_>) -> bool {
         let constant = self.model.prescribed.is_empty() && !self.overlaps;
-        let holds = constant && at.accepted.history.is_empty();
+        let holds = constant && at.accepted.history.is_empty() && !self.system.is_dragged(at);
         if holds {
             self.system.aim(&self.model, at);
         }
@@ -319,6 +325,7 @@ impl Source for Bodies {
         for load in &model.loads {
             bench.load[load.dof] += load.value * load.scale.at(at.last_target);
         }
+        add_drag(model, at, &self.system.sizes, &mut bench.load);
         let forces = Forces {
             internal: self.system.internal(),
             load: &bench.load,
@@ -354,6 +361,18 @@ impl Source for Bodies {
             ground.find_anchor(state, ground.positions[contact.node]);
             state.slip = state.drift;
         }
+    }
+
+    fn damps(&self) -> bool {
+        true
+    }
+
+    fn stability(&mut self, at: &At<'_>) -> Stability {
+        let (system, model) = (&self.system, &self.model);
+        let tangent = self
+            .tangent
+            .get_or_insert_with(|| Tangent::new(model, system));
+        tangent.stability(system, model, at)
     }
 
     fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {

@@ -6,8 +6,9 @@
 //!   large, what is nothing, and what double precision leaves.
 //! - `augmented` (eqn 9) and `reduced` (eqn 6): the two ways to solve a minor iteration; `condensation`: the bodies
 //!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `ordering`: the order of
-//!   elimination; `bordered` and `border`: the load factor as one more unknown.
-//! - [`singular`]: why there is no solution; [`estimate`]: what a scene takes of time and memory.
+//!   elimination; `bordered` and `border`: the load factor as one more unknown; `drag`: what resists a damped motion.
+//! - [`singular`]: why there is no solution; [`stability`]: which way a state of equilibrium leads, by its `tangent`;
+//!   [`estimate`]: what a scene takes of time and memory.
 
 mod augmented;
 pub mod bodies;
@@ -17,6 +18,7 @@ mod condensation;
 pub mod condensed;
 pub mod constant;
 mod coupling;
+mod drag;
 pub mod estimate;
 pub mod norms;
 mod ordering;
@@ -25,5 +27,7 @@ mod residual;
 pub mod singular;
 mod sizes;
 pub mod source;
+pub mod stability;
 mod system;
+mod tangent;
 mod violation;

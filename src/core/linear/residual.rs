@@ -1,5 +1,6 @@
 //! Out-of-balance forces of a linearisation (eqn 22), their norms, and what round-off leaves of them.
 
+use super::drag::add_drag;
 use super::norms::Norms;
 use super::sizes::ROUND_OFF;
 use super::source::At;
@@ -67,6 +68,7 @@ impl System {
         for load in &model.loads {
             self.external[load.dof] += load.value * load.scale.at(at.target);
         }
+        add_drag(model, at, &self.sizes, &mut self.external);
     }
 
     /// Renews the residual after the forces of the interface were changed, geometry and stiffness staying.

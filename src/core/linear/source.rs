@@ -14,6 +14,7 @@ use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
+use crate::linear::stability::Stability;
 use crate::model::{Friction, Settings, Watched};
 
 /// The state about which a source linearises.
@@ -43,6 +44,8 @@ pub struct At<'a> {
     /// Stiffness that holds sliding back in this major iteration (force by length); 0 where nothing does
     /// ([`crate::step::brake`]).
     pub brake: f64,
+    /// Drag of a damped motion since the last accepted state (force by length), on every displacement.
+    pub drag: Option<f64>,
     /// The settings as the user has them.
     pub chosen: &'a Settings,
     /// The settings in force: the strategy is the rung that the ladder has come to.
@@ -251,6 +254,16 @@ pub trait Source: Send {
         _accepted: &[ContactState],
         _contacts: &mut [ContactState],
     ) {
+    }
+
+    /// Whether it takes the drag of a damped motion into account.
+    fn damps(&self) -> bool {
+        false
+    }
+
+    /// Stability of the state of the last linearisation, with the modes that its contacts have.
+    fn stability(&mut self, _at: &At<'_>) -> Stability {
+        Stability::NotKnown
     }
 
     /// Value of a monitor in the state of the last linearisation.

@@ -18,6 +18,7 @@ use crate::linear::border::Border;
 use crate::linear::condensation::Condensation;
 use crate::linear::condensed::Condensed;
 use crate::linear::coupling::Interface;
+use crate::linear::drag::stiffen;
 use crate::linear::estimate::{Estimate, condensable};
 use crate::linear::norms::Norms;
 use crate::linear::sizes::Sizes;
@@ -43,6 +44,8 @@ pub struct System {
     /// What `stiffness` is laid out for.
     pub(super) layout: Option<Layout>,
     pub(super) whole: Option<Factors>,
+    /// Whether there is a drag in the last linearisation.
+    dragged: bool,
     /// Whether `whole` is scaled for the present linearisation.
     pub(super) scaled: bool,
     pub(super) bodies: Option<Condensation>,
@@ -93,6 +96,7 @@ impl System {
             assembly: Assembly::new(model),
             layout: None,
             whole: None,
+            dragged: false,
             scaled: false,
             bodies: None,
             estimate: Estimate::of(model),
@@ -164,13 +168,11 @@ impl System {
             .iter_mut()
             .zip(at.contacts.iter().zip(&model.contacts))
         {
-            interface.projection = node.spot.map(|spot| {
-                projection_at(
-                    &model.surfaces,
-                    spot,
-                    &self.positions,
-                    self.positions[slave.node],
-                )
+            let point = self.positions[slave.node];
+            let over = |spot| projection_at(&model.surfaces, spot, &self.positions, point);
+            interface.projection = node.spot.map(over).map(|here| match node.second {
+                Some(_) => here.along(node.normal, point),
+                None => here,
             });
             interface.allowed = slave.overlap * unclosed;
         }
@@ -207,6 +209,21 @@ impl System {
             history: at.accepted.history,
         };
         self.assembly.assemble(&model.dofs, moved, out);
+        self.drag(model, at);
+    }
+
+    /// Adds the drag of a damped motion to the stiffness.
+    fn drag(&mut self, model: &Model, at: &At<'_>) {
+        self.dragged = at.drag.is_some();
+        if let Some(pattern) = self.pattern().filter(|_| self.dragged).cloned() {
+            let diagonal = |e: usize| pattern.slot(e, e);
+            stiffen(model, at, &self.sizes, diagonal, &mut self.stiffness);
+        }
+    }
+
+    /// Whether there is a drag in the last linearisation, or is one wanted now.
+    pub fn is_dragged(&self, at: &At<'_>) -> bool {
+        self.dragged || at.drag.is_some()
     }
 
     /// Renews the pattern where a slave node has found another element with unknowns; rigid ones have no entries.

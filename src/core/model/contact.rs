@@ -13,7 +13,24 @@ pub struct Surface {
     pub rigid: bool,
     /// Whether it goes on straight past its ends; such a surface is one element of 2 nodes.
     pub endless: bool,
+    /// The pieces of a smooth curve through all nodes, one for each element, whose nodes are then those that the piece
+    /// depends on. Empty where each element is the Lagrange curve through its own nodes.
+    pub smooth: Vec<Piece>,
 }
+
+/// A piece of a smooth curve, from one node to the next: a cubic whose slope at each end depends on the nodes around
+/// ([`crate::contact::smooth`]).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Place among the element's nodes of the one where the piece begins; it ends at the one behind.
+    pub first: usize,
+    /// Share of each of the element's nodes in the slope at the beginning and at the end, by the part of the piece that is
+    /// walked: dx/dt with t from 0 to 1.
+    pub slopes: [[f64; STENCIL]; 2],
+}
+
+/// Most nodes that a piece depends on.
+pub const STENCIL: usize = 4;
 
 /// A slave node with the surfaces that it may touch.
 #[derive(Debug, Clone, PartialEq)]

@@ -79,6 +79,9 @@ documented! {
         Cut,
         /// It is cut; where the least increment still jumps, the history fails.
         Stop,
+        /// The load at which equilibrium ends is found by halves, to `settings.limit_load`; then a damped motion leads from the
+        /// last equilibrium to the next stable one, which is marked.
+        Dynamic,
     }
 }
 

@@ -38,6 +38,10 @@ documented! {
         pub at_major_limit: AtLimit,
         /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
         pub tolerance: f64,
+        /// With `history.jumps: dynamic`, the load at which equilibrium ends is found to this part of the path's largest load
+        /// factor. Default: 1e-6.
+        #[serde(skip_serializing_if = "is_default_limit_load")]
+        pub limit_load: f64,
         /// What becomes of gaps that are there before the first increment. Default: keep.
         #[serde(skip_serializing_if = "InitialGaps::is_default")]
         pub initial_gaps: InitialGaps,
@@ -68,11 +72,19 @@ impl Default for Settings {
             at_cycle: AtCycle::default(),
             at_major_limit: AtLimit::default(),
             tolerance: 1e-11,
+            limit_load: LIMIT_LOAD,
             initial_gaps: InitialGaps::default(),
             adjust_gap: 0.0,
             memory: None,
         }
     }
+}
+
+/// How exactly the load at which equilibrium ends is found, unless the scene says otherwise.
+const LIMIT_LOAD: f64 = 1e-6;
+
+fn is_default_limit_load(value: &f64) -> bool {
+    *value == LIMIT_LOAD
 }
 
 fn is_zero(value: &f64) -> bool {

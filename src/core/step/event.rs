@@ -7,7 +7,9 @@ use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::Strategy;
+use crate::step::detour::Detour;
 use crate::step::major_history::MajorCycle;
+use crate::step::motion::Motion;
 use serde::{Deserialize, Serialize};
 
 /// Where the solver is. All counts start at 1.
@@ -35,6 +37,8 @@ pub struct Event {
     /// Arc from the start of the history to that of this increment, and where it was accepted to its end. `None` under load
     /// control.
     pub arc: Option<f64>,
+    /// Drag of the damped motion of which this is a part (force by length); 0 where there is none.
+    pub drag: f64,
     /// One record a slave node, in the order of the scene.
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, about which the minor iterations are linearised.
@@ -91,6 +95,17 @@ pub enum Outcome {
         /// Stiffness that holds sliding back from now on (force by length).
         stiffness: f64,
     },
+    /// A damped motion past a limit point begins, has made a step, or makes one again.
+    Moves(Moves),
+    /// The halves of an increment failed: it is started again on a way round.
+    Detour {
+        /// What was tried last failed of.
+        why: Failure,
+        /// The way that is tried now.
+        by: Detour,
+        /// Size of the part that is tried (load factor).
+        size: f64,
+    },
     /// The minor iterations are done, but equilibrium is not reached: another major iteration.
     Major {
         /// Norms at the end of this major iteration.
@@ -116,6 +131,8 @@ pub enum Outcome {
         marked: Option<Finding>,
         /// Whether it ends on another branch of equilibrium.
         jumped: bool,
+        /// The damped motion that it ends, if any.
+        motion: Option<Motion>,
         /// Whether the history ends here.
         last: bool,
     },
@@ -134,6 +151,41 @@ impl Outcome {
                 | Outcome::HeldBack { .. }
         )
     }
+}
+
+/// What a damped motion does.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Moves {
+    /// It begins: there is no equilibrium near the last one any more.
+    LetsGo {
+        /// What the smallest increment failed of.
+        why: Failure,
+        /// Load factor of the last equilibrium.
+        load: f64,
+    },
+    /// A step of it is done.
+    Step {
+        /// Largest displacement in the step (length).
+        motion: f64,
+        /// Its number, from 1.
+        number: u32,
+    },
+    /// A step is tried again, slower; or coming to rest was too early, and the motion goes on.
+    Slower(Slow),
+}
+
+/// Why a step of a damped motion is not taken.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Slow {
+    /// It failed.
+    Failed(Failure),
+    /// It goes further than a step may.
+    Far {
+        /// Its largest displacement (length).
+        motion: f64,
+    },
+    /// Its end is unstable, so that the motion goes elsewhere.
+    Unstable,
 }
 
 /// Why an increment failed. The state is that in which it failed; stepping on from it is allowed.
@@ -179,6 +231,11 @@ pub enum Failure {
         motion: f64,
         /// How far it was predicted to move (length).
         predicted: f64,
+    },
+    /// A damped motion past a limit point came to no rest.
+    Restless {
+        /// Steps that it made.
+        steps: u32,
     },
     /// The residual or the displacements grew out of all bounds.
     Diverged {

@@ -52,7 +52,7 @@ impl Stepper {
             || !(helps || drowned)
             || !any
             || !cuts
-            || self.model.jumps == Jumps::Stop
+            || matches!(self.model.jumps, Jumps::Stop | Jumps::Dynamic)
             || self.state.way.is_some()
         {
             return None;

@@ -1,10 +1,11 @@
-//! Increments: accepted, cut into halves, damped, or failed.
+//! Increments: accepted, cut into halves, led round, damped, or failed.
 
 use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::{BodyKind, Factor, Mode};
-use crate::step::event::{Failure, Outcome};
+use crate::model::{BodyKind, Factor, Jumps, Mode};
+use crate::step::detour::{Detour, Route};
+use crate::step::event::{Failure, Outcome, Slow};
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
@@ -13,6 +14,8 @@ use std::sync::Arc;
 
 /// Sums of halves of an increment are this exact.
 const ROUNDING: f64 = 1e-9;
+/// Smallest part of an increment that halves can be.
+const SMALLEST_HALF: f64 = 1e-9;
 /// A major iteration is not damped below this part of its load.
 const SMALLEST_PART: f64 = 1e-6;
 
@@ -22,33 +25,51 @@ impl Stepper {
         if let Failure::LadderEnded { scales, .. } = &mut why {
             *scales = self.scales();
         }
-        match self.cut(&why).or_else(|| self.brake(&why)) {
-            Some(again) => again,
-            None => Outcome::Failed(why),
+        let again = self.cut(&why).or_else(|| self.try_otherwise(&why));
+        again.unwrap_or(Outcome::Failed(why))
+    }
+
+    /// What is tried where no smaller increment helps.
+    pub(super) fn try_otherwise(&mut self, why: &Failure) -> Option<Outcome> {
+        self.detour(why).or_else(|| self.brake(why))
+    }
+
+    /// Whether an increment that failed so may succeed with another size.
+    fn size_helps(&self, why: &Failure) -> bool {
+        match why {
+            Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
+            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
+            Failure::LadderEnded { scales, .. } => !scales,
+            _ => true,
         }
     }
 
     /// Starts the increment again with half its size. `None` where the strategy does not cut, where that cannot help, and
     /// where the increment is at its smallest.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
-        let controls = &self.state.controls;
-        let helps = match why {
-            Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
-            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
-            Failure::LadderEnded { scales, .. } => !scales,
-            _ => true,
-        };
+        if self.state.motion.is_some() {
+            return self.slow_down(Slow::Failed(why.clone()));
+        }
+        let helps = self.size_helps(why);
         if self.state.way.is_some() {
             return self.cut_along(why, helps);
         }
+        let halved = if helps { self.halve(why) } else { None };
+        match halved {
+            None if helps => self.leap_over(why).or_else(|| self.let_go(why)),
+            None if matches!(why, Failure::Singular(_)) => self.let_go(why),
+            halved => halved,
+        }
+    }
+
+    /// Starts the increment again with half its size, unless it is at its smallest, or the strategy does not cut.
+    fn halve(&mut self, why: &Failure) -> Option<Outcome> {
         let half = self.state.sub_increment.halved();
-        let least = controls.least * (1.0 - ROUNDING);
-        if strategy::rungs(controls.settings.strategy).is_empty()
-            || !helps
-            || half.size() < least
-            || half.size() == 0.0
-        {
-            return if helps { self.leap_over(why) } else { None };
+        let least = self.least() * (1.0 - ROUNDING);
+        let rungs = strategy::rungs(self.state.controls.settings.strategy);
+        let cuts = !rungs.is_empty() || self.can_move();
+        if !cuts || half.size() < least || half.size() == 0.0 {
+            return None;
         }
         self.restart(half);
         let (why, size) = (why.clone(), half.size());
@@ -64,6 +85,59 @@ impl Stepper {
         self.restart(self.state.sub_increment);
         let why = why.clone();
         Some(Outcome::Cut { why, size })
+    }
+
+    /// Size below which an increment is not cut: where a damped motion follows, that which the limit load is found to.
+    fn least(&self) -> f64 {
+        let controls = &self.state.controls;
+        if !self.can_move() {
+            return controls.least;
+        }
+        let largest = self.model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        // The smallest half is less than twice the least.
+        let wanted = controls.settings.limit_load * largest / 2.0;
+        // Halves are counted in 32 bits.
+        let whole = (self.state.sub_increment.to - self.state.sub_increment.from).abs();
+        wanted.max(whole * SMALLEST_HALF).min(controls.least)
+    }
+
+    /// Starts the increment again on the next detour. `None` where the strategy cuts nothing, where smaller increments cannot
+    /// help, where all detours have been tried, and where all bodies are given by numbers: what fails there is the
+    /// interface problem itself, of which the ladder has tried all that it knows.
+    pub(super) fn detour(&mut self, why: &Failure) -> Option<Outcome> {
+        let state = &self.state;
+        let chosen = &state.controls.settings;
+        if strategy::rungs(chosen.strategy).is_empty()
+            || matches!(why, Failure::Leapt { .. }) && state.detour.is_none()
+            || !self.size_helps(why)
+            || state.way.is_some()
+            || self.model.jumps == Jumps::Dynamic
+            || self.is_given()
+        {
+            return None;
+        }
+        let last = state.detour.map(|way| way.by);
+        let from = state.detour.map_or(state.sub_increment, |way| way.from);
+        let start = state.start.load_factor;
+        let mut by = Detour::after(last, chosen)?;
+        if by == Detour::Section && from.rest(start).section().size() < state.controls.least {
+            by = Detour::after(Some(by), chosen)?;
+        }
+        let part = match by {
+            Detour::Section => from.rest(start).section(),
+            Detour::Back => from,
+            _ => from.rest(start),
+        };
+        self.state.detour = Some(Route { by, from });
+        self.restart(part);
+        let (why, size) = (why.clone(), part.size());
+        Some(Outcome::Detour { why, by, size })
+    }
+
+    /// Whether all bodies are given by numbers.
+    fn is_given(&self) -> bool {
+        let mut bodies = self.model.bodies.iter();
+        bodies.all(|body| matches!(body.kind, BodyKind::Linear(_)))
     }
 
     /// Starts the increment again, up to the end of this part.
@@ -146,14 +220,11 @@ impl Stepper {
         let leg = self.leg_reached();
         let bounded = self.go_along(leg);
         self.settle_contacts();
+        let motion = self.state.motion.take();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         start.leg = leg;
-        start.verdict = Some(verdict);
-        self.source
-            .accept(&self.state.u, &start.u, &mut start.history);
-        Arc::make_mut(&mut start.u).copy_from_slice(&self.state.u);
-        start.nodes.clone_from(&self.state.nodes);
+        self.renew_start(verdict);
         let last = bounded || leg + 1 == self.model.path.len();
         if last {
             self.state.status = Status::Finished;
@@ -165,12 +236,23 @@ impl Stepper {
             unsettled,
             marked,
             jumped,
+            motion,
             last,
         }
     }
 
+    /// Makes the present displacements and contacts those that are accepted.
+    pub(super) fn renew_start(&mut self, verdict: Verdict) {
+        let start = Arc::make_mut(&mut self.state.start);
+        start.verdict = Some(verdict);
+        self.source
+            .accept(&self.state.u, &start.u, &mut start.history);
+        Arc::make_mut(&mut start.u).copy_from_slice(&self.state.u);
+        start.nodes.clone_from(&self.state.nodes);
+    }
+
     /// Slip is counted from here on, and stick points are those of the accepted state.
-    fn settle_contacts(&mut self) {
+    pub(super) fn settle_contacts(&mut self) {
         for node in &mut self.state.nodes {
             (node.slip, node.left, node.kept) = (0.0, None, false);
             if node.mode == Mode::Sliding {
@@ -199,6 +281,7 @@ impl Stepper {
             let (start, increment) = (&self.state.start, self.state.controls.increment);
             SubIncrement::whole(&self.model, start.place(), increment)
         };
+        self.state.detour = None;
         self.state.sub_increment = self.state.sub_increment.next().unwrap_or_else(whole);
         self.state.begin();
         self.linearised = self.linearised && self.source.aim(&self.state.at());

@@ -218,7 +218,9 @@ impl State {
         }
         controls.increment = increment;
         controls.least = least(model.least, increment).min(increment);
+        self.motion = None;
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);
+        self.detour = None;
         self.start_again();
         Ok(())
     }

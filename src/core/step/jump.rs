@@ -9,12 +9,16 @@
 //! has shrunk by less than the fourth root is one, and is accepted marked. A change of modes, a node that opens
 //! or slides or touches, or a load that sets in, shrinks.
 //!
+//! A way round ([`crate::step::detour`]) must not jump: what lies on another branch is no answer to halves that fail, and where a
+//! structure lets go may not depend on the increment.
+//!
 //! Near a limit point the halves may have no end at all, where the whole increment has one beyond. Where they fail, the suspected
 //! increment is taken whole after all, and is a jump if it still moves beyond what is expected.
 
 use crate::contact::laws::Verdict;
 use crate::linear::norms::Norms;
 use crate::model::Jumps;
+use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome};
 use crate::step::pace::{Pace, Suspect};
 use crate::step::stepper::Stepper;
@@ -22,6 +26,9 @@ use crate::strategy;
 
 /// Motions below this part of the scene's length are no jumps: round-off makes as much of them.
 const NOTHING: f64 = 1e-9;
+/// Before a damped motion is to follow, no increment moves beyond this part of the scene's length without its halves being
+/// looked at: on its way it may have passed a limit point.
+const LONGEST: f64 = 0.03;
 
 impl Stepper {
     /// Accepts a state that the judge finds right, or cuts the increment where it may have jumped.
@@ -30,8 +37,9 @@ impl Stepper {
         let size = (state.load_factor - state.start.load_factor).abs();
         let motion = self.source.moved(&state.u, &state.start.u);
         let looks = !strategy::rungs(state.controls.settings.strategy).is_empty();
-        let beyond =
-            looks && motion > NOTHING * self.model().length && state.pace.is_exceeded(motion, size);
+        let far = self.can_move() && motion > LONGEST * self.model().length;
+        let sudden = looks && motion > NOTHING * self.model().length;
+        let beyond = far || sudden && state.pace.is_exceeded(motion, size);
         if !beyond {
             return self.settle(after, verdict, motion / size);
         }
@@ -46,7 +54,19 @@ impl Stepper {
             motion,
             predicted: state.pace.expected(size),
         };
-        if jumps != Jumps::Accept && !state.pace.over {
+        if jumps == Jumps::Dynamic
+            && size <= state.controls.least
+            && suspect.size > size
+            && !suspect.jumps(motion, size)
+        {
+            return self.settle(after, verdict, motion / size);
+        }
+        let round = |route: Route| route.by != Detour::Back;
+        if jumps != Jumps::Accept && self.state.detour.is_some_and(round) {
+            self.next_major();
+            return self.fail(why);
+        }
+        if jumps != Jumps::Accept && !self.state.pace.over {
             if let Some(cut) = self.cut(&why) {
                 self.state.pace.suspect = Some(suspect);
                 return cut;
@@ -54,7 +74,7 @@ impl Stepper {
             if suspect.size > size && !suspect.jumps(motion, size) {
                 return self.settle(after, verdict, motion / size);
             }
-            if jumps == Jumps::Stop {
+            if matches!(jumps, Jumps::Stop | Jumps::Dynamic) {
                 self.next_major();
                 return Outcome::Failed(why);
             }

@@ -3,15 +3,18 @@
 //! - [`stepper`]: the algorithm box; [`state`]: plain data from which everything goes on; [`event`]: what a minor
 //!   iteration did, typed.
 //! - `minor`, `major`, `increment`: the three levels; `search`: what happens where the modes do not settle.
-//! - [`sub_increment`]: increments whole and cut; `jump`: those that end on another branch of equilibrium; `verdict`:
-//!   what becomes of a state that the judge refuses.
+//! - [`sub_increment`]: increments whole and cut; [`detour`]: ways round one whose halves all fail; `jump`: those that
+//!   end on another branch of equilibrium; `verdict`: what becomes of a state that the judge refuses.
 //! - [`brake`], `hold`: sliding that is held back, where nothing else has helped.
 //! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come.
+//! - `damped`: damped motion past a limit point; [`motion`]: what it carries along.
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
 mod arc;
 pub mod brake;
+mod damped;
+pub mod detour;
 pub mod drive;
 pub mod event;
 mod hold;
@@ -21,6 +24,7 @@ mod jump;
 mod major;
 pub mod major_history;
 mod minor;
+pub mod motion;
 pub mod pace;
 mod search;
 pub mod state;

@@ -12,8 +12,10 @@ use crate::linear::source::{Accepted, At};
 use crate::model::least;
 use crate::model::{Control, Friction, Model, Settings, SlipCount};
 use crate::step::brake::Brake;
+use crate::step::detour::Route;
 use crate::step::event::{Failure, Position};
 use crate::step::major_history::MajorHistory;
+use crate::step::motion::Motion;
 use crate::step::pace::Pace;
 use crate::step::sub_increment::SubIncrement;
 use crate::step::way::Way;
@@ -72,6 +74,12 @@ pub struct State {
     /// How far the way along the path has come. `None` under load control.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Box<Way>>,
+    /// The damped motion past a limit point that is under way; every step of it is an attempt of the increment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
+    /// The way round that is tried, where the halves of the increment have failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detour: Option<Route>,
     /// Whether and how it can go on.
     pub status: Status,
 }
@@ -200,15 +208,22 @@ impl State {
             pace: Pace::default(),
             brake: Brake::default(),
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
+            motion: None,
+            detour: None,
             status: Status::Running,
         };
         state.set_out();
         state
     }
 
-    /// The settings in force: the strategy is what the ladder has come to, and T_max enters as it wants.
+    /// The settings in force: the strategy is what the ladder has come to, T_max enters as it wants, and a detour changes
+    /// what it is to change.
     pub fn settings(&self) -> Settings {
-        let mut settings = strategy::in_force(&self.controls.settings, self.search.rung);
+        let rung = self.search.rung;
+        let mut settings = strategy::in_force(&self.controls.settings, rung);
+        if let Some(route) = self.detour {
+            settings = route.by.in_force(settings, rung);
+        }
         if self.brake.on && !self.net {
             settings.slip = SlipCount::Major;
         }
@@ -238,6 +253,7 @@ impl State {
             entered: self.minor_history.first(self.nodes.len()),
             correction: self.correction,
             brake: self.brake.stiffness,
+            drag: self.motion.and_then(|motion| motion.drag()),
             chosen: &self.controls.settings,
             settings: self.settings(),
             along: self.way.as_ref().map(|way| way.along()),

@@ -19,6 +19,7 @@ use crate::linear::bodies::Bodies;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::{Solved, Source};
+use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::step::event::{Event, Failure, Outcome, Position};
 use crate::step::intervene::{Intervention, Refusal};
@@ -58,6 +59,7 @@ impl Stepper {
                 position: Position::default(),
                 load_factor: 0.0,
                 arc: None,
+                drag: 0.0,
                 nodes: Vec::with_capacity(model.contacts.len()),
                 before: Norms::default(),
                 outcome: Outcome::Minor,
@@ -88,6 +90,7 @@ impl Stepper {
         self.state.status = Status::Running;
         self.event.position = self.state.next;
         self.event.load_factor = self.state.load_factor;
+        self.event.drag = self.state.at().drag.unwrap_or(0.0);
         self.event.nodes.clear();
         self.event.outcome = self.iterate();
         self.event.arc = self.state.arc();
@@ -206,6 +209,15 @@ impl Stepper {
         let at = self.state.at();
         let monitors = self.model.monitors.iter();
         out.extend(monitors.map(|monitor| self.source.monitor(&monitor.of, &at)));
+    }
+
+    /// Stability of the state at the start of the present major iteration (after an accepted increment: at its end), with the
+    /// modes that its nodes have. It costs a factorization, and changes nothing.
+    pub fn stability(&mut self) -> Stability {
+        if !self.linearise() {
+            return Stability::NotKnown;
+        }
+        self.source.stability(&self.state.at())
     }
 
     /// Linearises about the present state, unless that is done; false where it cannot be.

@@ -1,4 +1,4 @@
-//! Increments along the path of the load factor, whole or cut into halves.
+//! Increments along the path of the load factor, whole or cut: into halves, or once by the golden section.
 
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,14 @@ pub struct SubIncrement {
     pub cut: u32,
     /// Which of the 2^cut parts this is, from 0.
     pub part: u32,
+    /// Load factor at the end of the increment of which this is the first part, cut off by the golden section. `None` if it
+    /// is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest: Option<f64>,
 }
+
+/// The smaller part of the golden section, (3 − √5)/2.
+const SECTION: f64 = 0.381_966_011_250_105_2;
 
 impl SubIncrement {
     /// The whole increment from a load factor on a leg of the path.
@@ -24,6 +31,26 @@ impl SubIncrement {
             to: next_load_factor(&model.path, (from, leg), increment),
             cut: 0,
             part: 0,
+            rest: None,
+        }
+    }
+
+    /// All that is left of the whole increment from a load factor on, in one piece.
+    pub fn rest(self, from: f64) -> Self {
+        SubIncrement {
+            from,
+            cut: 0,
+            part: 0,
+            ..self
+        }
+    }
+
+    /// The first part of its golden section; the other one follows when this is done.
+    pub fn section(self) -> Self {
+        SubIncrement {
+            to: self.from + SECTION * (self.to - self.from),
+            rest: self.rest.or(Some(self.to)),
+            ..self
         }
     }
 
@@ -56,7 +83,17 @@ impl SubIncrement {
         while self.cut > 0 && self.part.is_multiple_of(2) {
             (self.cut, self.part) = (self.cut - 1, self.part / 2);
         }
-        (self.cut > 0).then_some(self)
+        match (self.cut, self.rest) {
+            (0, None) => None,
+            (0, Some(to)) => Some(SubIncrement {
+                from: self.to,
+                to,
+                part: 0,
+                rest: None,
+                cut: 0,
+            }),
+            _ => Some(self),
+        }
     }
 }
 
@@ -79,5 +116,43 @@ fn tidy(load_factor: f64, path: &[f64]) -> f64 {
         rounded
     } else {
         load_factor
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_section_and_what_follows_it_make_up_the_increment_however_it_is_cut() {
+        let whole = SubIncrement {
+            from: 0.25,
+            to: 0.5,
+            ..SubIncrement::default()
+        };
+        // A quarter of it is done when it fails.
+        let left = SubIncrement {
+            cut: 4,
+            part: 4,
+            ..whole
+        }
+        .rest(0.3125);
+        assert_eq!((left.from, left.target(), left.cut), (0.3125, 0.5, 0));
+        let mut piece = left.section().halved();
+        let mut ends = Vec::new();
+        loop {
+            ends.push(piece.target());
+            match piece.next() {
+                Some(next) => piece = next,
+                None => break,
+            }
+        }
+        let golden = 0.3125 + 0.1875 * 0.5 * (3.0 - 5_f64.sqrt());
+        assert_eq!(ends.len(), 3);
+        assert!((ends[0] - 0.5 * (0.3125 + golden)).abs() < 1e-15);
+        assert!((ends[1] - golden).abs() < 1e-15);
+        assert_eq!(ends[2], 0.5);
+        // A section of what follows ends where that ends, too.
+        assert_eq!(left.section().section().rest, Some(0.5));
     }
 }

@@ -141,6 +141,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         elements: vec![nodes.to_vec()],
         rigid: true,
         endless: false,
+        smooth: Vec::new(),
     };
     let contact = |surface: usize| Contact {
         node: 0,

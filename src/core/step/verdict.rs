@@ -21,6 +21,16 @@ impl Stepper {
             return on;
         }
         let verdict = self.source.judge(&self.state.at(), &after);
+        if self.state.motion.is_some() {
+            let worst = worst_of(&verdict);
+            return match worst.filter(|found| found.law == Law::Slip && !self.state.net) {
+                Some(why) => {
+                    self.count_net_slip();
+                    Outcome::Refused { why, after }
+                }
+                None => self.end_step(after, verdict, worst),
+            };
+        }
         let Some(worst) = worst_of(&verdict) else {
             return match self.state.way {
                 Some(_) => self.land_on_way(after, verdict),
@@ -38,10 +48,10 @@ impl Stepper {
         match self.cut(&why) {
             Some(cut) => cut,
             None if worst.law == Law::Touch => self.accept(after, verdict, Some(worst), false),
-            None => {
+            None => self.try_otherwise(&why).unwrap_or_else(|| {
                 self.next_major();
                 Outcome::Failed(why)
-            }
+            }),
         }
     }
 

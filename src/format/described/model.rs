@@ -105,6 +105,7 @@ fields!(Settings {
     at_cycle,
     at_major_limit,
     tolerance,
+    limit_load,
     initial_gaps,
     adjust_gap,
     memory,

@@ -6,11 +6,12 @@
 
 use super::shown::{NotMade, Shown};
 use super::timeline::{self, chosen, colour};
+use crate::contact::element::Element;
 use crate::contact::projection::tangent;
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
 use crate::explain::number::{plain, short};
-use crate::explain::outline::{Bounds, Point, clip, curve, extent};
+use crate::explain::outline::{self, Bounds, Point, clip, curve, extent};
 use crate::explain::round_off::RoundOff;
 use crate::model::{BodyKind, Mode, Model};
 use crate::step::event::Outcome;
@@ -102,9 +103,14 @@ fn caption(shown: &Shown) -> String {
         }
         (Outcome::Increment { .. }, _) => "accepted".to_owned(),
         (Outcome::Major { .. } | Outcome::Refused { .. }, _) => "not in equilibrium yet".to_owned(),
-        (Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Braked { .. }, _) => {
-            "the increment begins again".to_owned()
-        }
+        (Outcome::Moves(_), _) => "moves on against a drag, not in equilibrium".to_owned(),
+        (
+            Outcome::Cut { .. }
+            | Outcome::Leaps { .. }
+            | Outcome::Detour { .. }
+            | Outcome::Braked { .. },
+            _,
+        ) => "the increment begins again".to_owned(),
         _ => "modes or T_max change".to_owned(),
     };
     let more = match shown.ended.as_str() {
@@ -296,8 +302,8 @@ fn surfaces(
 ) {
     for surface in &model.surfaces {
         let mut walked = 0.5 * SPACING;
-        for element in &surface.elements {
-            let points: Vec<Point> = element.iter().map(|&node| now(node)).collect();
+        for element in Element::all(surface) {
+            let points = outline::element(element, now);
             stroke(sheet, window, &points, &pen(2.6, BLACK));
             for chain in window.inside(&curve(&points)) {
                 for pair in chain.windows(2) {

@@ -100,6 +100,13 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
             format!("the gap is {gap:?}; it must be a length that is not negative"),
         ));
     }
+    let limit_load = settings.limit_load;
+    if !(limit_load > 0.0 && limit_load < 1.0) {
+        return Err(Fault::new(
+            here.then("limit_load"),
+            format!("it is {limit_load:?}; it must be a part, above 0 and below 1"),
+        ));
+    }
     let tolerance = settings.tolerance;
     if tolerance > 0.0 && tolerance <= 1e-2 {
         return Ok(());

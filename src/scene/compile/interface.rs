@@ -5,6 +5,8 @@ use super::super::limits;
 use super::super::nodes::Names;
 use super::super::nodes::checks::unique;
 use super::bodies::{check_chain, elements};
+use crate::contact::element::closed;
+use crate::contact::smooth::smooth;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{Nodes, Side, SlaveSpec, Spec};
 use crate::model::{Component, Friction, InitialState};
@@ -39,9 +41,29 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Su
             elements,
             rigid: false,
             endless: surface.endless,
+            smooth: Vec::new(),
         });
     }
     Ok(made)
+}
+
+/// Makes smooth the surfaces of which the scene wants it, with the nodes where they are before anything deforms.
+pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut [Surface]) -> Result<(), Fault> {
+    for (k, (surface, wanted)) in surfaces.iter_mut().zip(&spec.surfaces).enumerate() {
+        if !wanted.smooth {
+            continue;
+        }
+        let fault = |message: &str| Err(Fault::new(at!["surfaces", k, "smooth"], message));
+        if wanted.endless {
+            return fault("an endless surface is straight, and smooth as it is; leave smooth out");
+        }
+        let distinct: HashSet<usize> = surface.elements.iter().flatten().copied().collect();
+        if closed(surface) && distinct.len() < 3 {
+            return fault("a closed surface needs three nodes at least to be a smooth curve");
+        }
+        smooth(surface, &names.nodes);
+    }
+    Ok(())
 }
 
 /// The slave nodes, in the order in which the file names them.

@@ -50,6 +50,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     }
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
+    interface::smoothed(spec, &names, &mut surfaces)?;
     interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
     history::settings(&spec.settings)?;
     match spec.settings.initial_gaps {

@@ -3,10 +3,11 @@
 //! between its materials are drawn, and its elements where they are large enough to be told apart. Drawn at the start
 //! of the shown major iteration.
 
+use crate::contact::element::Element;
 use crate::contact::projection::tangent;
 use crate::explain::examination::Examination;
 use crate::explain::number;
-use crate::explain::outline::{Bounds, Point, bounds, curve};
+use crate::explain::outline::{self, Bounds, Point, bounds, curve};
 use crate::fem::lagrange;
 use crate::model::{BodyKind, Contact, Solid};
 use crate::tui::app::App;
@@ -264,13 +265,8 @@ fn mean(nodes: &[usize], view: &View) -> Point {
 fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     let style = app.theme.text;
     let mut walked = SPACING;
-    for element in view
-        .model
-        .surfaces
-        .iter()
-        .flat_map(|surface| &surface.elements)
-    {
-        let nodes: Vec<Point> = element.iter().map(|node| view.place(*node)).collect();
+    for element in view.model.surfaces.iter().flat_map(Element::all) {
+        let nodes = outline::element(element, |node| view.place(node));
         draw_curve(canvas, window, &nodes, style);
         // Short elements share a normal among several of them.
         let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {

@@ -185,6 +185,8 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         | Outcome::Leaps { .. }
         | Outcome::Braked { .. }
         | Outcome::HeldBack { .. }
+        | Outcome::Moves(_)
+        | Outcome::Detour { .. }
         | Outcome::Refused { .. }
         | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
         Outcome::Increment {

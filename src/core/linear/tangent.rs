@@ -1,0 +1,278 @@
+//! The tangent of a state of equilibrium as stability needs it ([`super::stability`]): the bodies' own, condensed to the equations
+//! that touching nodes reach into, and the conditions that these nodes put on its motions.
+//!
+//! It is assembled anew, whatever the minor iterations solve, and asked for only where somebody wants to know.
+
+use super::coupling::Interface;
+use super::drag::stiffen;
+use super::sizes::{Balanced, Sizes};
+use super::source::At;
+use super::stability::{Conditions, Dense, Stability, ZERO, sliding, smooth};
+use super::system::System;
+use crate::contact::geometric_tangent::{Variation, geometric_tangent};
+use crate::fem::assembly::{Assembly, Moved};
+use crate::fem::element::Assembled;
+use crate::linalg::{Pattern, SymmetricFactors};
+use crate::model::{BodyKind, Form, Mode, Model};
+use nalgebra::DMatrix;
+use std::sync::Arc;
+
+/// Most unknowns of the dense part.
+const MOST: usize = 1500;
+
+/// The bodies' tangent as stability needs it.
+pub struct Tangent {
+    assembly: Assembly,
+    /// Pattern of its upper half, and its values.
+    pattern: Arc<Pattern>,
+    values: Vec<f64>,
+    /// By equation, whether it belongs to a body that cannot be factored without pivoting.
+    pivoted: Vec<bool>,
+    /// By equation, whether it is one of lengths.
+    lengths: Vec<bool>,
+    /// The factors, and the equations c of their dense part, ascending.
+    factors: Option<(Vec<usize>, SymmetricFactors)>,
+}
+
+impl Tangent {
+    /// Lays out the tangent of a model.
+    pub fn new(model: &Model, system: &System) -> Self {
+        let mut assembly = Assembly::new(model);
+        let mut entries = assembly.entries(&model.dofs);
+        entries.retain(|(row, column)| row <= column);
+        entries.extend((0..model.dofs.equations).map(|e| (e, e)));
+        let pattern = Arc::new(Pattern::new(model.dofs.equations, entries));
+        assembly.bind(&model.dofs, &pattern, true);
+        let mut lengths = vec![false; model.dofs.equations];
+        for (kind, equation) in system.sizes.kind.iter().zip(&model.dofs.equation) {
+            if let Some(e) = equation {
+                lengths[*e] = *kind == Balanced::Length;
+            }
+        }
+        Tangent {
+            assembly,
+            values: vec![0.0; pattern.entries()],
+            pattern,
+            pivoted: pivoted(model, &lengths),
+            lengths,
+            factors: None,
+        }
+    }
+
+    /// Stability of the state of the system's last linearisation, for the modes that its contacts have.
+    pub fn stability(&mut self, system: &System, model: &Model, at: &At<'_>) -> Stability {
+        let found = is_symmetric(model).then(|| self.assess(system, model, at));
+        found.flatten().unwrap_or(Stability::NotKnown)
+    }
+
+    /// `None` where round-off decides, or where there are too many unknowns.
+    fn assess(&mut self, system: &System, model: &Model, at: &At<'_>) -> Option<Stability> {
+        let last = self.reached(system, model, at);
+        if last.len() > MOST {
+            return None;
+        }
+        self.assemble(&system.sizes, model, at);
+        let dense = self.condense(system, model, at, last.clone())?;
+        let conditions = conditions(system, model, at, &last)?;
+        let basis = conditions.admissible(last.len());
+        if conditions.slides {
+            sliding(&dense, &conditions, &basis)
+        } else {
+            smooth(&dense, &basis)
+        }
+    }
+
+    /// The equations that touching nodes reach into, and those of bodies that want pivoting.
+    fn reached(&self, system: &System, model: &Model, at: &At<'_>) -> Vec<usize> {
+        let mut reached = self.pivoted.clone();
+        for (interface, _) in touching(system, at) {
+            for link in &interface.links {
+                if let Some(e) = model.dofs.equation[link.dof] {
+                    reached[e] = true;
+                }
+            }
+        }
+        (0..reached.len()).filter(|&e| reached[e]).collect()
+    }
+
+    fn assemble(&mut self, sizes: &Sizes, model: &Model, at: &At<'_>) {
+        let dofs = model.dofs.len();
+        let (mut force, mut size, step) = (vec![0.0; dofs], vec![0.0; dofs], vec![0.0; dofs]);
+        let mut coupling = vec![0.0; model.dofs.equations];
+        let out = Assembled {
+            force: &mut force,
+            size: &mut size,
+            values: &mut self.values,
+            coupling: &mut coupling,
+        };
+        let moved = Moved {
+            u: at.u,
+            step: &step,
+            before: at.accepted.u,
+            history: at.accepted.history,
+        };
+        self.assembly.assemble(&model.dofs, moved, out);
+        let diagonal = |e: usize| self.pattern.slot(e, e);
+        stiffen(model, at, sizes, diagonal, &mut self.values);
+    }
+
+    fn condense(
+        &mut self,
+        system: &System,
+        model: &Model,
+        at: &At<'_>,
+        last: Vec<usize>,
+    ) -> Option<Dense> {
+        if self.factors.as_ref().is_none_or(|(had, _)| *had != last) {
+            let factors = SymmetricFactors::new(self.pattern.clone(), &last).ok()?;
+            self.factors = Some((last, factors));
+        }
+        let (last, factors) = self.factors.as_mut()?;
+        let (n, c, shift) = (self.pattern.size(), last.len(), system.spring(model));
+        factors.factor(&self.values, shift).ok()?;
+        // Growth shows in a solution of some right-hand side.
+        let (ones, mut x) = (vec![1.0; n], vec![0.0; n]);
+        factors.solve(&ones, &mut x).ok()?;
+        factors.pivots(&mut x);
+        let diagonal = |e: usize| {
+            self.pattern
+                .slot(e, e)
+                .map_or(0.0, |k| self.values[k].abs())
+        };
+        let mut is_last = vec![false; n];
+        last.iter().for_each(|&e| is_last[e] = true);
+        let mut negative = 0;
+        for e in (0..n).filter(|&e| !is_last[e]) {
+            if x[e].is_nan() || x[e].abs() <= ZERO * diagonal(e) {
+                return None;
+            }
+            negative += usize::from(x[e] < 0.0);
+        }
+        let mut condensed = vec![0.0; c * c];
+        factors.condensed(&mut condensed);
+        let mut condensed = DMatrix::from_vec(c, c, condensed);
+        (0..c).for_each(|k| condensed[(k, k)] -= shift);
+        let given = |i: usize, j: usize| {
+            let (row, column) = (last[i.min(j)], last[i.max(j)]);
+            self.pattern
+                .slot(row, column)
+                .map_or(0.0, |k| self.values[k])
+        };
+        let given_way = DMatrix::from_fn(c, c, given) - &condensed;
+        turn(&mut condensed, system, model, at, last);
+        let lengths = last.iter().filter(|&&e| self.lengths[e]).count();
+        Some(Dense {
+            condensed,
+            given_way,
+            negative,
+            lengths,
+        })
+    }
+}
+
+fn is_symmetric(model: &Model) -> bool {
+    model.bodies.iter().all(|body| match &body.kind {
+        BodyKind::Beam(_) | BodyKind::Solid(_) => true,
+        BodyKind::Linear(linear) => linear.is_symmetric(),
+    })
+}
+
+/// The equations of bodies with equations of lengths.
+fn pivoted(model: &Model, lengths: &[bool]) -> Vec<bool> {
+    let mut pivoted = lengths.to_vec();
+    for body in &model.bodies {
+        let saddle = match &body.kind {
+            BodyKind::Beam(beam) => beam.first_shear.is_some(),
+            BodyKind::Linear(linear) => linear.form != Form::Stiffness,
+            BodyKind::Solid(_) => false,
+        };
+        for &node in body.nodes.iter().filter(|_| saddle) {
+            let first = model.dofs.first[node];
+            for dof in first..first + model.dofs.count[node] as usize {
+                if let Some(e) = model.dofs.equation[dof] {
+                    pivoted[e] = true;
+                }
+            }
+        }
+    }
+    pivoted
+}
+
+/// The nodes that touch, with their part of the equations.
+fn touching<'a>(
+    system: &'a System,
+    at: &At<'a>,
+) -> impl Iterator<Item = (&'a Interface, usize)> + use<'a> {
+    let contacts = at.contacts;
+    let nodes = system.interfaces.iter().enumerate();
+    nodes
+        .filter(|(s, interface)| contacts[*s].mode != Mode::Free && interface.projection.is_some())
+        .map(|(s, interface)| (interface, s))
+}
+
+/// Adds T.
+fn turn(matrix: &mut DMatrix<f64>, system: &System, model: &Model, at: &At<'_>, last: &[usize]) {
+    let place = |dof: usize| last.binary_search(&model.dofs.equation[dof]?).ok();
+    for (interface, s) in touching(system, at) {
+        let node = &at.contacts[s];
+        let Some((projection, curve)) = interface.projection.and_then(|f| Some((f, f.curve?)))
+        else {
+            continue;
+        };
+        let varied: Vec<(usize, Variation)> = interface
+            .links
+            .iter()
+            .filter_map(|link| {
+                let variation =
+                    Variation::new(&projection, &curve, link.axis, link.weight, link.slope);
+                Some((place(link.dof)?, variation))
+            })
+            .collect();
+        let force = [node.f_n, node.f_t];
+        for (i, row) in &varied {
+            for (j, column) in &varied {
+                matrix[(*i, *j)] -= geometric_tangent(&projection, &curve, force, row, column);
+            }
+        }
+    }
+}
+
+/// The conditions of the nodes that touch; `None` where it is not known which way a rough one slides.
+fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Option<Conditions> {
+    let mut all = Conditions::default();
+    for (interface, s) in touching(system, at) {
+        let node = &at.contacts[s];
+        let row = |direction: [f64; 2]| {
+            let mut row = vec![0.0; last.len()];
+            for link in &interface.links {
+                let equation = model.dofs.equation[link.dof];
+                if let Some(k) = equation.and_then(|e| last.binary_search(&e).ok()) {
+                    row[k] += link.weight * direction[link.axis];
+                }
+            }
+            row
+        };
+        let frame = interface.frame(node);
+        let [normal, tangential] = frame.map(row);
+        if node.mode == Mode::Fixed {
+            all.force.extend([normal.clone(), tangential.clone()]);
+            all.motion.extend([normal, tangential]);
+            continue;
+        }
+        let friction = node.friction(&at.friction[s]);
+        let mut force = normal.clone();
+        if !friction.is_smooth() {
+            if node.sign == 0.0 {
+                return None;
+            }
+            let share = node.sign * friction.coefficient();
+            let both = force.iter_mut().zip(&tangential);
+            both.for_each(|(f, t)| *f += share * t);
+            all.slides |= share != 0.0;
+        }
+        all.force.push(force);
+        all.motion.push(normal);
+    }
+    all.keep_independent();
+    Some(all)
+}

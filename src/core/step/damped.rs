@@ -1,0 +1,177 @@
+//! Damped motion past a limit point (`history.jumps: dynamic`): from the last equilibrium to the next stable one.
+//!
+//! Where the increment fails that is as small as `settings.limit_load` allows, the loads stay, and what is out of balance moves
+//! the nodes against a viscosity c that all displacements have alike (rotations and forces follow without):
+//!
+//! ```text
+//! c u̇ = R(u),      backward Euler:   R(u_k) − (c / Δt) (u_k − u_k−1) = 0
+//! ```
+//!
+//! Each step is an increment of its own, with Table 1 and 2, judge and strategies, with c / Δt, the *drag*, on the diagonal of the
+//! tangent; its end is where friction holds on to next. c only sets the unit of time and is one: what is chosen is the drag.
+//! It begins at the interface's stiffness, is divided by up to [`FASTER`] after a step that went little, and multiplied
+//! by that where a step fails, goes further than [`STRIDE`], or ends where even the drag does not make it stable, since a
+//! backward Euler step then goes to another root than the motion does.
+//!
+//! Where steps have become small though the drag is, the drag is left out. If that ends in a stable equilibrium within a
+//! stride, it is accepted, marked as a jump; else the motion goes on. Viscosity only ever takes work, Σ (c / Δt) |Δu|²; it is
+//! summed up and told.
+
+use crate::contact::laws::{Finding, Law, Verdict};
+use crate::linear::norms::Norms;
+use crate::linear::stability::Stability;
+use crate::model::Jumps;
+use crate::step::event::{Failure, Moves, Outcome, Slow};
+use crate::step::motion::Motion;
+use crate::step::pace::Pace;
+use crate::step::stepper::Stepper;
+use std::sync::Arc;
+
+/// Furthest that a step goes, over the scene's length.
+const STRIDE: f64 = 0.01;
+/// A step that goes less than this part of a stride may be followed by a faster one.
+const SHORT: f64 = 0.25;
+/// By how much the drag changes.
+const FASTER: f64 = 4.0;
+/// A motion that is below this part of a stride in a step, while the drag is below this part of the stiffness, may be at rest.
+const RESTING: f64 = 0.01;
+/// By how much the drag must have fallen before rest is tried for again.
+const AGAIN: f64 = 64.0;
+/// Largest drag, over the stiffness: a step that fails with it does not fail of going too far.
+const STIFFEST: f64 = 1e9;
+/// Smallest drag, over the stiffness: nodes that still do not rest without it never will.
+const SOFTEST: f64 = 1e-12;
+/// A motion shorter than this part of the scene's length is no jump: the increment failed of something else than a limit point.
+const JUMP: f64 = 1e-3;
+/// Most steps of a motion.
+const MOST_STEPS: u32 = 5000;
+
+impl Stepper {
+    /// Whether the scene wants damped motions, and what deforms can make them.
+    pub(super) fn can_move(&self) -> bool {
+        self.model().jumps == Jumps::Dynamic && self.source.damps()
+    }
+
+    /// The smallest increment has failed: goes on from the last equilibrium, the loads as they are. `None` where the scene
+    /// does not want that.
+    pub(super) fn let_go(&mut self, why: &Failure) -> Option<Outcome> {
+        if !self.can_move() || self.state.motion.is_some() {
+            return None;
+        }
+        self.restart(self.state.sub_increment);
+        if !self.linearise() {
+            return None;
+        }
+        let (from, stiffness) = (self.state.start.load_factor, self.source.spring());
+        self.state.motion = Some(Motion::new(from, stiffness));
+        Arc::make_mut(&mut self.state.start).load_factor = self.state.load_factor;
+        self.restart(self.state.sub_increment);
+        Some(Outcome::Moves(Moves::LetsGo {
+            why: why.clone(),
+            load: from,
+        }))
+    }
+
+    /// A step has failed: it is taken slower; coming to rest was too early.
+    pub(super) fn slow_down(&mut self, slow: Slow) -> Option<Outcome> {
+        let motion = self.state.motion.as_mut()?;
+        if motion.coming_to_rest {
+            motion.coming_to_rest = false;
+        } else if motion.drag < STIFFEST * motion.stiffness {
+            motion.drag *= FASTER;
+        } else {
+            return None;
+        }
+        self.restart(self.state.sub_increment);
+        Some(Outcome::Moves(Moves::Slower(slow)))
+    }
+
+    /// A step has converged, and the judge has nothing against it that could be repaired.
+    pub(super) fn end_step(
+        &mut self,
+        after: Norms,
+        verdict: Verdict,
+        worst: Option<Finding>,
+    ) -> Outcome {
+        let Some(motion) = self.state.motion else {
+            return self.accept(after, verdict, worst, false);
+        };
+        let moved = self.source.moved(&self.state.u, &self.state.start.u);
+        let stride = STRIDE * self.model.length;
+        let unstable = |stability| {
+            matches!(
+                stability,
+                Stability::Unstable { .. } | Stability::Divergence
+            )
+        };
+        let slow = match worst.filter(|found| found.law != Law::Touch) {
+            Some(found) => Some(Slow::Failed(Failure::Refused(found))),
+            None if moved > stride => Some(Slow::Far { motion: moved }),
+            None if unstable(self.source.stability(&self.state.at())) => Some(Slow::Unstable),
+            None => None,
+        };
+        if let Some(slow) = slow {
+            let why = match &slow {
+                Slow::Failed(why) => why.clone(),
+                _ => Failure::Restless {
+                    steps: motion.steps,
+                },
+            };
+            return self.slow_down(slow).unwrap_or(Outcome::Failed(why));
+        }
+        if motion.coming_to_rest {
+            // The other branch has a pace of its own.
+            self.state.pace = Pace::default();
+            let jumped = motion.travelled + moved > JUMP * self.model.length;
+            return self.accept(after, verdict, worst, jumped);
+        }
+        if motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
+            self.next_major();
+            return Outcome::Failed(Failure::Restless {
+                steps: motion.steps,
+            });
+        }
+        self.step_on(motion, moved, stride, verdict)
+    }
+
+    /// Makes the end of a step the start of the next one.
+    fn step_on(
+        &mut self,
+        mut motion: Motion,
+        moved: f64,
+        stride: f64,
+        verdict: Verdict,
+    ) -> Outcome {
+        motion.steps += 1;
+        motion.travelled += moved;
+        motion.dissipated += motion.drag * self.square_of_motion();
+        if moved < SHORT * stride {
+            let room = SHORT * stride / moved.max(f64::MIN_POSITIVE);
+            motion.drag /= room.clamp(1.0, FASTER);
+        }
+        let slow = moved < RESTING * stride && motion.drag < RESTING * motion.stiffness;
+        if slow && motion.drag * AGAIN <= motion.tried {
+            (motion.coming_to_rest, motion.tried) = (true, motion.drag);
+        }
+        self.state.motion = Some(motion);
+        self.settle_contacts();
+        self.renew_start(verdict);
+        self.state.next.attempt += 1;
+        self.state.begin();
+        self.forget_workspace();
+        Outcome::Moves(Moves::Step {
+            motion: moved,
+            number: motion.steps,
+        })
+    }
+
+    /// Sum of the squares of all displacements since the start of the step.
+    fn square_of_motion(&self) -> f64 {
+        let (now, before) = (&self.state.u, &self.state.start.u);
+        let of = |first: &usize| -> f64 {
+            let square = |d: usize| (now[d] - before[d]).powi(2);
+            square(*first) + square(first + 1)
+        };
+        self.model.dofs.first.iter().map(of).sum()
+    }
+}
