@@ -458,6 +458,9 @@ fn not_found(why: NotFound) -> String {
         NotFound::Ray => {
             "pivoting ended on a ray from every start, so it found no consistent state".into()
         }
+        NotFound::Astray { pivots } => {
+            format!("pivoting was given up after {pivots} pivots; its path might still end in a consistent state")
+        }
         NotFound::NoStart => {
             "pivoting has no start: the equations of every one that it knows are singular".into()
         }

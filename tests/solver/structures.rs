@@ -5,10 +5,12 @@ use crate::hyperstatic::{broken, forces, problem};
 use stickslip::contact::table2::Rule;
 
 use std::sync::Arc;
+use stickslip::model::Strategy;
 use stickslip::scene::Scene;
 use stickslip::scene::siconos::{Friction2d, Storage};
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::stepper::Stepper;
+use stickslip::strategy::{next_rung, rungs};
 
 /// What forces may break at most, relative to the largest motion and force: far above round-off, far below a wrong mode.
 const TOLERANCE: f64 = 1e-9;
@@ -39,6 +41,61 @@ fn structures_with_forces_that_are_not_unique_are_solved() {
         }
     }
     assert!(by_sweeps >= 10, "{by_sweeps}");
+}
+
+/// Discs whose bases make much of small shifts, and matrices on which sweeps go round: 50, 30, 80 and 30 contacts.
+#[test]
+fn what_sweeps_do_not_come_to_an_end_of_is_solved_by_pivoting() {
+    for k in [68, 78, 165, 180] {
+        let problem = problem(k);
+        let run = run(&scene(&problem, "ladder"));
+        assert!(run.failure.is_none(), "{k}: {:?}", run.failure);
+        let broken = broken(&problem, &forces(&run.stepper));
+        assert!(broken < TOLERANCE, "{k}: {broken:e}");
+    }
+}
+
+/// Rungs by number are what snapshots keep, so that only their order may depend on how many contacts there are.
+#[test]
+fn with_many_contacts_sweeps_come_before_what_changes_one_node_at_a_time() {
+    let climb = |contacts: usize| {
+        let mut way = vec![Strategy::Table2];
+        let mut rung = 0;
+        while let Some((next, strategy)) = next_rung(Strategy::Ladder, rung, contacts) {
+            rung = next;
+            way.push(strategy);
+        }
+        way
+    };
+    use Strategy::{Census, Copositive, GaussSeidel, Lemke, Sliding, SlidingLeast, Table2};
+    assert_eq!(climb(20), rungs(Strategy::Ladder));
+    assert_eq!(
+        climb(21),
+        [
+            Table2,
+            Sliding,
+            GaussSeidel,
+            Copositive,
+            SlidingLeast,
+            Lemke,
+            Census
+        ]
+    );
+    assert_eq!(
+        climb(65),
+        [
+            Table2,
+            Sliding,
+            GaussSeidel,
+            Copositive,
+            SlidingLeast,
+            Census
+        ]
+    );
+    assert_eq!(
+        climb(1001),
+        [Table2, Sliding, GaussSeidel, SlidingLeast, Census]
+    );
 }
 
 /// Contacts that nothing can move apart: no force answers q_n < 0, and no part of the load does better.

@@ -57,9 +57,9 @@ pub trait Method: Sync {
         &[]
     }
 
-    /// Whether one of [`Method::rungs`] is left out with so many contacts.
-    fn leaves_out(&self, _rung: Strategy, _contacts: usize) -> bool {
-        false
+    /// Which of [`Method::rungs`] follows one of them (by number) with so many contacts. `None` after the last.
+    fn after(&self, rung: usize, _contacts: usize) -> Option<usize> {
+        Some(rung + 1).filter(|&next| next < self.rungs().len())
     }
 }
 
@@ -165,6 +165,11 @@ pub enum NoProposal {
 pub enum NotFound {
     /// Pivoting ended on a ray, from every start.
     Ray,
+    /// Pivoting was given up: its path may still end in an answer.
+    Astray {
+        /// Pivots done.
+        pivots: usize,
+    },
     /// The equations of every start of pivoting are singular.
     NoStart,
     /// Gauss-Seidel came to no modes that last.

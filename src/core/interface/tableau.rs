@@ -101,6 +101,11 @@ impl Tableau {
         self.rows
     }
 
+    /// Number of pivots done.
+    pub fn pivots(&self) -> usize {
+        self.pivots.min(self.most)
+    }
+
     /// Number of variables so far.
     pub fn variables(&self) -> usize {
         self.partners.len()

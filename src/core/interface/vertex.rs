@@ -18,8 +18,10 @@ pub type Held = (Assumed, [f64; 2]);
 /// those that were before, and the forces obey Coulomb's law if they did.
 pub fn vertex(problem: &InterfaceProblem, nodes: &mut [Held]) {
     let mut still = motionless(problem, nodes);
-    while let Some(along) = still.pop() {
-        let Some(bound) = nearest(problem, nodes, &along) else {
+    orthonormal(&mut still);
+    while let Some(along) = still.last() {
+        let Some(bound) = nearest(problem, nodes, along) else {
+            still.pop();
             continue;
         };
         for (k, (_, force)) in nodes.iter_mut().enumerate() {
@@ -35,15 +37,56 @@ pub fn vertex(problem: &InterfaceProblem, nodes: &mut [Held]) {
                 put[1] = does.sign() * (friction.coefficient() * put[0] + friction.cohesion);
             }
         }
-        let leads = bound.of(&along);
-        for other in &mut still {
-            let times = bound.of(other) / leads;
-            other
-                .iter_mut()
-                .zip(&along)
-                .for_each(|(x, d)| *x -= times * d);
+        keep(&bound, &mut still);
+    }
+}
+
+/// Gram and Schmidt's, twice; vectors that depend on others go.
+fn orthonormal(still: &mut Vec<Vec<f64>>) {
+    let mut done: Vec<Vec<f64>> = Vec::with_capacity(still.len());
+    for mut along in still.drain(..) {
+        let size = dot(&along, &along).sqrt();
+        for _ in 0..2 {
+            for other in &done {
+                let share = dot(&along, other);
+                subtract(&mut along, share, other);
+            }
+        }
+        let rest = dot(&along, &along).sqrt();
+        if rest > DEPENDENT * size {
+            along.iter_mut().for_each(|x| *x /= rest);
+            done.push(along);
         }
     }
+    *still = done;
+}
+
+/// Leaves of the forces that move nothing those that keep to a bound, orthonormal as they were: the reflection that takes
+/// what the bound measures of each to the last one alone, which goes.
+fn keep(bound: &Bound, still: &mut Vec<Vec<f64>>) {
+    let mut mirror: Vec<f64> = still.iter().map(|along| bound.of(along)).collect();
+    let size = dot(&mirror, &mirror).sqrt();
+    let Some(last) = mirror.last_mut() else {
+        return;
+    };
+    *last += size.copysign(*last);
+    let square = dot(&mirror, &mirror);
+    let mut sum = vec![0.0; still[0].len()];
+    for (along, part) in still.iter().zip(&mirror) {
+        subtract(&mut sum, -part, along);
+    }
+    for (along, part) in still.iter_mut().zip(&mirror) {
+        subtract(along, 2.0 * part / square, &sum);
+    }
+    still.pop();
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn subtract(from: &mut [f64], times: f64, what: &[f64]) {
+    from.iter_mut().zip(what).for_each(|(x, y)| *x -= times * y);
 }
 
 /// [`vertex`] of what a search proposes: for every node what it does, with F_n, F_t, gap and slip.

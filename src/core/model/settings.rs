@@ -97,7 +97,7 @@ documented! {
     #[serde(rename_all = "snake_case")]
     pub enum Strategy {
         /// Table 2 first; if it cycles or cannot go on, then `sliding`, `sliding_least`, `lemke`, `census`, `gauss_seidel`
-        /// and `copositive`, with T_max in the matrix. If none of them finds a consistent state, the increment is halved, down to
+        /// and `copositive`, the last two right after `sliding` with more than 20 contacts, with T_max in the matrix. If none of them finds a consistent state, the increment is halved, down to
         /// `history.least`, and grows again afterwards.
         #[default]
         Ladder,
@@ -117,8 +117,8 @@ documented! {
         Lemke,
         /// All assumptions of what the nodes do, tried; for few nodes.
         Census,
-        /// Lemke's pivoting with the friction force in two parts, from all nodes free: it ends in an answer wherever forces that
-        /// move nothing take no energy.
+        /// Lemke's pivoting with the friction force in two parts, from all nodes free. Wherever forces that move nothing take
+        /// no energy, its path ends in an answer, however long it is; it is given up after 100 pivots per row.
         Copositive,
         /// Projected Gauss-Seidel: Coulomb's law at one node after the other, the forces of all others held, and then a solve
         /// for the modes that this comes to.

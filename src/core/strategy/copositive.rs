@@ -1,4 +1,5 @@
-//! Lemke's pivoting in the form that does not end on a ray ([`crate::interface::copositive`]), a pivot a minor iteration.
+//! Lemke's pivoting in the form that does not end on a ray ([`crate::interface::copositive`]), a pivot a minor iteration; on
+//! a path that is longer than the tableau has rows, fifty.
 //!
 //! Where forces are not unique, those that pivoting comes to are taken on to a state whose modes have one solution
 //! ([`crate::interface::vertex`]). What is found is checked by Table 2 in the minor iteration after.
@@ -13,11 +14,26 @@ use crate::model::BoundUpdate;
 /// Pivoting from all nodes free, with the friction force in two parts.
 pub struct Copositive;
 
-/// A path, its start, and the pivots done.
+/// Pivots in a minor iteration of a long path.
+const STRIDE: usize = 50;
+
+/// A path, its start, and the steps done: minor iterations of it.
 struct Path {
     pivoting: Pivoting,
     start: usize,
     step: usize,
+}
+
+impl Path {
+    /// The pivots of a minor iteration.
+    fn go(&mut self) {
+        let most = match self.step < self.pivoting.rows() {
+            true => 1,
+            false => STRIDE,
+        };
+        let done = (0..most).map_while(|_| self.pivoting.pivot()).count();
+        self.step += usize::from(done > 0);
+    }
 }
 
 impl Method for Copositive {
@@ -31,7 +47,7 @@ impl Method for Copositive {
 }
 
 impl Search for Copositive {
-    /// One pivot; after a path that has ended without an answer, the next start follows.
+    /// One step of the path; after one that has ended on a ray, the next start follows.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         if asked.start >= STARTS {
             return Err(match asked.unconfirmed {
@@ -44,11 +60,13 @@ impl Search for Copositive {
             Some(path) if path_is_at(&path, &asked) => path,
             _ => Box::new(path(&mut asked)?),
         };
-        if path.pivoting.pivot().is_some() {
-            path.step += 1;
-        }
+        path.go();
         let pivoting = &path.pivoting;
         let ended = pivoting.ended();
+        if ended == Some(PathEnd::Astray) {
+            let pivots = pivoting.pivots();
+            return Err(NotFound::Astray { pivots }.into());
+        }
         let nodes = (0..asked.brought.len()).map(|k| (pivoting.assumed(k), pivoting.numbers(k)));
         let mut nodes: Vec<_> = nodes.collect();
         let solved = ended == Some(PathEnd::Solved);
@@ -85,13 +103,13 @@ fn path_is_at(path: &Path, asked: &Asked<'_>) -> bool {
 /// The path after so many pivots.
 fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
-    let mut pivoting = Pivoting::new(&problem, asked.start).ok_or(NotFound::NoStart)?;
-    for _ in 0..asked.step {
-        pivoting.pivot();
-    }
-    Ok(Path {
-        pivoting,
+    let mut path = Path {
+        pivoting: Pivoting::new(&problem, asked.start).ok_or(NotFound::NoStart)?,
         start: asked.start,
-        step: asked.step,
-    })
+        step: 0,
+    };
+    for _ in 0..asked.step {
+        path.go();
+    }
+    Ok(path)
 }

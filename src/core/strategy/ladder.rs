@@ -2,8 +2,8 @@
 //!
 //! From the second rung on, T_max follows F_n within the solve. If no rung finds a consistent state, the increment is cut.
 //!
-//! Of the last two, sweeps are cheaper: they solved 57 of the first 60 problems of `cargo bench --bench hyperstatic`. Pivoting
-//! solves some that sweeps do not, such as number 13, but not all: its path may be longer than it may go, as at number 27.
+//! With more contacts than [`MANY`], sweeps and the pivoting that they leave some problems to come before what changes one node
+//! at a time or walks all starts: a step of these costs a solve, and there are as many steps as nodes, or more.
 
 use crate::interface::method::Method;
 use crate::model::Strategy;
@@ -11,7 +11,7 @@ use crate::model::Strategy;
 /// The rungs, one after the other.
 pub struct Ladder;
 
-/// The rungs of the ladder, the cheapest first.
+/// The rungs of the ladder, the cheapest first where contacts are few.
 const RUNGS: [Strategy; 7] = [
     Strategy::Table2,
     Strategy::Sliding,
@@ -22,15 +22,45 @@ const RUNGS: [Strategy; 7] = [
     Strategy::Copositive,
 ];
 
+/// The same, the cheapest first where contacts are many.
+const RUNGS_OF_MANY: [Strategy; 7] = [
+    Strategy::Table2,
+    Strategy::Sliding,
+    Strategy::GaussSeidel,
+    Strategy::Copositive,
+    Strategy::SlidingLeast,
+    Strategy::Lemke,
+    Strategy::Census,
+];
+
+/// Most contacts that are few.
+const MANY: usize = 20;
 /// Most contacts with which `lemke` is tried.
 const MOST_PIVOTED: usize = 64;
+/// Most contacts with which `copositive` is tried: its numbers take 300 bytes for every pair of contacts.
+const MOST_COPOSITIVE: usize = 1000;
 
 impl Method for Ladder {
     fn rungs(&self) -> &'static [Strategy] {
         &RUNGS
     }
 
-    fn leaves_out(&self, rung: Strategy, contacts: usize) -> bool {
-        rung == Strategy::Lemke && contacts > MOST_PIVOTED
+    fn after(&self, rung: usize, contacts: usize) -> Option<usize> {
+        let order = if contacts > MANY {
+            RUNGS_OF_MANY
+        } else {
+            RUNGS
+        };
+        let here = RUNGS.get(rung)?;
+        let next = order
+            .into_iter()
+            .skip_while(|strategy| strategy != here)
+            .skip(1)
+            .find(|strategy| match strategy {
+                Strategy::Lemke => contacts <= MOST_PIVOTED,
+                Strategy::Copositive => contacts <= MOST_COPOSITIVE,
+                _ => true,
+            })?;
+        RUNGS.iter().position(|strategy| *strategy == next)
     }
 }

@@ -39,9 +39,8 @@ pub fn rungs(chosen: Strategy) -> &'static [Strategy] {
 /// The rung after one (both from 0) with so many contacts, and what it is. `None` after the last.
 pub fn next_rung(chosen: Strategy, rung: usize, contacts: usize) -> Option<(usize, Strategy)> {
     let method = method(chosen);
-    let all = method.rungs().iter().copied().enumerate();
-    all.skip(rung + 1)
-        .find(|&(_, strategy)| !method.leaves_out(strategy, contacts))
+    let next = method.after(rung, contacts)?;
+    Some((next, *method.rungs().get(next)?))
 }
 
 /// The settings in force on a rung (from 0; past the last one, those of the last). The strategy is that of the rung, and
