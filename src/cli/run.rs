@@ -336,6 +336,7 @@ impl Tally<'_> {
             Outcome::Climbed { .. }
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
+            | Outcome::Turns { .. }
             | Outcome::Braked { .. }
             | Outcome::Detour { .. }
             | Outcome::Damped { .. }

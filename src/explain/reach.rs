@@ -107,6 +107,7 @@ fn step(
         Outcome::Cut { why, .. }
         | Outcome::Leaps { why, .. }
         | Outcome::Detour { why, .. }
+        | Outcome::Turns { why, .. }
         | Outcome::Braked { why, .. } => ControlFlow::Break(Err(why.clone())),
         Outcome::Moves(Moves::LetsGo { why, .. }) => ControlFlow::Break(Err(why.clone())),
         _ => ControlFlow::Continue(()),

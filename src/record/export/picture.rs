@@ -108,6 +108,7 @@ fn caption(shown: &Shown) -> String {
             Outcome::Cut { .. }
             | Outcome::Leaps { .. }
             | Outcome::Detour { .. }
+            | Outcome::Turns { .. }
             | Outcome::Braked { .. },
             _,
         ) => "the increment begins again".to_owned(),
