@@ -280,10 +280,18 @@ impl State {
     pub(super) fn set_out(&mut self) {
         let start = self.start.clone();
         let Some(way) = &mut self.way else { return };
+        way.known = way.known && !way.turned;
         way.begin(&start.u, self.controls.increment);
-        way.change(&mut self.nodes, &self.controls.friction);
         self.load_factor = start.load_factor;
         (self.target, self.last_target) = (start.load_factor, start.load_factor);
+        self.change_modes();
+    }
+
+    /// Gives contacts the modes behind the corner, if the present increment starts there.
+    pub(super) fn change_modes(&mut self) {
+        if let Some(way) = &self.way {
+            way.change(&mut self.nodes, &self.controls.friction);
+        }
     }
 }
 

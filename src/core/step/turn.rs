@@ -29,13 +29,12 @@ use crate::model::{BoundUpdate, Friction, Mode};
 use crate::step::event::{Failure, Outcome};
 use crate::step::stepper::Stepper;
 use crate::step::way::{Change, Way};
+use std::sync::Arc;
 
 /// Ends of modes that are closer than this part of their way come together.
 const TOGETHER: f64 = 1e-6;
 /// A corner closer than this part of an increment's size is where it starts.
 const AT_START: f64 = 0.02;
-/// An increment that cannot be cut any more may have its corner this many times its size ahead.
-const AHEAD: f64 = 2.0;
 /// An increment that is cut to end before a corner goes this part of the way there.
 const BEFORE: f64 = 0.99;
 
@@ -98,6 +97,9 @@ impl Stepper {
     /// # Errors
     /// Why there is none.
     pub(super) fn tangent_behind(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+        if !self.leave_corners() {
+            return Err(Failure::DoubledBack);
+        }
         // The start lies before the corner, so that a solve also goes there: two differ by the tangent.
         let (mut motion, given) = self.solve_tangent()?;
         if let Some(way) = &mut self.state.way {
@@ -151,20 +153,55 @@ impl Stepper {
         Ok((motion, contacts.map(|k| self.source.increment(k)).collect()))
     }
 
-    /// Starts an increment that failed again behind the corner that it starts at, or, where it is at its `smallest`, that lies
-    /// ahead. `None` where there is no such corner, or where that was what failed.
+    /// Starts an increment that failed again behind the corner that it starts at; where it is at its `smallest`, behind that
+    /// at which contacts changed first. `None` where there is no such corner, or where that was what failed.
     pub(super) fn turn_corner(&mut self, why: &Failure, smallest: bool) -> Option<Outcome> {
         let way = self.state.way.as_mut()?;
-        let reach = if smallest { AHEAD } else { AT_START };
-        let near = way.known && !way.next.is_empty() && way.next_at <= reach * way.step;
-        if !near || way.turned {
+        if !way.known || way.turned {
             return None;
         }
-        (way.turned, way.known) = (true, false);
+        if smallest && !way.seen.is_empty() {
+            way.next = way.seen.clone();
+        } else if way.next.is_empty() || way.next_at > AT_START * way.step {
+            return None;
+        }
+        way.turned = true;
         let changes = way.next.clone();
         self.restart(self.state.sub_increment);
         let why = why.clone();
         Some(Outcome::Turns { why, changes })
+    }
+
+    /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do.
+    pub(super) fn leave_corners(&mut self) -> bool {
+        let (state, way) = (&self.state, self.state.way.as_ref());
+        let held = |change: &Change| state.nodes[change.contact].corner.is_some();
+        if way.is_some_and(|way| way.next.iter().any(held)) {
+            self.follow();
+            self.state.change_modes();
+        }
+        self.linearise()
+    }
+
+    /// Notes which contacts were the first to change their modes in the present increment.
+    pub(super) fn note_changes(&mut self) {
+        let Some(way) = &mut self.state.way else { return };
+        if !way.seen.is_empty() || way.turned {
+            return;
+        }
+        let records = self.event.nodes.iter().enumerate();
+        let changed = records.filter(|(_, record)| record.decision.changes());
+        let nodes = &self.state.nodes;
+        let seen = changed.map(|(contact, record)| Change {
+            contact,
+            from: record.decision.before,
+            to: record.decision.next,
+            sign: nodes[contact].sign,
+        });
+        let seen: Vec<Change> = seen.collect();
+        if !seen.is_empty() {
+            way.seen = Arc::new(seen);
+        }
     }
 
     /// Whether a contact that changed at the corner has not kept to it.

@@ -40,7 +40,10 @@ pub struct Way {
     /// Arc from the start of the increment to there.
     #[serde(default)]
     pub next_at: f64,
-    /// Whether the present increment starts with those modes.
+    /// The contacts that changed first in the present attempt.
+    #[serde(default)]
+    pub seen: Arc<Vec<Change>>,
+    /// Whether the present increment starts with the modes of `next`.
     #[serde(default)]
     pub turned: bool,
 }
@@ -96,6 +99,7 @@ impl Way {
             last_load: 0.0,
             next: Arc::default(),
             next_at: 0.0,
+            seen: Arc::default(),
             turned: false,
         }
     }
@@ -122,6 +126,9 @@ impl Way {
     /// Sets out on an increment, or on another attempt at it, from displacements `start`; `increment` is that of the load
     /// factor.
     pub(super) fn begin(&mut self, start: &[f64], increment: f64) {
+        if !self.seen.is_empty() {
+            self.seen = Arc::default();
+        }
         if !self.known {
             self.aim = Aim::Tangent;
             self.left = if self.last.is_empty() {
