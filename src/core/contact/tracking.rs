@@ -112,6 +112,38 @@ impl Ground<'_> {
         }
     }
 
+    /// A sliding node as it is held in the concave corner at the end of its side, towards which it slides where S* moves along t
+    /// relative to the node as `motion` does: S* goes the other way along the surface. `None` where the side does not end so.
+    pub fn held_ahead(
+        &self,
+        node: &ContactState,
+        slave: &Contact,
+        motion: f64,
+    ) -> Option<ContactState> {
+        let spot = node.spot.filter(|_| node.mode == Mode::Sliding)?;
+        let end = SurfacePoint {
+            xi: if motion < 0.0 { 1.0 } else { -1.0 },
+            ..spot
+        };
+        let half = half_angle(&self.surfaces[spot.surface], end, self.positions);
+        let half = half.filter(|half| *half > STRAIGHT)?;
+        let (at, [f_x, f_y]) = (self.positions[slave.node], node.force());
+        let [c, s] = projection_at(self.surfaces, end, self.positions, at).normal;
+        let mut held = ContactState {
+            mode: Mode::Fixed,
+            spot: Some(end),
+            anchor: Some(end),
+            corner: Some(half),
+            left: None,
+            normal: [c, s],
+            f_n: c * f_x + s * f_y,
+            f_t: c * f_y - s * f_x,
+            ..*node
+        };
+        self.find_anchor(&mut held, at);
+        Some(held)
+    }
+
     /// Lets a node that has left the place where two sides meet stand on the side along which it slides.
     fn leave(&self, node: &mut ContactState, held: Option<SurfacePoint>) {
         if let (Some(held), Some(spot), Mode::Sliding) = (held, node.spot, node.mode)

@@ -132,6 +132,16 @@ impl Source for Bodies {
         }
     }
 
+    fn held_ahead(
+        &self,
+        contact: usize,
+        state: &ContactState,
+        motion: f64,
+    ) -> Option<ContactState> {
+        self.ground()
+            .held_ahead(state, &self.model.contacts[contact], motion)
+    }
+
     fn brakes(&self) -> bool {
         true
     }

@@ -167,7 +167,7 @@ impl Stepper {
         let Some(way) = &state.way else { return false };
         let behind = way.measured == Measured::Displacements
             && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
-        if behind || way.turned || way.last.is_empty() {
+        if behind || self.turned_back() || way.turned || way.last.is_empty() {
             return behind || self.turned_back();
         }
         let moved = state.u.iter().zip(state.start.u.iter());

@@ -6,7 +6,8 @@
 //!
 //! ```text
 //! fixed     F_n + s F_n' = 0: opens,    |F_t + s F_t'| = tan φ (F_n + s F_n') + c: slides
-//! sliding   F_n + s F_n' = 0: opens,    sgn(T_max) slip' < 0: sticks, at s = 0
+//! sliding   F_n + s F_n' = 0: opens,    sgn(T_max) slip' < 0: sticks, at s = 0,
+//!           s |slip'| = room to a concave corner: is held there
 //! free      g + s g' = 0: touches
 //! ```
 //!
@@ -16,6 +17,7 @@
 //! ```text
 //! slides    F_t slip' > 0               opens     g' > 0
 //! sticks    sgn(F_t) F_t' < tan φ F_n'    touches   F_n' > 0
+//! is held   sgn(F_t) F_t' > tan(φ − h) F_n', with h half the corner's angle: beyond the cone of the side that it came from
 //! ```
 //!
 //! This is what pivoting methods do at the end of an edge of a piecewise linear path (Eaves 1972). Where the contacts that
@@ -35,6 +37,8 @@ use std::sync::Arc;
 const TOGETHER: f64 = 1e-6;
 /// A corner closer than this part of an increment's size is where it starts.
 const AT_START: f64 = 0.02;
+/// An increment that cannot be cut any more may have its corner this many times its size ahead.
+const AHEAD: f64 = 2.0;
 /// An increment that is cut to end before a corner goes this part of the way there.
 const BEFORE: f64 = 0.99;
 
@@ -71,8 +75,13 @@ impl Stepper {
                 continue;
             };
             let friction = node.friction(&state.controls.friction[contact]);
-            let rates = self.source.increment(contact).into();
-            let Some((at, to, sign)) = end_of_mode(node, over.gap, rates, &friction) else {
+            let rates: Rates = self.source.increment(contact).into();
+            let room = self
+                .source
+                .held_ahead(contact, node, rates.slip)
+                .and_then(|_| over.room_for(rates.slip));
+            let end = end_of_mode(node, over.gap, room, rates, &friction);
+            let Some((at, to, sign)) = end else {
                 continue;
             };
             if at < first.0 * (1.0 - TOGETHER) {
@@ -80,11 +89,13 @@ impl Stepper {
             }
             if at <= first.0 * (1.0 + TOGETHER) {
                 let from = node.mode;
+                let held = from == Mode::Sliding && to == Mode::Fixed && at > 0.0;
                 first.1.push(Change {
                     contact,
                     from,
                     to,
                     sign,
+                    held,
                 });
             }
         }
@@ -97,7 +108,7 @@ impl Stepper {
     /// # Errors
     /// Why there is none.
     pub(super) fn tangent_behind(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
-        if !self.leave_corners() {
+        if !self.enter_corners() {
             return Err(Failure::DoubledBack);
         }
         // The start lies before the corner, so that a solve also goes there: two differ by the tangent.
@@ -118,8 +129,10 @@ impl Stepper {
         let rates: Vec<Rates> = rates.map(Rates::from).collect();
         let sign = self.state.way.as_ref().and_then(|way| {
             let signs = way.next.iter().map(|change| {
-                let friction = &self.state.controls.friction[change.contact];
-                agreeing(change, rates[change.contact], friction)
+                let contact = change.contact;
+                let friction = &self.state.controls.friction[contact];
+                let corner = self.state.nodes[contact].corner;
+                agreeing(change, rates[contact], friction, corner)
             });
             let mut signs = signs.filter(|sign| *sign != 0.0);
             let first = signs.next()?;
@@ -160,9 +173,11 @@ impl Stepper {
         if !way.known || way.turned {
             return None;
         }
-        if smallest && !way.seen.is_empty() {
+        let reach = if smallest { AHEAD } else { AT_START };
+        let foreseen = !way.next.is_empty() && way.next_at <= reach * way.step;
+        if !foreseen && smallest && !way.seen.is_empty() {
             way.next = way.seen.clone();
-        } else if way.next.is_empty() || way.next_at > AT_START * way.step {
+        } else if !foreseen {
             return None;
         }
         way.turned = true;
@@ -172,13 +187,26 @@ impl Stepper {
         Some(Outcome::Turns { why, changes })
     }
 
-    /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do.
-    pub(super) fn leave_corners(&mut self) -> bool {
+    /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do, and holds those that
+    /// slide into one; false where nothing can be linearised then.
+    fn enter_corners(&mut self) -> bool {
         let (state, way) = (&self.state, self.state.way.as_ref());
-        let held = |change: &Change| state.nodes[change.contact].corner.is_some();
-        if way.is_some_and(|way| way.next.iter().any(held)) {
+        let changes = way.map_or_else(Arc::default, |way| way.next.clone());
+        let leaves = |change: &Change| state.nodes[change.contact].corner.is_some();
+        if changes.iter().any(leaves) {
             self.follow();
             self.state.change_modes();
+        }
+        for change in changes.iter() {
+            let contact = change.contact;
+            let enters = change.from == Mode::Sliding && change.to == Mode::Fixed;
+            // Slip has the direction of the force.
+            let held = self.state.start.nodes[contact];
+            let held = self.source.held_ahead(contact, &held, change.sign);
+            if let Some(held) = held.filter(|_| enters && change.held) {
+                self.state.nodes[contact] = held;
+                self.linearised = false;
+            }
         }
         self.linearise()
     }
@@ -197,6 +225,7 @@ impl Stepper {
             from: record.decision.before,
             to: record.decision.next,
             sign: nodes[contact].sign,
+            held: false,
         });
         let seen: Vec<Change> = seen.collect();
         if !seen.is_empty() {
@@ -204,14 +233,20 @@ impl Stepper {
         }
     }
 
-    /// Whether a contact that changed at the corner has not kept to it.
+    /// Whether a contact that changed at the corner has not kept to it; or, in an increment that starts at none, one has come
+    /// to stick that slides along the tangent. At every state of sliding there is a second way on: back with the load, where all
+    /// contacts stick. That is not the path.
     pub(super) fn turned_back(&self) -> bool {
         let nodes = &self.state.nodes;
-        let turned = self.state.way.as_ref().filter(|way| way.turned);
-        turned.is_some_and(|way| {
+        let Some(way) = &self.state.way else {
+            return false;
+        };
+        if way.turned {
             let mut changes = way.next.iter();
-            changes.any(|change| nodes[change.contact].mode == change.from)
-        })
+            return changes.any(|change| nodes[change.contact].mode == change.from);
+        }
+        let mut both = nodes.iter().zip(&self.state.start.nodes);
+        both.any(|(now, start)| (start.mode, now.mode) == (Mode::Sliding, Mode::Fixed))
     }
 }
 
@@ -228,12 +263,17 @@ pub(super) fn smaller(way: &Way) -> f64 {
 
 /// The direction of the tangent, of which `rates` are given, in which a contact obeys Table 2 after it has changed (−1 or 1;
 /// 0 if it does in both).
-fn agreeing(change: &Change, rates: Rates, friction: &Friction) -> f64 {
+fn agreeing(change: &Change, rates: Rates, friction: &Friction, corner: Option<f64>) -> f64 {
+    // About the mean normal of a corner the bound of the side that the contact came from is that much less.
+    let turned = corner.filter(|_| change.held).unwrap_or_default();
+    let bound = (friction.angle.to_radians() - turned).tan() * rates.f_n;
+    let beyond = change.sign * rates.f_t - bound;
     let margin = match (change.to, change.from) {
         (Mode::Sliding, _) => change.sign * rates.slip,
         (Mode::Free, _) => rates.gap,
         (Mode::Fixed, Mode::Free) => rates.f_n,
-        (Mode::Fixed, _) => friction.coefficient() * rates.f_n - change.sign * rates.f_t,
+        (Mode::Fixed, _) if change.held => beyond,
+        (Mode::Fixed, _) => -beyond,
     };
     if margin == 0.0 { 0.0 } else { margin.signum() }
 }
@@ -243,6 +283,7 @@ fn agreeing(change: &Change, rates: Rates, friction: &Friction) -> f64 {
 fn end_of_mode(
     node: &ContactState,
     gap: f64,
+    room: Option<f64>,
     rates: Rates,
     friction: &Friction,
 ) -> Option<(f64, Mode, f64)> {
@@ -273,7 +314,8 @@ fn end_of_mode(
         }
         Mode::Sliding => {
             let sticks = (node.sign * rates.slip < 0.0).then_some((0.0, Mode::Fixed, node.sign));
-            first([opens(), sticks, None])
+            let meets = room.map(|room| (room / rates.slip.abs(), Mode::Fixed, node.sign));
+            first([opens(), sticks, meets])
         }
     }
 }
@@ -305,7 +347,7 @@ mod tests {
             cohesion: 0.5,
         };
         let end = |mode, f_n, f_t, gap, rates| {
-            let end = end_of_mode(&node(mode, f_n, f_t), gap, rates, &friction);
+            let end = end_of_mode(&node(mode, f_n, f_t), gap, None, rates, &friction);
             end.map(|(at, to, sign)| ((1e9 * at).round() / 1e9, to, sign))
         };
         // 2 − s = 0 comes after 1 + s = (2 − s) + 0.5.
@@ -335,8 +377,9 @@ mod tests {
                 from,
                 to,
                 sign,
+                held: false,
             };
-            agreeing(&change, rates, &friction)
+            agreeing(&change, rates, &friction, None)
         };
         let (fixed, sliding, free) = (Mode::Fixed, Mode::Sliding, Mode::Free);
         let all = rates(-1.0, 2.0, 3.0, -4.0);

@@ -59,6 +59,8 @@ pub struct Change {
     pub to: Mode,
     /// Direction of its tangential force (−1, 0 or 1).
     pub sign: f64,
+    /// Whether it is held in the concave corner into which it slides.
+    pub held: bool,
 }
 
 /// What binds an increment.
