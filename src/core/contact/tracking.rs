@@ -20,7 +20,7 @@ use crate::contact::table1::t_max;
 use crate::model::Mode;
 use crate::model::{Contact, Friction, Surface};
 
-/// A node closer to a vertex than this part of the element's size stands on it.
+/// A node closer to a place where two sides meet than this part of the element's size stands there.
 const AT_VERTEX: f64 = 1e-9;
 
 /// The chains that nodes stand on, and where all nodes of the scene are now.
@@ -147,7 +147,7 @@ impl Ground<'_> {
     /// Lets a node that has left the place where two sides meet stand on the side along which it slides.
     fn leave(&self, node: &mut ContactState, held: Option<SurfacePoint>) {
         if let (Some(held), Some(spot), Mode::Sliding) = (held, node.spot, node.mode)
-            && spot.xi.abs() == 1.0
+            && spot.xi.abs() >= 1.0 - AT_VERTEX
             && held.surface == spot.surface
         {
             // Slip is that of S* against the node, which goes the other way along the surface.
