@@ -15,9 +15,10 @@
 //! the corner of the path that it started at ([`crate::step::turn`]).
 
 use crate::contact::laws::Verdict;
+use crate::contact::state::ContactState;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::{ArcLength, Jumps, Measured, Model};
+use crate::model::{ArcLength, Jumps, Measured, Mode, Model};
 use crate::step::event::{Failure, Outcome};
 use crate::step::pace::RATIO;
 use crate::step::state::State;
@@ -252,6 +253,13 @@ impl Stepper {
             if let Some(corner) = model.path.get(leg + 1) {
                 way.ahead = (corner - state.load_factor).signum();
             }
+        }
+        let slides = |node: &ContactState| node.mode == Mode::Sliding;
+        let both = state.nodes.iter().zip(&state.start.nodes).enumerate();
+        let fresh = both.filter(|(_, (now, then))| slides(now) && !slides(then));
+        let fresh: Vec<usize> = fresh.map(|(contact, _)| contact).collect();
+        if !(fresh.is_empty() && way.fresh.is_empty()) {
+            way.fresh = Arc::new(fresh);
         }
         (way.last, way.known, way.turned) = (Arc::new(last), false, false);
         ends

@@ -17,6 +17,7 @@
 //! ```text
 //! slides    F_t slip' > 0               opens     g' > 0
 //! sticks    sgn(F_t) F_t' < tan φ F_n'    touches   F_n' > 0
+//! slides on where it began to in the increment before, which ended just behind a corner: as slides
 //! is held   sgn(F_t) F_t' > tan(φ − h) F_n', with h half the corner's angle: beyond the cone of the side that it came from
 //! ```
 //!
@@ -69,6 +70,7 @@ impl Stepper {
     pub(super) fn next_changes(&self) -> (f64, Vec<Change>) {
         let state = &self.state;
         let mut first = (f64::INFINITY, Vec::new());
+        let Some(way) = &state.way else { return first };
         for (contact, node) in state.nodes.iter().enumerate() {
             let over = self.source.kinematics(contact);
             let Some(over) = over.filter(|_| !matches!(node.forced, Forced::Held(_))) else {
@@ -81,9 +83,12 @@ impl Stepper {
                 .held_ahead(contact, node, rates.slip)
                 .and_then(|_| over.room_for(rates.slip));
             let end = end_of_mode(node, over.gap, room, rates, &friction);
-            let Some((at, to, sign)) = end else {
+            let Some((at, mut to, sign)) = end else {
                 continue;
             };
+            if at == 0.0 && to == Mode::Fixed && way.fresh.contains(&contact) {
+                to = Mode::Sliding;
+            }
             if at < first.0 * (1.0 - TOGETHER) {
                 first = (at, Vec::new());
             }
@@ -243,7 +248,7 @@ impl Stepper {
         };
         if way.turned {
             let mut changes = way.next.iter();
-            return changes.any(|change| nodes[change.contact].mode == change.from);
+            return changes.any(|change| nodes[change.contact].mode != change.to);
         }
         let mut both = nodes.iter().zip(&self.state.start.nodes);
         both.any(|(now, start)| (start.mode, now.mode) == (Mode::Sliding, Mode::Fixed))

@@ -43,6 +43,9 @@ pub struct Way {
     /// The contacts that changed first in the present attempt.
     #[serde(default)]
     pub seen: Arc<Vec<Change>>,
+    /// The contacts that began to slide in the increment before.
+    #[serde(default)]
+    pub fresh: Arc<Vec<usize>>,
     /// Whether the present increment starts with the modes of `next`.
     #[serde(default)]
     pub turned: bool,
@@ -102,6 +105,7 @@ impl Way {
             next: Arc::default(),
             next_at: 0.0,
             seen: Arc::default(),
+            fresh: Arc::default(),
             turned: false,
         }
     }
