@@ -147,6 +147,7 @@ const LESSONS: &[Builtin] = lessons![
     "10-slip",
     "11-judge",
     "12-chart",
+    "13-two-sides",
 ];
 
 /// All built-in lessons, in the order in which they are to be taken.

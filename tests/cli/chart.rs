@@ -123,6 +123,8 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
     let directory = tempfile::tempdir().unwrap();
     let arguments = [
         BEAM,
+        "--set",
+        "history.jumps=stop",
         "--over",
         "majors=60,1",
         "--repeats",

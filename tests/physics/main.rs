@@ -25,6 +25,8 @@ mod hertz;
 mod smooth;
 // Any node on any chain, over borders and corners, from one body to the next.
 mod pairing;
+// Two sides of a surface at once: corners, vertices, steps.
+mod corners;
 // Stuck nodes stay where they stuck; without an anchor they drift in third order.
 mod drift;
 // Equilibrium, contact and friction hold in every accepted increment; turned scenes give turned results.

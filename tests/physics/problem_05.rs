@@ -119,9 +119,10 @@ fn problem_05_is_smooth_to_its_end_at_every_increment_of_the_paper_in_both_roles
     }
 }
 
-/// With the geometry frozen, as in the paper, the slave nodes on the block get to the end, ten times as slowly.
+/// With the geometry frozen, as in the paper, the end is reached ten times as slowly; with the roles swapped by sliding that
+/// is held back, since the major iterations alone do not get there.
 #[test]
-fn problem_05_with_frozen_geometry_gets_to_its_end_too_but_not_with_the_roles_swapped() {
+fn problem_05_with_frozen_geometry_gets_to_its_end_too() {
     let frozen = ("settings.geometry", "frozen");
     let one = |name: &str, increment: &str| {
         let size = [
@@ -138,13 +139,10 @@ fn problem_05_with_frozen_geometry_gets_to_its_end_too_but_not_with_the_roles_sw
         assert!((last(&run, "u_x") - consistent).abs() < 1e-7);
         assert!(run.accepted.iter().any(|a| a.majors > 50));
     }
+    let whole = finished(&scene(ROLES[1], &[("history.increment", "0.15")]));
     let swapped = one(ROLES[1], "0.15");
-    let (event, failure) = swapped.failure.as_ref().unwrap();
-    let limit = matches!(
-        failure,
-        stickslip::step::event::Failure::MajorLimit { limit: 200, .. }
-    );
-    assert!(limit && event.load_factor > 1.04, "{failure:?}");
+    assert!(swapped.failure.is_none(), "{:?}", swapped.failure);
+    assert!((last(&swapped, "u_x") - last(&whole, "u_x")).abs() < 1e-6);
 }
 
 #[test]

@@ -420,7 +420,13 @@ fn tables_have_the_arc_where_the_path_is_followed_and_snapshots_replay() {
     let csv = told(&[&["run", scene, "--quiet", "--csv", "-"], &follow[..]].concat());
     assert!(csv.starts_with("increment,load,majors,minors,") && csv.contains(",arc,jumped\n"));
     let trace = told(&[&["run", scene, "--quiet", "--trace", "-"], &follow[..]].concat());
-    assert!(trace.lines().next().unwrap().ends_with(",residual,arc"));
+    assert!(
+        trace
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with(",residual,contact,arc")
+    );
     let loaded = told(&["run", scene, "--quiet", "--trace", "-"]);
     assert!(loaded.lines().next().unwrap().ends_with(",residual"));
     // Rows of the last increment's last minor iteration end with the arc of the table.

@@ -264,12 +264,16 @@ fn the_ladder_goes_on_with_friction_where_table_2_cycles() {
     }
 }
 
-/// The way up ends at a limit point, near P = 1.837 on this mesh; beyond, nothing is near. Each run ends less than the least
-/// of its increments, a 64th, below it.
+/// The way up ends at a limit point, near P = 1.837 on this mesh. Each run lets go less than the least of its increments, a
+/// 64th, below it.
 #[test]
 fn at_a_limit_point_the_ladder_ends_at_the_same_load_with_any_increment() {
     let ends = ["0.1", "0.05", "0.01"].map(|increment| {
-        let set = [("friction.angle", "20"), ("history.increment", increment)];
+        let set = [
+            ("friction.angle", "20"),
+            ("history.increment", increment),
+            ("history.jumps", "stop"),
+        ];
         let run = run(&scene("02-two-cantilevers-rough", &set));
         assert!(run.failure.is_some(), "{increment}");
         let last = run.stepper.state().start.load_factor;
@@ -281,6 +285,32 @@ fn at_a_limit_point_the_ladder_ends_at_the_same_load_with_any_increment() {
         .fold(f64::INFINITY, |least, end| least.min(end.1));
     assert!(above < below, "{ends:?}");
     assert!((above - 1.837).abs() < 1e-4, "{ends:?}");
+}
+
+/// Beyond, the next state of equilibrium is far; sliding that is held back leads there from any increment.
+#[test]
+fn past_a_limit_point_the_ladder_comes_to_the_same_state_with_any_increment_and_marks_the_jump() {
+    for angle in ["5", "10", "20"] {
+        let ends = ["0.1", "0.05", "0.02"].map(|increment| {
+            let set = [
+                ("friction.angle", angle),
+                ("history.increment", increment),
+                ("refine", "4"),
+            ];
+            let run = run(&scene("02-two-cantilevers-rough", &set));
+            assert!(run.failure.is_none(), "{set:?}: {:?}", run.failure);
+            let jumps = |a: &&crate::common::Accepted| {
+                matches!(a.event.outcome, Outcome::Increment { jumped: true, .. })
+            };
+            let jumped = run.accepted.iter().find(jumps).expect("a jump is marked");
+            let end = run.accepted.last().unwrap();
+            (jumped.load, end.monitors["u_x"])
+        });
+        for end in ends {
+            assert!((end.0 - ends[0].0).abs() < 0.1 / 64.0, "{angle}: {ends:?}");
+            assert!((end.1 - ends[0].1).abs() < 1e-8, "{angle}: {ends:?}");
+        }
+    }
 }
 
 #[test]

@@ -201,11 +201,11 @@ fn add(a: [f64; 2], b: [f64; 2], times: f64) -> [f64; 2] {
     [a[0] + times * b[0], a[1] + times * b[1]]
 }
 
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 

@@ -3,7 +3,7 @@
 //! A state is judged from positions and forces alone, now and in the last accepted state. Nothing of the iterations'
 //! bookkeeping (modes, S*, anchors, counted slip) is used. The laws:
 //!
-//! - g >= 0; no force acts across a gap; F_n >= 0; |F_t| <= tan φ F_n + c (eqn 20);
+//! - g >= 0, also over surfaces that are not the nearest, which a node has gone through; no force acts across a gap; F_n >= 0; |F_t| <= tan φ F_n + c (eqn 20);
 //! - a node that touches in both states has a net slip: the way along the surface from foot to foot, across the borders of
 //!   elements. If it is not zero, friction opposes it and is at its limit;
 //! - a node that was open, or on another surface, may have touched anywhere on its way. Only friction that is at its limit
@@ -75,6 +75,7 @@ fn further(at: [f64; 2], way: Option<&[f64; 2]>) -> [f64; 2] {
 pub struct Judge {
     feet: Vec<Foot>,
     earlier: Vec<Foot>,
+    others: Vec<Foot>,
     sides: Vec<Touching>,
     /// The state that was judged last, which is mostly the one accepted before the next.
     last: Stood,
@@ -173,6 +174,7 @@ impl Judge {
         Judge {
             feet: Vec::with_capacity(FEW),
             earlier: Vec::with_capacity(FEW),
+            others: Vec::with_capacity(FEW),
             sides: Vec::with_capacity(FEW),
             last: Stood::with_capacity(nodes, slaves),
             next: Stood::with_capacity(nodes, slaves),
@@ -248,6 +250,14 @@ impl Judge {
             return;
         };
         let gap = signed_gap(&foot, point, seen);
+        let through = through(seen, slave, foot.spot.surface, near, &mut self.others);
+        if through > near {
+            let numbers = Numbers {
+                gap: -through,
+                ..Numbers::default()
+            };
+            report(Law::Penetration, through / length, numbers);
+        }
         let numbers = Numbers {
             gap,
             ..Numbers::default()
@@ -346,6 +356,42 @@ impl Judge {
         });
         best.unwrap_or_default()
     }
+}
+
+/// How far a slave node has gone through one of its surfaces since the last accepted state (length), without being nearest
+/// to it; 0 where it has not. Only where it was over the surface and now is under it, not where it went round an end.
+fn through(seen: &Seen, slave: usize, nearest: usize, near: f64, feet: &mut Vec<Foot>) -> f64 {
+    let surfaces = &seen.contacts[slave].surfaces;
+    let others = surfaces.iter().filter(|&&other| other != nearest);
+    let mut over = |other: usize, point: [f64; 2], positions: &[[f64; 2]]| {
+        feet::find(point, seen.surfaces, &[other], positions, 0.0, feet);
+        let foot = feet.first()?;
+        let surface = &seen.surfaces[other];
+        if foot.spot.xi.abs() == 1.0 && !surface.endless {
+            return None;
+        }
+        let t = direction(
+            Element::of(surface, foot.spot.element),
+            positions,
+            foot.spot.xi,
+        )?;
+        Some(dot(
+            [point[0] - foot.at[0], point[1] - foot.at[1]],
+            [t[1], -t[0]],
+        ))
+    };
+    others.fold(0.0, |most: f64, &other| {
+        let now = over(other, seen.point(slave), seen.now).filter(|gap| *gap < -near);
+        let Some(gap) = now else {
+            return most;
+        };
+        let was = over(other, seen.was(slave), seen.before);
+        if was.is_some_and(|was| was >= -near) {
+            most.max(-gap)
+        } else {
+            most
+        }
+    })
 }
 
 /// A side at a spot. `None` where dx/dξ = 0.

@@ -2,6 +2,7 @@
 
 pub mod balance;
 pub mod corner;
+pub mod crossing;
 pub mod element;
 pub mod feet;
 pub mod geometric_tangent;

@@ -47,6 +47,19 @@ pub struct Projection {
     pub curve: Option<Curve>,
 }
 
+impl Projection {
+    /// The same place seen along another normal (unit): that of a corner in which a slave node at `slave` is held.
+    pub fn along(self, normal: [f64; 2], slave: [f64; 2]) -> Self {
+        let to = [slave[0] - self.foot[0], slave[1] - self.foot[1]];
+        Projection {
+            normal,
+            gap: to[0] * normal[0] + to[1] * normal[1],
+            curve: None,
+            ..self
+        }
+    }
+}
+
 /// Derivatives of the master element's curve at S*.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
@@ -203,6 +216,11 @@ pub fn projection_at(
             bend: blend(nodes, positions, &s.dd),
         }),
     }
+}
+
+/// Outward normal of a spot's own element.
+pub fn normal(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [f64; 2] {
+    right_of(slope_at(surface, spot.element, spot.xi, positions))
 }
 
 /// Outward normal at a spot, dx/dξ of whose element is `slope`: the mean of both sides' where two elements meet.

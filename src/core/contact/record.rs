@@ -2,8 +2,6 @@
 
 use crate::contact::corner::{Side, split};
 use crate::contact::projection::SurfacePoint;
-#[cfg(doc)]
-use crate::contact::state::ContactState;
 use crate::contact::table2::Decision;
 use crate::model::{Friction, Mode};
 use serde::{Deserialize, Serialize};
@@ -36,7 +34,7 @@ pub struct ContactRecord {
     pub normal: [f64; 2],
     /// Position of S* at the start of this major iteration.
     pub foot: [f64; 2],
-    /// Half the angle between the normals of the two sides that hold it ([`ContactState::corner`]), in radians; `None` where
+    /// Half the angle between the normals of the two sides that hold it ([`crate::contact::state::ContactState::corner`]), in radians; `None` where
     /// one side alone does.
     pub corner: Option<f64>,
     /// Whether a force component (normal, tangential) is left to the supports, since no unknown takes part in its equation.
@@ -56,13 +54,13 @@ pub struct SideForce {
 
 impl ContactRecord {
     /// What each of the two sides that hold the node gives, in the order of the walk; `friction` is that of one side. With
-    /// friction the split is not unique: it is the one of least norm ([`split`]). NaN where both together cannot give the
-    /// force. `None` where one side alone holds the node.
+    /// friction the split is not unique: it is the one of least norm ([`split`]). `None` where one side alone holds the node, and
+    /// where both together cannot give the force.
     pub fn sides(&self, friction: &Friction) -> Option<[SideForce; 2]> {
         let [one, other] = Side::pair(self.normal, self.corner?, friction);
         let [c, s] = self.normal;
         let force = [c * self.f_n - s * self.f_t, s * self.f_n + c * self.f_t];
-        let forces = split(force, [&one, &other]).unwrap_or([[f64::NAN; 2]; 2]);
+        let forces = split(force, [&one, &other])?;
         let of = |side: &Side, force: [f64; 2]| {
             let [f_n, f_t] = side.components(force);
             let limit = side.coefficient * f_n + side.cohesion;

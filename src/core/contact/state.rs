@@ -42,6 +42,10 @@ pub struct ContactState {
     /// then. Positive in a concave corner, negative on a convex vertex. `None` if one side alone holds it.
     #[serde(default)]
     pub corner: Option<f64>,
+    /// The place on the second surface, where the corner is one between two ([`crate::contact::crossing`]); S* is that on the
+    /// first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second: Option<SurfacePoint>,
     /// The master element that it left last in the present increment, if any.
     #[serde(default)]
     pub left: Option<usize>,
@@ -71,6 +75,7 @@ impl ContactState {
             travel: 0.0,
             spot: None,
             corner: None,
+            second: None,
             left: None,
             normal: [0.0, 1.0],
         }

@@ -10,9 +10,10 @@
 //! holds it without friction would be an unstable state.
 
 use crate::contact::corner;
+use crate::contact::crossing;
 use crate::contact::projection::{
-    STRAIGHT, SurfacePoint, beside, border, element_size, half_angle, project, projection_at,
-    tangent,
+    STRAIGHT, SurfacePoint, beside, border, element_size, half_angle, normal, project,
+    projection_at, tangent,
 };
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
@@ -39,21 +40,32 @@ impl Ground<'_> {
     pub fn stand(&self, node: &mut ContactState, slave: &Contact, friction: &Friction, anew: bool) {
         let at = self.positions[slave.node];
         let (previous, force, was_held) = (node.spot, node.force(), node.corner.is_some());
+        let (second, mean) = (node.second, node.normal);
         if !self.stays_in_corner(node, friction) {
-            node.corner = None;
+            (node.corner, node.second) = (None, None);
             node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
             if !was_held {
                 self.cross(node, previous);
             }
-            if was_held {
-                self.leave(node, previous);
-            } else if node.corner.is_none() {
+            match (was_held, second, previous) {
+                (true, Some(second), Some(first)) => {
+                    self.leave_between(node, [first, second], mean)
+                }
+                (true, ..) => self.leave(node, previous),
+                _ => {}
+            }
+            if !was_held && node.corner.is_none() {
                 self.meet_both(node, at, friction);
+            }
+            if !was_held && node.corner.is_none() && slave.surfaces.len() > 1 {
+                self.meet_between(node, slave, at);
             }
         }
         match node.spot {
             Some(spot) => {
-                node.normal = projection_at(self.surfaces, spot, self.positions, at).normal;
+                if node.second.is_none() {
+                    node.normal = projection_at(self.surfaces, spot, self.positions, at).normal;
+                }
                 if was_held != node.corner.is_some() {
                     let ([c, s], [f_x, f_y]) = (node.normal, force);
                     (node.f_n, node.f_t) = (c * f_x + s * f_y, c * f_y - s * f_x);
@@ -78,6 +90,10 @@ impl Ground<'_> {
         let (Some(was), Some(spot), Mode::Fixed) = (node.corner, node.spot, node.mode) else {
             return false;
         };
+        // Rigid surfaces cross where they did.
+        if node.second.is_some() {
+            return true;
+        }
         let half = half_angle(&self.surfaces[spot.surface], spot, self.positions);
         let still = |half: &f64| {
             let is_corner = *half > 0.0;
@@ -155,6 +171,56 @@ impl Ground<'_> {
         }
     }
 
+    /// The same where the two sides are `held`, on two surfaces that cross; `mean` is the normal about which it was held.
+    fn leave_between(&self, node: &mut ContactState, held: [SurfacePoint; 2], mean: [f64; 2]) {
+        if node.mode != Mode::Sliding || node.spot.is_none() {
+            return;
+        }
+        let t = tangent(mean);
+        let out = held.map(|spot| {
+            let surface = &self.surfaces[spot.surface];
+            let n = normal(surface, spot, self.positions);
+            -node.sign * (t[0] * n[0] + t[1] * n[1])
+        });
+        // It leaves the side from which its way leads away.
+        node.spot = Some(if out[0] < out[1] { held[0] } else { held[1] });
+    }
+
+    /// Holds a node that is inside two of its surfaces, or on one and inside the other, where they cross in a corner.
+    fn meet_between(&self, node: &mut ContactState, slave: &Contact, at: [f64; 2]) {
+        let Some(spot) = node.spot.filter(|spot| self.surfaces[spot.surface].rigid) else {
+            return;
+        };
+        let size = element_size(&self.surfaces[spot.surface], spot, self.positions);
+        let here = projection_at(self.surfaces, spot, self.positions, at);
+        if here.gap > AT_VERTEX * size {
+            return;
+        }
+        let others = slave
+            .surfaces
+            .iter()
+            .filter(|&&other| other != spot.surface && self.surfaces[other].rigid);
+        for &other in others {
+            let Some(across) = project(at, self.surfaces, &[other], self.positions, None) else {
+                continue;
+            };
+            let there = projection_at(self.surfaces, across, self.positions, at);
+            let deep = element_size(&self.surfaces[other], across, self.positions);
+            if there.gap >= -AT_VERTEX * deep || there.gap < -deep {
+                continue;
+            }
+            let Some(met) = crossing::find(self.surfaces, [spot, across], self.positions) else {
+                continue;
+            };
+            (node.spot, node.second) = (Some(met.spots[0]), Some(met.spots[1]));
+            (node.corner, node.normal) = (Some(met.half), met.normal());
+            if node.mode == Mode::Sliding {
+                node.mode = Mode::Fixed;
+            }
+            return;
+        }
+    }
+
     /// Holds a node whose S* is just where two sides meet: in a concave corner, since it is out over both sides; on a convex
     /// vertex where friction can hold it. Else it stands on a side of the vertex.
     fn meet_both(&self, node: &mut ContactState, at: [f64; 2], friction: &Friction) {
@@ -166,9 +232,9 @@ impl Ground<'_> {
             return;
         };
         if half > 0.0 {
-            node.corner = Some(half);
+            // What sticks between two elements that bend needs no corner's friction.
             if node.mode == Mode::Sliding {
-                node.mode = Mode::Fixed;
+                (node.corner, node.mode) = (Some(half), Mode::Fixed);
             }
         } else if node.mode != Mode::Sliding && corner::holds(friction, half) {
             node.corner = Some(half);
@@ -206,7 +272,7 @@ impl Ground<'_> {
         node.drift = match (node.corner, anchor) {
             (Some(_), _) => {
                 let here = projection_at(self.surfaces, spot, self.positions, at);
-                let t = tangent(here.normal);
+                let t = tangent(node.normal);
                 (here.foot[0] - at[0]) * t[0] + (here.foot[1] - at[1]) * t[1]
             }
             (None, Some(anchor)) => {

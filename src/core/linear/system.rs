@@ -168,13 +168,11 @@ impl System {
             .iter_mut()
             .zip(at.contacts.iter().zip(&model.contacts))
         {
-            interface.projection = node.spot.map(|spot| {
-                projection_at(
-                    &model.surfaces,
-                    spot,
-                    &self.positions,
-                    self.positions[slave.node],
-                )
+            let point = self.positions[slave.node];
+            let over = |spot| projection_at(&model.surfaces, spot, &self.positions, point);
+            interface.projection = node.spot.map(over).map(|here| match node.second {
+                Some(_) => here.along(node.normal, point),
+                None => here,
             });
             interface.allowed = slave.overlap * unclosed;
         }

@@ -123,8 +123,11 @@ impl Stepper {
         }
         let last = state.detour.map(|way| way.by);
         let from = state.detour.map_or(state.sub_increment, |way| way.from);
-        let by = Detour::after(last, chosen)?;
         let start = state.start.load_factor;
+        let mut by = Detour::after(last, chosen)?;
+        if by == Detour::Section && from.rest(start).section().size() < state.controls.least {
+            by = Detour::after(Some(by), chosen)?;
+        }
         let part = match by {
             Detour::Section => from.rest(start).section(),
             Detour::Back => from,
@@ -221,6 +224,7 @@ impl Stepper {
         let unsettled = self.state.unsettled;
         let leg = self.leg_reached();
         let bounded = self.go_along(leg);
+        self.settle_contacts();
         let motion = self.state.motion.take();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;

@@ -1,0 +1,156 @@
+//! Concave corners between two surfaces: where the chains of two rigid surfaces cross, both press on a node that may touch
+//! both.
+//!
+//! A node that has gone through one of its surfaces need not be nearest to that one: nearest is the other, on whose far part
+//! it stands. It belongs into the corner where the two cross, x_1(ξ_1) = x_2(ξ_2). That is a corner if each chain goes on
+//! there on the outside of the other one; the ends of two chains that meet at a convex edge do not.
+//!
+//! The corner holds a node as one within a chain does ([`crate::contact::corner`]), with the force on the first surface. That is
+//! right for rigid surfaces only, whose supports carry it; between others there are no such corners yet.
+
+use crate::contact::corner;
+use crate::contact::element::Element;
+use crate::contact::projection::{STRAIGHT, SurfacePoint};
+use crate::fem::lagrange::MAX_NODES;
+use crate::model::Surface;
+
+/// Steps of Newton's method; straight chains need one.
+const STEPS: usize = 20;
+/// Distance of the two places, relative to the elements, at which they are one.
+const CLOSED: f64 = 1e-12;
+/// Directions whose product is below this are parallel.
+const PARALLEL: f64 = 1e-9;
+
+/// Where two chains cross.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// The place on each.
+    pub spots: [SurfacePoint; 2],
+    /// Outward normal of each (unit).
+    pub normals: [[f64; 2]; 2],
+    /// Half the angle between the normals (radians).
+    pub half: f64,
+}
+
+impl Crossing {
+    /// Mean of the two normals (unit).
+    pub fn normal(&self) -> [f64; 2] {
+        let [a, b] = self.normals;
+        let sum = [a[0] + b[0], a[1] + b[1]];
+        let length = size(sum);
+        sum.map(|x| x / length)
+    }
+}
+
+/// The concave corner in which the elements of two spots cross. `None` where they do not, or not in a corner.
+pub fn find(
+    surfaces: &[Surface],
+    spots: [SurfacePoint; 2],
+    positions: &[[f64; 2]],
+) -> Option<Crossing> {
+    let elements = spots.map(|spot| Element::of(&surfaces[spot.surface], spot.element));
+    let endless = spots.map(|spot| surfaces[spot.surface].endless);
+    let mut xi = spots.map(|spot| spot.xi);
+    let mut at = [[0.0; 2]; 2];
+    let mut slopes = [[0.0; 2]; 2];
+    for _ in 0..STEPS {
+        for k in 0..2 {
+            let s = elements[k].shape(xi[k]);
+            at[k] = blend(elements[k].nodes, positions, &s.n);
+            slopes[k] = blend(elements[k].nodes, positions, &s.d);
+        }
+        let area = corner::cross(slopes[0], slopes[1]);
+        if area.abs() <= PARALLEL * size(slopes[0]) * size(slopes[1]) {
+            return None;
+        }
+        let away = [at[1][0] - at[0][0], at[1][1] - at[0][1]];
+        if size(away) <= CLOSED * (size(slopes[0]) + size(slopes[1])) {
+            break;
+        }
+        xi[0] += corner::cross(away, slopes[1]) / area;
+        xi[1] += corner::cross(away, slopes[0]) / area;
+    }
+    let away = [at[1][0] - at[0][0], at[1][1] - at[0][1]];
+    let met = size(away) <= CLOSED * (size(slopes[0]) + size(slopes[1]));
+    let within = |k: usize| endless[k] || xi[k].abs() <= 1.0;
+    let normals = slopes.map(|d| {
+        let length = size(d);
+        [d[1] / length, -d[0] / length]
+    });
+    // The outer part of a chain lies on the outside of the other.
+    let goes_on = |k: usize| {
+        let other = normals[1 - k];
+        endless[k]
+            || [-1.0, 1.0].into_iter().any(|end| {
+                let there = blend(elements[k].nodes, positions, &elements[k].shape(end).n);
+                let out = [there[0] - at[k][0], there[1] - at[k][1]];
+                corner::dot(out, other) > PARALLEL * size(slopes[k])
+            })
+    };
+    let half = 0.5 * corner::dot(normals[0], normals[1]).clamp(-1.0, 1.0).acos();
+    let is_corner = met && within(0) && within(1) && goes_on(0) && goes_on(1) && half > STRAIGHT;
+    is_corner.then(|| Crossing {
+        spots: [0, 1].map(|k| SurfacePoint {
+            xi: xi[k],
+            ..spots[k]
+        }),
+        normals,
+        half,
+    })
+}
+
+fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
+    nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
+        [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
+    })
+}
+
+fn size(v: [f64; 2]) -> f64 {
+    corner::dot(v, v).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(name: &str, nodes: [usize; 2]) -> Surface {
+        Surface {
+            name: name.into(),
+            elements: vec![nodes.to_vec()],
+            rigid: true,
+            endless: false,
+            smooth: Vec::new(),
+        }
+    }
+
+    fn spots() -> [SurfacePoint; 2] {
+        [0, 1].map(|surface| SurfacePoint {
+            surface,
+            element: 0,
+            xi: 0.3,
+        })
+    }
+
+    #[test]
+    fn a_floor_and_a_wall_cross_in_a_corner_and_the_sides_of_a_block_do_not() {
+        // A floor walked towards −x, and a wall on its right walked downwards, whose outward side is −x.
+        let x = [[3.0, 0.0], [-1.0, 0.0], [1.0, 2.0], [1.0, -1.0]];
+        let both = [surface("floor", [0, 1]), surface("wall", [2, 3])];
+        let found = find(&both, spots(), &x).unwrap();
+        assert!((found.half.to_degrees() - 45.0).abs() < 1e-12);
+        assert!(
+            (found.spots[0].xi - 0.0).abs() < 1e-15
+                && (found.spots[1].xi - 1.0 / 3.0).abs() < 1e-15
+        );
+        let n = found.normal();
+        assert!(n[0] < 0.0 && n[1] > 0.0 && (n[0] + n[1]).abs() < 1e-15);
+        // The top of a block and its right side, which end where they meet, at (1, 0).
+        let x = [[1.0, 0.0], [-1.0, 0.0], [1.0, -2.0], [1.0, 0.0]];
+        assert_eq!(find(&both, spots(), &x), None);
+        // Parallel, and apart.
+        let x = [[1.0, 0.0], [-1.0, 0.0], [1.0, -1.0], [-1.0, -1.0]];
+        assert_eq!(find(&both, spots(), &x), None);
+        let x = [[3.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, -1.0]];
+        assert_eq!(find(&both, spots(), &x), None);
+    }
+}
