@@ -128,19 +128,22 @@ impl Ground<'_> {
         }
     }
 
-    /// A sliding node as it is held in the concave corner at the end of its side, towards which it slides where S* moves along t
-    /// relative to the node as `motion` does: S* goes the other way along the surface. `None` where the side does not end so.
-    pub fn held_ahead(
+    /// A node as it is held in a concave corner: in that at the end of its side, towards which it slides where S* moves along t
+    /// relative to the node as `motion` does, and the other way along the surface; or, without a motion, in that where it
+    /// sticks. `None` where there is no such corner.
+    pub fn held_in_corner(
         &self,
         node: &ContactState,
         slave: &Contact,
-        motion: f64,
+        motion: Option<f64>,
     ) -> Option<ContactState> {
-        let spot = node.spot.filter(|_| node.mode == Mode::Sliding)?;
-        let end = SurfacePoint {
-            xi: if motion < 0.0 { 1.0 } else { -1.0 },
-            ..spot
+        let spot = node.spot.filter(|_| node.corner.is_none())?;
+        let xi = match (motion, node.mode) {
+            (Some(motion), Mode::Sliding) => -motion.signum(),
+            (None, Mode::Fixed) => spot.xi,
+            _ => return None,
         };
+        let end = SurfacePoint { xi, ..spot };
         let half = half_angle(&self.surfaces[spot.surface], end, self.positions);
         let half = half.filter(|half| *half > STRAIGHT)?;
         let (at, [f_x, f_y]) = (self.positions[slave.node], node.force());

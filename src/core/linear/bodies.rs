@@ -132,14 +132,14 @@ impl Source for Bodies {
         }
     }
 
-    fn held_ahead(
+    fn held_in_corner(
         &self,
         contact: usize,
         state: &ContactState,
-        motion: f64,
+        motion: Option<f64>,
     ) -> Option<ContactState> {
         self.ground()
-            .held_ahead(state, &self.model.contacts[contact], motion)
+            .held_in_corner(state, &self.model.contacts[contact], motion)
     }
 
     fn brakes(&self) -> bool {

@@ -134,13 +134,13 @@ pub trait Source: Send {
         Vec::new()
     }
 
-    /// A sliding contact as it is held in the concave corner at the end of its side, towards which it slides where S* moves
-    /// along t relative to S as `motion` does. `None` where there is no such corner.
-    fn held_ahead(
+    /// A contact as it is held in a concave corner: in that at the end of its side, towards which it slides where S* moves along
+    /// t relative to S as `motion` does; or, without a motion, in that where it sticks. `None` where there is no such corner.
+    fn held_in_corner(
         &self,
         _contact: usize,
         _state: &ContactState,
-        _motion: f64,
+        _motion: Option<f64>,
     ) -> Option<ContactState> {
         None
     }

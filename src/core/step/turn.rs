@@ -80,7 +80,7 @@ impl Stepper {
             let rates: Rates = self.source.increment(contact).into();
             let room = self
                 .source
-                .held_ahead(contact, node, rates.slip)
+                .held_in_corner(contact, node, Some(rates.slip))
                 .and_then(|_| over.room_for(rates.slip));
             let end = end_of_mode(node, over.gap, room, rates, &friction);
             let Some((at, mut to, sign)) = end else {
@@ -140,7 +140,8 @@ impl Stepper {
                 agreeing(change, rates[contact], friction, corner)
             });
             let mut signs = signs.filter(|sign| *sign != 0.0);
-            let first = signs.next()?;
+            // What goes on as before goes on ahead.
+            let first = signs.next().unwrap_or(1.0);
             signs.all(|sign| sign == first).then_some(first)
         });
         let sign = sign.ok_or(Failure::DoubledBack)?;
@@ -192,26 +193,35 @@ impl Stepper {
         Some(Outcome::Turns { why, changes })
     }
 
-    /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do, and holds those that
-    /// slide into one; false where nothing can be linearised then.
+    /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do, and holds in a
+    /// concave corner those that slide into one, or that stick at one and would slide by the friction of one side; false where
+    /// nothing can be linearised then.
     fn enter_corners(&mut self) -> bool {
-        let (state, way) = (&self.state, self.state.way.as_ref());
-        let changes = way.map_or_else(Arc::default, |way| way.next.clone());
-        let leaves = |change: &Change| state.nodes[change.contact].corner.is_some();
-        if changes.iter().any(leaves) {
+        let changes = self.state.way.as_ref();
+        let mut changes = changes.map_or_else(Vec::new, |way| way.next.to_vec());
+        let starts = self.state.start.clone();
+        if (changes.iter()).any(|change| starts.nodes[change.contact].corner.is_some()) {
             self.follow();
             self.state.change_modes();
         }
-        for change in changes.iter() {
-            let contact = change.contact;
-            let enters = change.from == Mode::Sliding && change.to == Mode::Fixed;
-            // Slip has the direction of the force.
-            let held = self.state.start.nodes[contact];
-            let held = self.source.held_ahead(contact, &held, change.sign);
-            if let Some(held) = held.filter(|_| enters && change.held) {
-                self.state.nodes[contact] = held;
+        for change in &mut changes {
+            let start = &starts.nodes[change.contact];
+            let motion = match (change.from, change.to) {
+                (Mode::Fixed, Mode::Sliding) => None,
+                (Mode::Fixed, Mode::Fixed) => None,
+                // Slip has the direction of the force.
+                (Mode::Sliding, Mode::Fixed) if change.held => Some(change.sign),
+                _ => continue,
+            };
+            let held = self.source.held_in_corner(change.contact, start, motion);
+            if let Some(held) = held {
+                self.state.nodes[change.contact] = held;
+                (change.to, change.held) = (Mode::Fixed, true);
                 self.linearised = false;
             }
+        }
+        if let Some(way) = &mut self.state.way {
+            way.next = Arc::new(changes);
         }
         self.linearise()
     }
@@ -275,6 +285,7 @@ fn agreeing(change: &Change, rates: Rates, friction: &Friction, corner: Option<f
     let beyond = change.sign * rates.f_t - bound;
     let margin = match (change.to, change.from) {
         (Mode::Sliding, _) => change.sign * rates.slip,
+        (Mode::Fixed, Mode::Fixed) => 0.0,
         (Mode::Free, _) => rates.gap,
         (Mode::Fixed, Mode::Free) => rates.f_n,
         (Mode::Fixed, _) if change.held => beyond,
