@@ -336,6 +336,7 @@ impl Tally<'_> {
             Outcome::Climbed { .. }
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
+            | Outcome::Turns { .. }
             | Outcome::Detour { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),

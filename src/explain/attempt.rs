@@ -53,6 +53,7 @@ impl Attempt {
                 Outcome::Increment { .. }
                 | Outcome::Cut { .. }
                 | Outcome::Leaps { .. }
+                | Outcome::Turns { .. }
                 | Outcome::Detour { .. }
                 | Outcome::Moves(_) => ControlFlow::Break(()),
                 Outcome::Minor

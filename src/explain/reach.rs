@@ -104,9 +104,10 @@ fn step(
     let end = stepper.drive(until, |stepper| match &stepper.event().outcome {
         Outcome::Increment { .. } => ControlFlow::Break(Ok(stepper.state().clone())),
         // Cutting is done here.
-        Outcome::Cut { why, .. } | Outcome::Leaps { why, .. } | Outcome::Detour { why, .. } => {
-            ControlFlow::Break(Err(why.clone()))
-        }
+        Outcome::Cut { why, .. }
+        | Outcome::Leaps { why, .. }
+        | Outcome::Detour { why, .. }
+        | Outcome::Turns { why, .. } => ControlFlow::Break(Err(why.clone())),
         Outcome::Moves(Moves::LetsGo { why, .. }) => ControlFlow::Break(Err(why.clone())),
         _ => ControlFlow::Continue(()),
     });

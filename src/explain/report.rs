@@ -15,6 +15,7 @@ use crate::step::event::{Event, Failure, Moves, Outcome, Position, Slow};
 use crate::step::intervene::Intervention;
 use crate::step::major_history::{MajorCycle, Stop};
 use crate::step::state::State;
+use crate::step::way::Change;
 
 /// Why Table 2 decided as it did; `friction` says whether there is any.
 pub fn reason(decision: &Decision, friction: bool) -> String {
@@ -138,6 +139,18 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: {}; nothing is near: the increment is taken whole, {size}",
             describe_failure(model, why)
         ),
+        Outcome::Turns { why, changes } => {
+            let change = |change: &Change| {
+                let (name, to) = (slave(model, change.contact), mode(change.to));
+                format!("{name} is {to}")
+            };
+            let changes: Vec<String> = changes.iter().map(change).collect();
+            format!(
+                "{at}: {}; the path turns a corner, behind which {}",
+                describe_failure(model, why),
+                changes.join(", ")
+            )
+        }
         Outcome::HeldBack { why, stiffness } => {
             let why = why.as_ref().map_or_else(
                 || "a node slides too far, or against its force".to_owned(),

@@ -53,6 +53,7 @@ impl PointKind {
             Outcome::Cut { .. }
             | Outcome::Leaps { .. }
             | Outcome::Detour { .. }
+            | Outcome::Turns { .. }
             | Outcome::Moves(_) => PointKind::Cut,
             Outcome::HeldBack { .. } => PointKind::Damped,
             Outcome::Major { .. } => PointKind::Major,

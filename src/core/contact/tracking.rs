@@ -21,7 +21,7 @@ use crate::contact::table1::t_max;
 use crate::model::Mode;
 use crate::model::{Contact, Friction, Surface};
 
-/// A node closer to a vertex than this part of the element's size stands on it.
+/// A node closer to a place where two sides meet than this part of the element's size stands there.
 const AT_VERTEX: f64 = 1e-9;
 
 /// The chains that nodes stand on, and where all nodes of the scene are now.
@@ -128,10 +128,45 @@ impl Ground<'_> {
         }
     }
 
+    /// A node as it is held in a concave corner: in that at the end of its side, towards which it slides where S* moves along t
+    /// relative to the node as `motion` does, and the other way along the surface; or, without a motion, in that where it
+    /// sticks. `None` where there is no such corner.
+    pub fn held_in_corner(
+        &self,
+        node: &ContactState,
+        slave: &Contact,
+        motion: Option<f64>,
+    ) -> Option<ContactState> {
+        let spot = node.spot.filter(|_| node.corner.is_none())?;
+        let xi = match (motion, node.mode) {
+            (Some(motion), Mode::Sliding) => -motion.signum(),
+            (None, Mode::Fixed) => spot.xi,
+            _ => return None,
+        };
+        let end = SurfacePoint { xi, ..spot };
+        let half = half_angle(&self.surfaces[spot.surface], end, self.positions);
+        let half = half.filter(|half| *half > STRAIGHT)?;
+        let (at, [f_x, f_y]) = (self.positions[slave.node], node.force());
+        let [c, s] = projection_at(self.surfaces, end, self.positions, at).normal;
+        let mut held = ContactState {
+            mode: Mode::Fixed,
+            spot: Some(end),
+            anchor: Some(end),
+            corner: Some(half),
+            left: None,
+            normal: [c, s],
+            f_n: c * f_x + s * f_y,
+            f_t: c * f_y - s * f_x,
+            ..*node
+        };
+        self.find_anchor(&mut held, at);
+        Some(held)
+    }
+
     /// Lets a node that has left the place where two sides meet stand on the side along which it slides.
     fn leave(&self, node: &mut ContactState, held: Option<SurfacePoint>) {
         if let (Some(held), Some(spot), Mode::Sliding) = (held, node.spot, node.mode)
-            && spot.xi.abs() == 1.0
+            && spot.xi.abs() >= 1.0 - AT_VERTEX
             && held.surface == spot.surface
         {
             // Slip is that of S* against the node, which goes the other way along the surface.

@@ -132,6 +132,16 @@ impl Source for Bodies {
         }
     }
 
+    fn held_in_corner(
+        &self,
+        contact: usize,
+        state: &ContactState,
+        motion: Option<f64>,
+    ) -> Option<ContactState> {
+        self.ground()
+            .held_in_corner(state, &self.model.contacts[contact], motion)
+    }
+
     fn brakes(&self) -> bool {
         true
     }

@@ -134,6 +134,17 @@ pub trait Source: Send {
         Vec::new()
     }
 
+    /// A contact as it is held in a concave corner: in that at the end of its side, towards which it slides where S* moves along
+    /// t relative to S as `motion` does; or, without a motion, in that where it sticks. `None` where there is no such corner.
+    fn held_in_corner(
+        &self,
+        _contact: usize,
+        _state: &ContactState,
+        _motion: Option<f64>,
+    ) -> Option<ContactState> {
+        None
+    }
+
     /// Finds where every contact stands in a state: the point on its surface, normal, stick point and drift. `anew` says
     /// that a sliding contact takes its stick point along. `friction` is that in force, by contact.
     fn follow(

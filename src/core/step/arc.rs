@@ -11,18 +11,20 @@
 //! turning points, where the displacement does, are points like others.
 //!
 //! Where a converged state is beyond the leg's corner, or a bound of the history, the increment goes on with that as its
-//! constraint, and ends exactly there. The next size follows from the number of major iterations; what fails is cut.
+//! constraint, and ends exactly there. The next size follows from the number of major iterations; what fails is cut, or begins again behind
+//! the corner of the path that it started at ([`crate::step::turn`]).
 
 use crate::contact::laws::Verdict;
+use crate::contact::state::ContactState;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::linear::source::Solved;
-use crate::model::{ArcLength, BoundUpdate, Jumps, Measured, Model};
+use crate::model::{ArcLength, Jumps, Measured, Mode, Model};
 use crate::step::event::{Failure, Outcome};
 use crate::step::pace::RATIO;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
-use crate::step::way::Aim;
+use crate::step::turn::smaller;
+use crate::step::way::{Aim, Change};
 use std::sync::Arc;
 
 /// A step that goes back the way of the one before, up to this angle (cosine of its supplement), doubles back.
@@ -54,18 +56,16 @@ impl Stepper {
         if !self.source.follows_paths() {
             return Err(Failure::Unmoved);
         }
-        let mut at = self.state.at();
-        at.settings.t_max = BoundUpdate::Consistent;
-        let solved = self.source.solve(&at);
-        if let Some(why) = self.unsolvable(solved) {
-            return Err(why);
-        }
-        if self.source.recover() == Solved::Not {
-            return Err(Failure::Singular(self.explain()));
-        }
-        let mut motion = vec![0.0; self.state.u.len()];
-        self.source.advance(&mut motion);
-        self.take_tangent(&motion)?;
+        let turned = self.state.way.as_ref().is_some_and(|way| way.turned);
+        let (motion, slips, next) = if turned {
+            let (motion, slips) = self.tangent_behind()?;
+            (motion, slips, None)
+        } else {
+            let (motion, given) = self.solve_tangent()?;
+            let slips = given.iter().map(|given| given.motion[1]).collect();
+            (motion, slips, Some(self.next_changes()))
+        };
+        self.take_tangent(&motion, &slips, next)?;
         self.linearised = false;
         if self.linearise() {
             Ok(())
@@ -74,18 +74,22 @@ impl Stepper {
         }
     }
 
-    /// Takes a tangent, of any size, and sets out along it.
-    fn take_tangent(&mut self, motion: &[f64]) -> Result<(), Failure> {
+    /// Takes a tangent, of any size, with the slips of the contacts and the next corner along it, and sets out.
+    fn take_tangent(
+        &mut self,
+        motion: &[f64],
+        slips: &[f64],
+        next: Option<(f64, Vec<Change>)>,
+    ) -> Result<(), Failure> {
         let (model, still) = (self.model.clone(), vec![0.0; motion.len()]);
         let largest = self.source.moved(motion, &still);
-        let slip = |contact: usize| self.source.increment(contact).motion[1];
         let Some(way) = self.state.way.as_mut() else {
             return Ok(());
         };
         let (size, sign) = match way.measured {
             Measured::Displacements => (largest, 1.0),
             Measured::Dof(dof) => (motion[dof].abs(), motion[dof].signum()),
-            Measured::Slip(contact) => (slip(contact).abs(), slip(contact).signum()),
+            Measured::Slip(contact) => (slips[contact].abs(), slips[contact].signum()),
         };
         if !(largest.is_finite() && largest > 0.0 && size > NOTHING * largest) {
             return Err(Failure::Unmoved);
@@ -101,6 +105,9 @@ impl Stepper {
         let square: f64 = row.iter().map(|t| t * t).sum();
         row.iter_mut().for_each(|t| *t *= largest / square);
         (way.row, way.sign, way.known) = (Arc::new(row), sign, true);
+        if let Some(next) = next {
+            way.expect(next, size);
+        }
         way.begin(&self.state.start.u, self.state.controls.increment);
         Ok(())
     }
@@ -161,8 +168,8 @@ impl Stepper {
         let Some(way) = &state.way else { return false };
         let behind = way.measured == Measured::Displacements
             && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
-        if behind || way.last.is_empty() {
-            return behind;
+        if behind || self.turned_back() || way.turned || way.last.is_empty() {
+            return behind || self.turned_back();
         }
         let moved = state.u.iter().zip(state.start.u.iter());
         let moved = moved.map(|(u, start)| u - start);
@@ -247,21 +254,32 @@ impl Stepper {
                 way.ahead = (corner - state.load_factor).signum();
             }
         }
-        (way.last, way.known) = (Arc::new(last), false);
+        let slides = |node: &ContactState| node.mode == Mode::Sliding;
+        let both = state.nodes.iter().zip(&state.start.nodes).enumerate();
+        let fresh = both.filter(|(_, (now, then))| slides(now) && !slides(then));
+        let fresh: Vec<usize> = fresh.map(|(contact, _)| contact).collect();
+        if !(fresh.is_empty() && way.fresh.is_empty()) {
+            way.fresh = Arc::new(fresh);
+        }
+        (way.last, way.known, way.turned) = (Arc::new(last), false, false);
         ends
     }
 
-    /// Cuts the present increment's size in half. `None` where it is at its smallest.
+    /// Cuts the present increment's size, to half of it or to the next corner. `None` where it is at its smallest.
     pub(super) fn cut_way(&mut self) -> Option<f64> {
         let least = self.model.arc.least;
-        let way = self.state.way.as_mut().filter(|way| way.known)?;
+        let way = self.state.way.as_mut();
+        let way = way.filter(|way| way.known || way.turned)?;
         let least = least.unwrap_or(ArcLength::LEAST * way.first);
-        let half = way.step / 2.0;
-        if half < least * (1.0 - ROUNDING) {
+        let cut = smaller(way);
+        if cut < least * (1.0 - ROUNDING) {
             return None;
         }
-        way.step = half;
-        Some(half)
+        way.step = cut;
+        if way.turned {
+            (way.turned, way.known) = (false, false);
+        }
+        Some(cut)
     }
 }
 
@@ -270,9 +288,18 @@ impl State {
     pub(super) fn set_out(&mut self) {
         let start = self.start.clone();
         let Some(way) = &mut self.way else { return };
+        way.known = way.known && !way.turned;
         way.begin(&start.u, self.controls.increment);
         self.load_factor = start.load_factor;
         (self.target, self.last_target) = (start.load_factor, start.load_factor);
+        self.change_modes();
+    }
+
+    /// Gives contacts the modes behind the corner, if the present increment starts there.
+    pub(super) fn change_modes(&mut self) {
+        if let Some(way) = &self.way {
+            way.change(&mut self.nodes, &self.controls.friction);
+        }
     }
 }
 

@@ -10,7 +10,9 @@ use crate::model::Strategy;
 use crate::step::detour::Detour;
 use crate::step::major_history::MajorCycle;
 use crate::step::motion::Motion;
+use crate::step::way::Change;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Where the solver is. All counts start at 1.
 #[derive(
@@ -80,6 +82,13 @@ pub enum Outcome {
         why: Failure,
         /// Size of the whole (load factor).
         size: f64,
+    },
+    /// Along the path: the increment failed at a corner of it, and is started again behind that ([`crate::step::turn`]).
+    Turns {
+        /// What it failed of.
+        why: Failure,
+        /// The contacts that take another mode there.
+        changes: Arc<Vec<Change>>,
     },
     /// Sliding is held back ([`crate::step::brake`]), and is so more from here on; the major iteration starts again.
     HeldBack {

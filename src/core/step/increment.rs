@@ -77,7 +77,12 @@ impl Stepper {
         if !helps {
             return None;
         }
-        let size = self.cut_way()?;
+        if let Some(turns) = self.turn_corner(why, false) {
+            return Some(turns);
+        }
+        let Some(size) = self.cut_way() else {
+            return self.turn_corner(why, true);
+        };
         self.restart(self.state.sub_increment);
         let why = why.clone();
         Some(Outcome::Cut { why, size })

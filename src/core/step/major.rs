@@ -17,6 +17,8 @@ const DIVERGED: f64 = 1e4;
 /// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
 /// the length instead.
 const STILL: f64 = 1e-8;
+/// Times the major iterations that keep its size after which an increment along the path is lost.
+const LOST: u32 = 2;
 
 impl Stepper {
     /// Updates displacements and forces, renews the geometry, and asks whether the increment is done. `settled` is false
@@ -45,7 +47,7 @@ impl Stepper {
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
         let balanced = self.is_balanced(&after);
         let braked = self.state.brake.on;
-        let most = settings.majors * if braked { PATIENCE } else { 1 };
+        let most = self.most_majors(braked);
         let at_limit = self.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;
         if settled && balanced && !drowned && !self.is_carried(&after) {
@@ -80,6 +82,17 @@ impl Stepper {
             });
         }
         Outcome::Major { after, settled }
+    }
+
+    /// After how many major iterations an increment fails. Along the path, one that takes long has lost the way: what it
+    /// comes to in the end may be on another branch.
+    fn most_majors(&self, braked: bool) -> u32 {
+        let majors = self.state.controls.settings.majors;
+        match (braked, &self.state.way) {
+            (true, _) => majors * PATIENCE,
+            (false, Some(_)) => majors.min(LOST * self.model.arc.iterations),
+            (false, None) => majors,
+        }
     }
 
     /// Whether forces and interface conditions are met at the whole load of the increment.

@@ -6,7 +6,8 @@
 //! - [`sub_increment`]: increments whole and cut; [`detour`]: ways round one whose halves all fail; `jump`: those that
 //!   end on another branch of equilibrium; `verdict`: what becomes of a state that the judge refuses.
 //! - [`brake`], `hold`: sliding that is held back, where nothing else has helped.
-//! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come.
+//! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come;
+//!   `turn`: corners of the path, where contacts change their modes.
 //! - `damped`: damped motion past a limit point; [`motion`]: what it carries along.
 //! - [`major_history`]: cycles of major iterations.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
@@ -30,6 +31,7 @@ mod search;
 pub mod state;
 pub mod stepper;
 pub mod sub_increment;
+mod turn;
 mod verdict;
 pub mod way;
 

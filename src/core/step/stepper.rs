@@ -123,6 +123,7 @@ impl Stepper {
         }
         self.state.minors += 1;
         let settled = self.check();
+        self.note_changes();
         if !settled {
             return self.go_on();
         }

@@ -1,7 +1,9 @@
 //! How far a history along the path of equilibrium has come, as plain data (`arc` says how it goes on).
 
+use crate::contact::state::ContactState;
+use crate::contact::table1::t_max;
 use crate::linear::source::Along;
-use crate::model::{Measured, Model};
+use crate::model::{Friction, Measured, Mode, Model};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -32,6 +34,36 @@ pub struct Way {
     pub last: Arc<Vec<f64>>,
     /// Change of the load factor in it.
     pub last_load: f64,
+    /// The contacts that come first to the end of their mode along the tangent ([`crate::step::turn`]).
+    #[serde(default)]
+    pub next: Arc<Vec<Change>>,
+    /// Arc from the start of the increment to there.
+    #[serde(default)]
+    pub next_at: f64,
+    /// The contacts that changed first in the present attempt.
+    #[serde(default)]
+    pub seen: Arc<Vec<Change>>,
+    /// The contacts that began to slide in the increment before.
+    #[serde(default)]
+    pub fresh: Arc<Vec<usize>>,
+    /// Whether the present increment starts with the modes of `next`.
+    #[serde(default)]
+    pub turned: bool,
+}
+
+/// A contact takes another mode at a corner of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Change {
+    /// Its number.
+    pub contact: usize,
+    /// The mode it had.
+    pub from: Mode,
+    /// The mode that it takes.
+    pub to: Mode,
+    /// Direction of its tangential force (−1, 0 or 1).
+    pub sign: f64,
+    /// Whether it is held in the concave corner into which it slides.
+    pub held: bool,
 }
 
 /// What binds an increment.
@@ -70,6 +102,11 @@ impl Way {
             row: Arc::default(),
             last: Arc::default(),
             last_load: 0.0,
+            next: Arc::default(),
+            next_at: 0.0,
+            seen: Arc::default(),
+            fresh: Arc::default(),
+            turned: false,
         }
     }
 
@@ -95,6 +132,9 @@ impl Way {
     /// Sets out on an increment, or on another attempt at it, from displacements `start`; `increment` is that of the load
     /// factor.
     pub(super) fn begin(&mut self, start: &[f64], increment: f64) {
+        if !self.seen.is_empty() {
+            self.seen = Arc::default();
+        }
         if !self.known {
             self.aim = Aim::Tangent;
             self.left = if self.last.is_empty() {
@@ -128,5 +168,24 @@ impl Way {
     pub(super) fn gone(&self, u: &[f64], start: &[f64]) -> f64 {
         let moved = u.iter().zip(start).map(|(u, start)| u - start);
         self.row.iter().zip(moved).map(|(c, moved)| c * moved).sum()
+    }
+
+    /// Gives contacts the modes behind the corner, if the present increment starts there.
+    pub(super) fn change(&self, nodes: &mut [ContactState], friction: &[Friction]) {
+        for change in self.next.iter().filter(|_| self.turned) {
+            let node = &mut nodes[change.contact];
+            node.mode = change.to;
+            if change.to == Mode::Sliding {
+                let friction = node.friction(&friction[change.contact]);
+                node.sign = change.sign;
+                node.t_max = t_max(&friction, node.f_n, change.sign);
+            }
+        }
+    }
+
+    /// Notes where the next corner lies, along the motion whose size in what is measured is `size`.
+    pub(super) fn expect(&mut self, (at, changes): (f64, Vec<Change>), size: f64) {
+        self.next_at = at * size;
+        self.next = Arc::new(changes);
     }
 }

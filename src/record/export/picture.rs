@@ -104,9 +104,13 @@ fn caption(shown: &Shown) -> String {
         (Outcome::Increment { .. }, _) => "accepted".to_owned(),
         (Outcome::Major { .. } | Outcome::Refused { .. }, _) => "not in equilibrium yet".to_owned(),
         (Outcome::Moves(_), _) => "moves on against a drag, not in equilibrium".to_owned(),
-        (Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Detour { .. }, _) => {
-            "the increment begins again".to_owned()
-        }
+        (
+            Outcome::Cut { .. }
+            | Outcome::Leaps { .. }
+            | Outcome::Detour { .. }
+            | Outcome::Turns { .. },
+            _,
+        ) => "the increment begins again".to_owned(),
         _ => "modes or T_max change".to_owned(),
     };
     let more = match shown.ended.as_str() {

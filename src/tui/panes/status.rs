@@ -183,6 +183,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         | Outcome::Climbed { .. }
         | Outcome::Cut { .. }
         | Outcome::Leaps { .. }
+        | Outcome::Turns { .. }
         | Outcome::HeldBack { .. }
         | Outcome::Moves(_)
         | Outcome::Detour { .. }

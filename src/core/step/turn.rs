@@ -1,0 +1,412 @@
+//! Corners of the path of equilibrium: where a contact comes to the end of its mode, and the path goes on in the next one.
+//!
+//! Between two changes of mode the path is smooth; at a change its tangent turns. If it turns by more than a right angle, no
+//! state lies on the plane ahead of the old tangent, however small the increment. Along the old tangent, with rates ', the end
+//! of a mode is at the least s >= 0 with
+//!
+//! ```text
+//! fixed     F_n + s F_n' = 0: opens,    |F_t + s F_t'| = tan φ (F_n + s F_n') + c: slides
+//! sliding   F_n + s F_n' = 0: opens,    sgn(T_max) slip' < 0: sticks, at s = 0,
+//!           s |slip'| = room to a concave corner: is held there
+//! free      g + s g' = 0: touches
+//! ```
+//!
+//! The contacts whose end comes first change, and the increment starts again with the tangent in the new modes. Its sign is not
+//! that of an inner product here, but that with which the changed contacts obey Table 2:
+//!
+//! ```text
+//! slides    F_t slip' > 0               opens     g' > 0
+//! sticks    sgn(F_t) F_t' < tan φ F_n'    touches   F_n' > 0
+//! slides on where it began to in the increment before, which ended just behind a corner: as slides
+//! is held   sgn(F_t) F_t' > tan(φ − h) F_n', with h half the corner's angle: beyond the cone of the side that it came from
+//! ```
+//!
+//! This is what pivoting methods do at the end of an edge of a piecewise linear path (Eaves 1972). Where the contacts that
+//! change together do not agree on a sign, the path does not go on in these modes.
+
+use crate::contact::record::Forced;
+use crate::contact::state::ContactState;
+use crate::interface::kinematics::NodeIncrement;
+use crate::linear::source::Solved;
+use crate::model::{BoundUpdate, Friction, Mode};
+use crate::step::event::{Failure, Outcome};
+use crate::step::stepper::Stepper;
+use crate::step::way::{Change, Way};
+use std::sync::Arc;
+
+/// Ends of modes that are closer than this part of their way come together.
+const TOGETHER: f64 = 1e-6;
+/// A corner closer than this part of an increment's size is where it starts.
+const AT_START: f64 = 0.02;
+/// An increment that cannot be cut any more may have its corner this many times its size ahead.
+const AHEAD: f64 = 2.0;
+/// An increment that is cut to end before a corner goes this part of the way there.
+const BEFORE: f64 = 0.99;
+
+/// The rates at one contact along a tangent, of whatever size.
+#[derive(Debug, Clone, Copy)]
+struct Rates {
+    f_n: f64,
+    f_t: f64,
+    gap: f64,
+    slip: f64,
+}
+
+impl From<NodeIncrement> for Rates {
+    fn from(given: NodeIncrement) -> Self {
+        let ([f_n, f_t], [normal, slip]) = (given.force, given.motion);
+        Rates {
+            f_n,
+            f_t,
+            gap: -normal,
+            slip,
+        }
+    }
+}
+
+impl Stepper {
+    /// The contacts that come first to the end of their mode along the tangent that was just solved for, and how many times
+    /// the solved motion that is away. Empty where none does.
+    pub(super) fn next_changes(&self) -> (f64, Vec<Change>) {
+        let state = &self.state;
+        let mut first = (f64::INFINITY, Vec::new());
+        let Some(way) = &state.way else { return first };
+        for (contact, node) in state.nodes.iter().enumerate() {
+            let over = self.source.kinematics(contact);
+            let Some(over) = over.filter(|_| !matches!(node.forced, Forced::Held(_))) else {
+                continue;
+            };
+            let friction = node.friction(&state.controls.friction[contact]);
+            let rates: Rates = self.source.increment(contact).into();
+            let room = self
+                .source
+                .held_in_corner(contact, node, Some(rates.slip))
+                .and_then(|_| over.room_for(rates.slip));
+            let end = end_of_mode(node, over.gap, room, rates, &friction);
+            let Some((at, mut to, sign)) = end else {
+                continue;
+            };
+            if at == 0.0 && to == Mode::Fixed && way.fresh.contains(&contact) {
+                to = Mode::Sliding;
+            }
+            if at < first.0 * (1.0 - TOGETHER) {
+                first = (at, Vec::new());
+            }
+            if at <= first.0 * (1.0 + TOGETHER) {
+                let from = node.mode;
+                let held = from == Mode::Sliding && to == Mode::Fixed && at > 0.0;
+                first.1.push(Change {
+                    contact,
+                    from,
+                    to,
+                    sign,
+                    held,
+                });
+            }
+        }
+        first
+    }
+
+    /// The tangent behind the corner, in the modes that the state has: a motion of all degrees of freedom, of any size, and
+    /// the slip of each contact in it.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub(super) fn tangent_behind(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+        if !self.enter_corners() {
+            return Err(Failure::DoubledBack);
+        }
+        // The start lies before the corner, so that a solve also goes there: two differ by the tangent.
+        let (mut motion, given) = self.solve_tangent()?;
+        if let Some(way) = &mut self.state.way {
+            way.left = 0.0;
+        }
+        self.linearised = false;
+        if !self.linearise() {
+            return Err(Failure::DoubledBack);
+        }
+        let (still, there) = self.solve_tangent()?;
+        let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
+        let rates = given.iter().zip(&there).map(|(a, b)| NodeIncrement {
+            force: minus(a.force, b.force),
+            motion: minus(a.motion, b.motion),
+        });
+        let rates: Vec<Rates> = rates.map(Rates::from).collect();
+        let sign = self.state.way.as_ref().and_then(|way| {
+            let signs = way.next.iter().map(|change| {
+                let contact = change.contact;
+                let friction = &self.state.controls.friction[contact];
+                let corner = self.state.nodes[contact].corner;
+                agreeing(change, rates[contact], friction, corner)
+            });
+            let mut signs = signs.filter(|sign| *sign != 0.0);
+            // What goes on as before goes on ahead.
+            let first = signs.next().unwrap_or(1.0);
+            signs.all(|sign| sign == first).then_some(first)
+        });
+        let sign = sign.ok_or(Failure::DoubledBack)?;
+        for (motion, still) in motion.iter_mut().zip(&still) {
+            *motion = sign * (*motion - still);
+        }
+        let slips = rates.iter().map(|rates| sign * rates.slip);
+        Ok((motion, slips.collect()))
+    }
+
+    /// One solve of the tangent's equations: the motion of all degrees of freedom, and what every contact does.
+    ///
+    /// # Errors
+    /// That they have no solution.
+    pub(super) fn solve_tangent(&mut self) -> Result<(Vec<f64>, Vec<NodeIncrement>), Failure> {
+        let mut at = self.state.at();
+        at.settings.t_max = BoundUpdate::Consistent;
+        let solved = self.source.solve(&at);
+        if let Some(why) = self.unsolvable(solved) {
+            return Err(why);
+        }
+        if self.source.recover() == Solved::Not {
+            return Err(Failure::Singular(self.explain()));
+        }
+        let mut motion = vec![0.0; self.state.u.len()];
+        self.source.advance(&mut motion);
+        let contacts = 0..self.state.nodes.len();
+        Ok((motion, contacts.map(|k| self.source.increment(k)).collect()))
+    }
+
+    /// Starts an increment that failed again behind the corner that it starts at; where it is at its `smallest`, behind that
+    /// at which contacts changed first. `None` where there is no such corner, or where that was what failed.
+    pub(super) fn turn_corner(&mut self, why: &Failure, smallest: bool) -> Option<Outcome> {
+        let way = self.state.way.as_mut()?;
+        if !way.known || way.turned {
+            return None;
+        }
+        let reach = if smallest { AHEAD } else { AT_START };
+        let foreseen = !way.next.is_empty() && way.next_at <= reach * way.step;
+        if !foreseen && smallest && !way.seen.is_empty() {
+            way.next = way.seen.clone();
+        } else if !foreseen {
+            return None;
+        }
+        way.turned = true;
+        let changes = way.next.clone();
+        self.restart(self.state.sub_increment);
+        let why = why.clone();
+        Some(Outcome::Turns { why, changes })
+    }
+
+    /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do, and holds in a
+    /// concave corner those that slide into one, or that stick at one and would slide by the friction of one side; false where
+    /// nothing can be linearised then.
+    fn enter_corners(&mut self) -> bool {
+        let changes = self.state.way.as_ref();
+        let mut changes = changes.map_or_else(Vec::new, |way| way.next.to_vec());
+        let starts = self.state.start.clone();
+        if (changes.iter()).any(|change| starts.nodes[change.contact].corner.is_some()) {
+            self.follow();
+            self.state.change_modes();
+        }
+        for change in &mut changes {
+            let start = &starts.nodes[change.contact];
+            let motion = match (change.from, change.to) {
+                (Mode::Fixed, Mode::Sliding) => None,
+                (Mode::Fixed, Mode::Fixed) => None,
+                // Slip has the direction of the force.
+                (Mode::Sliding, Mode::Fixed) if change.held => Some(change.sign),
+                _ => continue,
+            };
+            let held = self.source.held_in_corner(change.contact, start, motion);
+            if let Some(held) = held {
+                self.state.nodes[change.contact] = held;
+                (change.to, change.held) = (Mode::Fixed, true);
+                self.linearised = false;
+            }
+        }
+        if let Some(way) = &mut self.state.way {
+            way.next = Arc::new(changes);
+        }
+        self.linearise()
+    }
+
+    /// Notes which contacts were the first to change their modes in the present increment.
+    pub(super) fn note_changes(&mut self) {
+        let Some(way) = &mut self.state.way else {
+            return;
+        };
+        if !way.seen.is_empty() || way.turned {
+            return;
+        }
+        let records = self.event.nodes.iter().enumerate();
+        let changed = records.filter(|(_, record)| record.decision.changes());
+        let nodes = &self.state.nodes;
+        let seen = changed.map(|(contact, record)| Change {
+            contact,
+            from: record.decision.before,
+            to: record.decision.next,
+            sign: nodes[contact].sign,
+            held: false,
+        });
+        let seen: Vec<Change> = seen.collect();
+        if !seen.is_empty() {
+            way.seen = Arc::new(seen);
+        }
+    }
+
+    /// Whether a contact that changed at the corner has not kept to it; or, in an increment that starts at none, one has come
+    /// to stick that slides along the tangent. At every state of sliding there is a second way on: back with the load, where all
+    /// contacts stick. That is not the path.
+    pub(super) fn turned_back(&self) -> bool {
+        let nodes = &self.state.nodes;
+        let Some(way) = &self.state.way else {
+            return false;
+        };
+        if way.turned {
+            let mut changes = way.next.iter();
+            return changes.any(|change| nodes[change.contact].mode != change.to);
+        }
+        let mut both = nodes.iter().zip(&self.state.start.nodes);
+        both.any(|(now, start)| (start.mode, now.mode) == (Mode::Sliding, Mode::Fixed))
+    }
+}
+
+/// The size that an increment is cut to: to end before the next corner where that lies within it, else half.
+pub(super) fn smaller(way: &Way) -> f64 {
+    let to = BEFORE * way.next_at;
+    let ahead = !way.next.is_empty() && !way.turned && to < BEFORE * BEFORE * way.step;
+    if ahead && to > AT_START * way.step {
+        to
+    } else {
+        way.step / 2.0
+    }
+}
+
+/// The direction of the tangent, of which `rates` are given, in which a contact obeys Table 2 after it has changed (−1 or 1;
+/// 0 if it does in both).
+fn agreeing(change: &Change, rates: Rates, friction: &Friction, corner: Option<f64>) -> f64 {
+    // About the mean normal of a corner the bound of the side that the contact came from is that much less.
+    let turned = corner.filter(|_| change.held).unwrap_or_default();
+    let bound = (friction.angle.to_radians() - turned).tan() * rates.f_n;
+    let beyond = change.sign * rates.f_t - bound;
+    let margin = match (change.to, change.from) {
+        (Mode::Sliding, _) => change.sign * rates.slip,
+        (Mode::Fixed, Mode::Fixed) => 0.0,
+        (Mode::Free, _) => rates.gap,
+        (Mode::Fixed, Mode::Free) => rates.f_n,
+        (Mode::Fixed, _) if change.held => beyond,
+        (Mode::Fixed, _) => -beyond,
+    };
+    if margin == 0.0 { 0.0 } else { margin.signum() }
+}
+
+/// How many times the motion with these rates is away in which a node comes to the end of its mode, with the mode and the
+/// direction of the tangential force after it. `None` if it never does.
+fn end_of_mode(
+    node: &ContactState,
+    gap: f64,
+    room: Option<f64>,
+    rates: Rates,
+    friction: &Friction,
+) -> Option<(f64, Mode, f64)> {
+    // Where a + s b comes down to 0; at once if it is there already.
+    let falls = |a: f64, b: f64| (b < 0.0).then(|| (-a / b).max(0.0));
+    let first = |all: [Option<(f64, Mode, f64)>; 3]| {
+        let all = all.into_iter().flatten();
+        all.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let opens = || falls(node.f_n, rates.f_n).map(|s| (s, Mode::Free, 0.0));
+    match node.mode {
+        Mode::Free => {
+            let to = if friction.is_smooth() {
+                Mode::Sliding
+            } else {
+                Mode::Fixed
+            };
+            falls(gap, rates.gap).map(|s| (s, to, 0.0))
+        }
+        Mode::Fixed => {
+            let (mu, c) = (friction.coefficient(), friction.cohesion);
+            let slides = |sign: f64| {
+                let margin = mu * node.f_n + c - sign * node.f_t;
+                let at = falls(margin, mu * rates.f_n - sign * rates.f_t);
+                at.map(|s| (s, Mode::Sliding, sign))
+            };
+            first([opens(), slides(1.0), slides(-1.0)])
+        }
+        Mode::Sliding => {
+            let sticks = (node.sign * rates.slip < 0.0).then_some((0.0, Mode::Fixed, node.sign));
+            let meets = room.map(|room| (room / rates.slip.abs(), Mode::Fixed, node.sign));
+            first([opens(), sticks, meets])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::InitialState;
+
+    fn node(mode: Mode, f_n: f64, f_t: f64) -> ContactState {
+        let mut node = ContactState::new(mode, &InitialState::default());
+        (node.f_n, node.f_t, node.sign) = (f_n, f_t, f_t.signum());
+        node
+    }
+
+    fn rates(f_n: f64, f_t: f64, gap: f64, slip: f64) -> Rates {
+        Rates {
+            f_n,
+            f_t,
+            gap,
+            slip,
+        }
+    }
+
+    #[test]
+    fn a_mode_ends_where_the_first_of_its_inequalities_does() {
+        let friction = Friction {
+            angle: 45.0,
+            cohesion: 0.5,
+        };
+        let end = |mode, f_n, f_t, gap, rates| {
+            let end = end_of_mode(&node(mode, f_n, f_t), gap, None, rates, &friction);
+            end.map(|(at, to, sign)| ((1e9 * at).round() / 1e9, to, sign))
+        };
+        // 2 − s = 0 comes after 1 + s = (2 − s) + 0.5.
+        let sheared = end(Mode::Fixed, 2.0, 1.0, 0.0, rates(-1.0, 1.0, 0.0, 0.0));
+        assert_eq!(sheared, Some((0.75, Mode::Sliding, 1.0)));
+        let opened = end(Mode::Fixed, 2.0, 0.0, 0.0, rates(-8.0, 0.0, 0.0, 0.0));
+        assert_eq!(opened, Some((0.25, Mode::Free, 0.0)));
+        let held = end(Mode::Fixed, 2.0, 1.0, 0.0, rates(1.0, 1.0, 0.0, 0.0));
+        assert_eq!(held, None);
+        let slid = end(Mode::Sliding, 2.0, -2.5, 0.0, rates(-1.0, 1.0, 0.0, -1.0));
+        assert_eq!(slid, Some((2.0, Mode::Free, 0.0)));
+        let stuck = end(Mode::Sliding, 2.0, -2.5, 0.0, rates(-1.0, 1.0, 0.0, 1.0));
+        assert_eq!(stuck, Some((0.0, Mode::Fixed, -1.0)));
+        let touched = end(Mode::Free, 0.0, 0.0, 0.3, rates(0.0, 0.0, -0.1, 0.0));
+        assert_eq!(touched, Some((3.0, Mode::Fixed, 0.0)));
+    }
+
+    #[test]
+    fn behind_a_corner_the_tangent_goes_where_table_2_allows_it() {
+        let friction = Friction {
+            angle: 45.0,
+            cohesion: 0.0,
+        };
+        let agreeing = |from, to, sign, rates| {
+            let change = Change {
+                contact: 0,
+                from,
+                to,
+                sign,
+                held: false,
+            };
+            agreeing(&change, rates, &friction, None)
+        };
+        let (fixed, sliding, free) = (Mode::Fixed, Mode::Sliding, Mode::Free);
+        let all = rates(-1.0, 2.0, 3.0, -4.0);
+        assert_eq!(agreeing(fixed, sliding, 1.0, all), -1.0);
+        assert_eq!(agreeing(fixed, sliding, -1.0, all), 1.0);
+        assert_eq!(agreeing(fixed, free, 0.0, all), 1.0);
+        assert_eq!(agreeing(free, fixed, 0.0, all), -1.0);
+        // |F_t| must fall below the bound: 2 s < −s backwards only.
+        assert_eq!(agreeing(sliding, fixed, 1.0, all), -1.0);
+        assert_eq!(agreeing(sliding, fixed, -1.0, all), 1.0);
+    }
+}
