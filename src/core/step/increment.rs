@@ -119,7 +119,11 @@ impl Stepper {
         let last = state.detour.map(|way| way.by);
         let from = state.detour.map_or(state.sub_increment, |way| way.from);
         let rest = from.rest(state.start.load_factor);
-        let too_fine = rest.section().size() < state.controls.least;
+        // What the scene names as the least is one; else the section may be finer than a 64th.
+        let too_fine = self
+            .model
+            .least
+            .is_some_and(|least| rest.section().size() < least);
         let mut by = Detour::after(last, chosen)?;
         let given = self.is_given();
         let helps = |by: Detour| match by {
