@@ -61,9 +61,11 @@ impl Stepper {
             let (motion, slips) = self.tangent_behind()?;
             (motion, slips, None)
         } else {
-            let (motion, given) = self.solve_tangent()?;
-            let slips = given.iter().map(|given| given.motion[1]).collect();
-            (motion, slips, Some(self.next_changes()))
+            let (mut motion, given) = self.solve_tangent()?;
+            let sign = self.onwards(&given);
+            motion.iter_mut().for_each(|motion| *motion *= sign);
+            let slips = given.iter().map(|given| sign * given.motion[1]);
+            (motion, slips.collect(), Some(self.next_changes(sign)))
         };
         self.take_tangent(&motion, &slips, next)?;
         self.linearised = false;
@@ -254,13 +256,11 @@ impl Stepper {
                 way.ahead = (corner - state.load_factor).signum();
             }
         }
-        let slides = |node: &ContactState| node.mode == Mode::Sliding;
-        let both = state.nodes.iter().zip(&state.start.nodes).enumerate();
-        let fresh = both.filter(|(_, (now, then))| slides(now) && !slides(then));
-        let fresh: Vec<usize> = fresh.map(|(contact, _)| contact).collect();
-        if !(fresh.is_empty() && way.fresh.is_empty()) {
-            way.fresh = Arc::new(fresh);
-        }
+        let slip = |node: &ContactState| match node.mode {
+            Mode::Sliding => node.slip,
+            _ => 0.0,
+        };
+        way.slips = Arc::new(state.nodes.iter().map(slip).collect());
         (way.last, way.known, way.turned) = (Arc::new(last), false, false);
         ends
     }

@@ -17,7 +17,6 @@
 //! ```text
 //! slides    F_t slip' > 0               opens     g' > 0
 //! sticks    sgn(F_t) F_t' < tan φ F_n'    touches   F_n' > 0
-//! slides on where it began to in the increment before, which ended just behind a corner: as slides
 //! is held   sgn(F_t) F_t' > tan(φ − h) F_n', with h half the corner's angle: beyond the cone of the side that it came from
 //! ```
 //!
@@ -36,6 +35,8 @@ use std::sync::Arc;
 
 /// Ends of modes that are closer than this part of their way come together.
 const TOGETHER: f64 = 1e-6;
+/// A slip comes to an end, and turns round, by way of rates below this part of the last one.
+const REVERSAL: f64 = 0.5;
 /// A corner closer than this part of an increment's size is where it starts.
 const AT_START: f64 = 0.02;
 /// An increment that cannot be cut any more may have its corner this many times its size ahead.
@@ -64,31 +65,55 @@ impl From<NodeIncrement> for Rates {
     }
 }
 
+impl Rates {
+    fn times(self, factor: f64) -> Self {
+        Rates {
+            f_n: factor * self.f_n,
+            f_t: factor * self.f_t,
+            gap: factor * self.gap,
+            slip: factor * self.slip,
+        }
+    }
+}
+
 impl Stepper {
+    /// Direction in which the path goes on along a tangent (−1 or 1) that was solved for so that its inner product with the
+    /// increment before is positive, and is as that with itself. Where all sliding contacts would slide against their friction
+    /// then, and no slower than they slid before, that increment was no measure: it went round a corner. They slide on.
+    pub(super) fn onwards(&self, given: &[NodeIncrement]) -> f64 {
+        let nodes = &self.state.nodes;
+        let slips = self.state.way.as_ref().map(|way| way.slips.clone());
+        let slips = slips.unwrap_or_default();
+        let sliding = nodes.iter().zip(given).zip(slips.iter());
+        let mut sliding = sliding.filter(|((node, _), _)| node.mode == Mode::Sliding);
+        let turns = |((node, given), slip): ((&ContactState, &NodeIncrement), &f64)| {
+            let rate = given.motion[1];
+            node.sign * rate < 0.0 && rate.abs() > REVERSAL * slip.abs()
+        };
+        let any = sliding.clone().next().is_some();
+        if any && sliding.all(turns) { -1.0 } else { 1.0 }
+    }
+
     /// The contacts that come first to the end of their mode along the tangent that was just solved for, and how many times
-    /// the solved motion that is away. Empty where none does.
-    pub(super) fn next_changes(&self) -> (f64, Vec<Change>) {
+    /// the solved motion that is away. The path goes on in the direction `sign` of the solve. Empty where none does.
+    pub(super) fn next_changes(&self, sign: f64) -> (f64, Vec<Change>) {
         let state = &self.state;
         let mut first = (f64::INFINITY, Vec::new());
-        let Some(way) = &state.way else { return first };
         for (contact, node) in state.nodes.iter().enumerate() {
             let over = self.source.kinematics(contact);
             let Some(over) = over.filter(|_| !matches!(node.forced, Forced::Held(_))) else {
                 continue;
             };
             let friction = node.friction(&state.controls.friction[contact]);
-            let rates: Rates = self.source.increment(contact).into();
+            let rates = Rates::from(self.source.increment(contact)).times(sign);
             let room = self
                 .source
                 .held_in_corner(contact, node, Some(rates.slip))
                 .and_then(|_| over.room_for(rates.slip));
             let end = end_of_mode(node, over.gap, room, rates, &friction);
-            let Some((at, mut to, sign)) = end else {
+            let Some((at, to, force)) = end else {
                 continue;
             };
-            if at == 0.0 && to == Mode::Fixed && way.fresh.contains(&contact) {
-                to = Mode::Sliding;
-            }
             if at < first.0 * (1.0 - TOGETHER) {
                 first = (at, Vec::new());
             }
@@ -99,7 +124,7 @@ impl Stepper {
                     contact,
                     from,
                     to,
-                    sign,
+                    sign: force,
                     held,
                 });
             }

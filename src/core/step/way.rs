@@ -43,9 +43,9 @@ pub struct Way {
     /// The contacts that changed first in the present attempt.
     #[serde(default)]
     pub seen: Arc<Vec<Change>>,
-    /// The contacts that began to slide in the increment before.
+    /// Slips of the sliding contacts in the increment before, 0 of the others (length).
     #[serde(default)]
-    pub fresh: Arc<Vec<usize>>,
+    pub slips: Arc<Vec<f64>>,
     /// Whether the present increment starts with the modes of `next`.
     #[serde(default)]
     pub turned: bool,
@@ -105,7 +105,7 @@ impl Way {
             next: Arc::default(),
             next_at: 0.0,
             seen: Arc::default(),
-            fresh: Arc::default(),
+            slips: Arc::default(),
             turned: false,
         }
     }
