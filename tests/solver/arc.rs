@@ -448,3 +448,18 @@ fn tables_have_the_arc_where_the_path_is_followed_and_snapshots_replay() {
     );
     told(&["replay", "past.snap"]);
 }
+
+/// With finer elements the path turns by more than a right angle where the node begins to slide, and at their borders.
+#[test]
+fn sharp_corners_of_the_path_are_turned_and_its_end_is_that_of_load_control() {
+    for (angle, refine) in [("5", "4"), ("10", "2"), ("10", "4"), ("20", "2")] {
+        let set = [("friction.angle", angle), ("refine", refine)];
+        let path = along("02-two-cantilevers-rough", &set);
+        let end = path.accepted.last().unwrap();
+        assert!((end.load - 2.5).abs() < 1e-12, "{set:?}: {}", end.load);
+        let loaded = run(&common::scene("02-two-cantilevers-rough", &set));
+        let other = loaded.accepted.last().unwrap();
+        let (a, b) = (end.monitors["u_x"], other.monitors["u_x"]);
+        assert!((a - b).abs() < 1e-7, "{set:?}: {a} {b}");
+    }
+}
