@@ -308,3 +308,28 @@ fn every_oscillator_is_drawn_with_its_cycle() {
         assert!(screen.contains("-cycle"), "{name}:\n{screen}");
     }
 }
+
+/// With what the program takes where a scene names nothing, instead of the paper's readings.
+#[test]
+fn with_the_ladder_every_oscillator_ends_or_has_provably_no_answer() {
+    let plain = [
+        ("settings.strategy", "ladder"),
+        ("settings.geometry", "consistent"),
+        ("settings.slip", "increment"),
+        ("settings.sticking", "anchored"),
+        ("settings.touch", "auto"),
+    ];
+    let names = stickslip::scene::builtin::list().iter().map(|b| b.name);
+    let oscillators: Vec<&str> = names.filter(|name| name.starts_with("osc-")).collect();
+    assert!(oscillators.len() >= 20, "{oscillators:?}");
+    for name in oscillators {
+        let run = run(&scene(name, &plain));
+        match run.failure {
+            None => {}
+            Some((_, Failure::NoAnswer { tried, .. })) => {
+                assert_eq!((name, tried), ("osc-coh-none", 4));
+            }
+            Some((_, other)) => panic!("{name}: {other:?}"),
+        }
+    }
+}
