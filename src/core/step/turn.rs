@@ -398,7 +398,7 @@ mod tests {
         assert_eq!(sheared, Some((0.75, Mode::Sliding, 1.0)));
         let opened = end(Mode::Fixed, 2.0, 0.0, 0.0, rates(-8.0, 0.0, 0.0, 0.0));
         assert_eq!(opened, Some((0.25, Mode::Free, 0.0)));
-        let held = end(Mode::Fixed, 2.0, 1.0, 0.0, rates(1.0, 1.0, 0.0, 0.0));
+        let held = end(Mode::Fixed, 2.0, 1.0, 0.0, rates(2.0, 1.0, 0.0, 0.0));
         assert_eq!(held, None);
         let slid = end(Mode::Sliding, 2.0, -2.5, 0.0, rates(-1.0, 1.0, 0.0, -1.0));
         assert_eq!(slid, Some((2.0, Mode::Free, 0.0)));
