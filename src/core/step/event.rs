@@ -83,7 +83,7 @@ pub enum Outcome {
         /// Size of the whole (load factor).
         size: f64,
     },
-    /// Along the path: the increment failed at a corner of it, and is started again behind that ([`crate::step::turn`]).
+    /// Along the path: the increment failed at a corner of it, and is started again behind that (`step::turn`).
     Turns {
         /// What it failed of.
         why: Failure,

@@ -1,4 +1,4 @@
-//! What a damped motion from one equilibrium to the next carries from step to step ([`super::damped`]).
+//! What a damped motion from one equilibrium to the next carries from step to step (`step::damped`).
 
 use serde::{Deserialize, Serialize};
 
