@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
+use stickslip::model::Model;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Event, Failure, Outcome};
 use stickslip::step::intervene::Intervention;
@@ -138,4 +139,22 @@ pub fn two_blocks(refine: usize) -> Scene {
 )"#
     );
     Scene::from_text("two-blocks", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The states before each minor iteration of a scene's first increment, and what each did.
+pub fn stepped(model: &Arc<Model>) -> (Vec<State>, Vec<Event>) {
+    let mut stepper = Stepper::new(model.clone());
+    let (mut states, mut events) = (vec![stepper.state().clone()], Vec::new());
+    loop {
+        let event = stepper.step().expect("an increment").clone();
+        let ends = matches!(
+            event.outcome,
+            Outcome::Increment { .. } | Outcome::Failed(_)
+        );
+        events.push(event);
+        if ends {
+            return (states, events);
+        }
+        states.push(stepper.state().clone());
+    }
 }

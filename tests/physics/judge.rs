@@ -95,6 +95,63 @@ impl Stage {
 /// tan 30°.
 const MU: f64 = 0.577_350_269_189_625_7;
 
+/// A node that may touch a floor, y = 0, and a wall of two pieces, x = 1, whose outward side is −x.
+fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<Law> {
+    let chain = [[3.0, 0.0], [-3.0, 0.0], [1.0, 2.0], [1.0, 1.0], [1.0, -1.0]];
+    let surface = |elements: Vec<Vec<usize>>| Surface {
+        name: "s".into(),
+        elements,
+        rigid: true,
+        endless: false,
+        smooth: Vec::new(),
+    };
+    let slave = Contact {
+        node: 0,
+        surfaces: vec![0, 1],
+        friction: Friction::default(),
+        start: Mode::Free,
+        state: InitialState::default(),
+        overlap: 0.0,
+    };
+    let with = |at: [f64; 2]| [&[at], &chain[..]].concat();
+    let (before, now) = (with(from), with(to));
+    let seen = Seen {
+        surfaces: &[
+            surface(vec![vec![1, 2]]),
+            surface(vec![vec![3, 4], vec![4, 5]]),
+        ],
+        contacts: &[slave],
+        friction: &[Friction::default()],
+        before: &before,
+        now: &now,
+        out: [&[], &[]],
+        forces: &[[0.0, 0.0]],
+        brought: &[0.0],
+        earlier: &[0.0],
+        scales: Scales {
+            length: 1.0,
+            force: 1.0,
+            lengths: TOLERANCE,
+            forces: TOLERANCE,
+        },
+    };
+    let mut contact = vec![[0.0; 2]; now.len()];
+    let verdict = Judge::with_capacity(now.len(), 1).interface(&seen, &mut contact);
+    verdict.broken().map(|finding| finding.law).collect()
+}
+
+#[test]
+fn a_node_that_went_through_a_surface_which_is_not_its_nearest_is_refused() {
+    let through = [Law::Penetration];
+    assert_eq!(between_floor_and_wall([0.9, 0.1], [1.1, 0.01]), through);
+    // Where two pieces of the wall meet, too.
+    assert_eq!(between_floor_and_wall([0.9, 1.0], [2.5, 1.0]), through);
+    // It stays before the wall, was behind it already, or went over the wall's end.
+    assert_eq!(between_floor_and_wall([0.9, 0.1], [0.95, 0.01]), []);
+    assert_eq!(between_floor_and_wall([1.2, 0.1], [1.1, 0.01]), []);
+    assert_eq!(between_floor_and_wall([0.9, 2.5], [1.1, 2.5]), []);
+}
+
 #[test]
 fn a_node_inside_the_surface_or_pressed_over_a_gap_is_refused() {
     let stage = Stage::floor(30.0, 0.0);

@@ -1,7 +1,8 @@
 //! Strategies of the minor iterations: none accepts what is no Coulomb state, the ladder finds an answer wherever there
 //! is one, says so where there is none, and cuts the increment.
 
-use crate::common::{run, scene};
+use crate::common::{run, scene, stepped};
+use crate::hyperstatic::Numbers;
 use std::sync::Arc;
 use stickslip::contact::table2::Rule;
 use stickslip::format::condensed::{Contact, Matrix, Problem};
@@ -16,23 +17,6 @@ use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::intervene::Intervention;
 use stickslip::step::stepper::Stepper;
-
-/// Numbers from 0 to 1, the same every time (Knuth's MMIX generator).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
 
 /// A random interface problem with a positive definite stiffness; some have cohesion, and perhaps no answer.
 fn problem(seed: u64) -> Problem {
@@ -170,20 +154,7 @@ fn pivoting_goes_on_with_the_same_bits_after_a_restore_at_any_pivot() {
     let mut problems = (17..).map(problem);
     let problem = problems.find(|p| p.contacts.len() == 4).unwrap();
     let model = model(&problem, "lemke");
-    let mut stepper = Stepper::new(model.clone());
-    let (mut states, mut events) = (vec![stepper.state().clone()], Vec::new());
-    loop {
-        let event = stepper.step().unwrap().clone();
-        let ends = matches!(
-            event.outcome,
-            Outcome::Increment { .. } | Outcome::Failed(_)
-        );
-        events.push(event);
-        if ends {
-            break;
-        }
-        states.push(stepper.state().clone());
-    }
+    let (states, events) = stepped(&model);
     let pivots = events.iter().flat_map(|e| &e.nodes);
     assert!(pivots.filter(|n| n.decision.rule == Rule::Pivots).count() > 4);
     for (state, event) in states.iter().zip(&events) {

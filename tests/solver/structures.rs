@@ -1,6 +1,7 @@
 //! Hyperstatic structures: singular compliances, strong friction, dozens of contacts, forces that are not unique.
 
 use crate::common::run;
+use crate::common::stepped;
 use crate::hyperstatic::{broken, forces, problem};
 use stickslip::contact::table2::Rule;
 
@@ -8,7 +9,7 @@ use std::sync::Arc;
 use stickslip::model::Strategy;
 use stickslip::scene::Scene;
 use stickslip::scene::siconos::{Friction2d, Storage};
-use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::event::Failure;
 use stickslip::step::stepper::Stepper;
 use stickslip::strategy::{next_rung, rungs};
 
@@ -122,20 +123,7 @@ fn both_searches_go_on_with_the_same_bits_after_a_restore() {
     let problem = problem(1);
     for (strategy, rule) in [("copositive", Rule::Pivots), ("gauss_seidel", Rule::Sweeps)] {
         let model = Arc::new(scene(&problem, strategy).model);
-        let mut stepper = Stepper::new(model.clone());
-        let (mut states, mut events) = (vec![stepper.state().clone()], Vec::new());
-        loop {
-            let event = stepper.step().unwrap().clone();
-            let ends = matches!(
-                event.outcome,
-                Outcome::Increment { .. } | Outcome::Failed(_)
-            );
-            events.push(event);
-            if ends {
-                break;
-            }
-            states.push(stepper.state().clone());
-        }
+        let (states, events) = stepped(&model);
         let of_search = |n: &&stickslip::contact::record::ContactRecord| n.decision.rule == rule;
         assert!(events.iter().any(|e| e.nodes.iter().any(|n| of_search(&n))));
         let some = states.iter().zip(&events).step_by(1 + events.len() / 20);

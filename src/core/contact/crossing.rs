@@ -8,10 +8,9 @@
 //! The corner holds a node as one within a chain does ([`crate::contact::corner`]), with the force on the first surface. That is
 //! right for rigid surfaces only, whose supports carry it; between others there are no such corners yet.
 
-use crate::contact::corner;
+use crate::contact::corner::{cross, dot};
 use crate::contact::element::Element;
-use crate::contact::projection::{STRAIGHT, SurfacePoint};
-use crate::fem::lagrange::MAX_NODES;
+use crate::contact::projection::{STRAIGHT, SurfacePoint, blend, length, right_of, unit};
 use crate::model::Surface;
 
 /// Steps of Newton's method; straight chains need one.
@@ -36,9 +35,7 @@ impl Crossing {
     /// Mean of the two normals (unit).
     pub fn normal(&self) -> [f64; 2] {
         let [a, b] = self.normals;
-        let sum = [a[0] + b[0], a[1] + b[1]];
-        let length = size(sum);
-        sum.map(|x| x / length)
+        unit([a[0] + b[0], a[1] + b[1]]).unwrap_or(a)
     }
 }
 
@@ -59,24 +56,21 @@ pub fn find(
             at[k] = blend(elements[k].nodes, positions, &s.n);
             slopes[k] = blend(elements[k].nodes, positions, &s.d);
         }
-        let area = corner::cross(slopes[0], slopes[1]);
-        if area.abs() <= PARALLEL * size(slopes[0]) * size(slopes[1]) {
+        let area = cross(slopes[0], slopes[1]);
+        if area.abs() <= PARALLEL * length(slopes[0]) * length(slopes[1]) {
             return None;
         }
         let away = [at[1][0] - at[0][0], at[1][1] - at[0][1]];
-        if size(away) <= CLOSED * (size(slopes[0]) + size(slopes[1])) {
+        if length(away) <= CLOSED * (length(slopes[0]) + length(slopes[1])) {
             break;
         }
-        xi[0] += corner::cross(away, slopes[1]) / area;
-        xi[1] += corner::cross(away, slopes[0]) / area;
+        xi[0] += cross(away, slopes[1]) / area;
+        xi[1] += cross(away, slopes[0]) / area;
     }
     let away = [at[1][0] - at[0][0], at[1][1] - at[0][1]];
-    let met = size(away) <= CLOSED * (size(slopes[0]) + size(slopes[1]));
+    let met = length(away) <= CLOSED * (length(slopes[0]) + length(slopes[1]));
     let within = |k: usize| endless[k] || xi[k].abs() <= 1.0;
-    let normals = slopes.map(|d| {
-        let length = size(d);
-        [d[1] / length, -d[0] / length]
-    });
+    let normals = slopes.map(right_of);
     // The outer part of a chain lies on the outside of the other.
     let goes_on = |k: usize| {
         let other = normals[1 - k];
@@ -84,10 +78,10 @@ pub fn find(
             || [-1.0, 1.0].into_iter().any(|end| {
                 let there = blend(elements[k].nodes, positions, &elements[k].shape(end).n);
                 let out = [there[0] - at[k][0], there[1] - at[k][1]];
-                corner::dot(out, other) > PARALLEL * size(slopes[k])
+                dot(out, other) > PARALLEL * length(slopes[k])
             })
     };
-    let half = 0.5 * corner::dot(normals[0], normals[1]).clamp(-1.0, 1.0).acos();
+    let half = 0.5 * dot(normals[0], normals[1]).clamp(-1.0, 1.0).acos();
     let is_corner = met && within(0) && within(1) && goes_on(0) && goes_on(1) && half > STRAIGHT;
     is_corner.then(|| Crossing {
         spots: [0, 1].map(|k| SurfacePoint {
@@ -97,16 +91,6 @@ pub fn find(
         normals,
         half,
     })
-}
-
-fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
-    nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
-        [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
-    })
-}
-
-fn size(v: [f64; 2]) -> f64 {
-    corner::dot(v, v).sqrt()
 }
 
 #[cfg(test)]

@@ -249,7 +249,7 @@ impl Judge {
             }
             return;
         };
-        let gap = signed_gap(&foot, point, seen);
+        let gap = signed_gap(&foot, point, seen.surfaces, seen.now);
         let through = through(seen, slave, foot.spot.surface, near, &mut self.others);
         if through > near {
             let numbers = Numbers {
@@ -321,7 +321,9 @@ impl Judge {
                 let element = Element::of(&seen.surfaces[border.surface], border.element);
                 let at = place(element, seen.now, end);
                 let there = size([point[0] - at[0], point[1] - at[1]]) <= near;
-                there.then(|| beyond_border(seen, border)).flatten()
+                there
+                    .then(|| beyond_border(seen.surfaces, border))
+                    .flatten()
             });
             for spot in [Some(foot.spot), across[0], across[1]]
                 .into_iter()
@@ -366,19 +368,9 @@ fn through(seen: &Seen, slave: usize, nearest: usize, near: f64, feet: &mut Vec<
     let mut over = |other: usize, point: [f64; 2], positions: &[[f64; 2]]| {
         feet::find(point, seen.surfaces, &[other], positions, 0.0, feet);
         let foot = feet.first()?;
-        let surface = &seen.surfaces[other];
-        if foot.spot.xi.abs() == 1.0 && !surface.endless {
-            return None;
-        }
-        let t = direction(
-            Element::of(surface, foot.spot.element),
-            positions,
-            foot.spot.xi,
-        )?;
-        Some(dot(
-            [point[0] - foot.at[0], point[1] - foot.at[1]],
-            [t[1], -t[0]],
-        ))
+        let ends = foot.spot.xi.abs() == 1.0 && !seen.surfaces[other].endless;
+        let at_end = ends && beyond_border(seen.surfaces, foot.spot).is_none();
+        (!at_end).then(|| signed_gap(foot, point, seen.surfaces, positions))
     };
     others.fold(0.0, |most: f64, &other| {
         let now = over(other, seen.point(slave), seen.now).filter(|gap| *gap < -near);
@@ -476,7 +468,7 @@ fn numbers(force: [f64; 2], at: &Touching) -> Numbers {
 fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> Amounts {
     let scales = &seen.scales;
     let follows = beyond_border(
-        seen,
+        seen.surfaces,
         SurfacePoint {
             xi: 1.0,
             ..one.spot
@@ -530,8 +522,8 @@ fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> 
 }
 
 /// The same point as an end (xi = ±1) of the neighbouring element. `None` at an end of the chain.
-fn beyond_border(seen: &Seen, border: SurfacePoint) -> Option<SurfacePoint> {
-    let surface = &seen.surfaces[border.surface];
+fn beyond_border(surfaces: &[Surface], border: SurfacePoint) -> Option<SurfacePoint> {
+    let surface = &surfaces[border.surface];
     let count = surface.elements.len();
     let ahead = border.xi > 0.0;
     let step = if ahead { 1 } else { count - 1 };
@@ -553,15 +545,15 @@ fn beyond_border(seen: &Seen, border: SurfacePoint) -> Option<SurfacePoint> {
 }
 
 /// Distance with its sign: negative where the point lies inside.
-fn signed_gap(foot: &Foot, point: [f64; 2], seen: &Seen) -> f64 {
+fn signed_gap(foot: &Foot, point: [f64; 2], surfaces: &[Surface], positions: &[[f64; 2]]) -> f64 {
     let normal = |spot: SurfacePoint| {
-        let element = Element::of(&seen.surfaces[spot.surface], spot.element);
-        let t = direction(element, seen.now, spot.xi);
+        let element = Element::of(&surfaces[spot.surface], spot.element);
+        let t = direction(element, positions, spot.xi);
         t.map_or([0.0; 2], |t| [t[1], -t[0]])
     };
     let mut n = normal(foot.spot);
     if foot.spot.xi.abs() == 1.0
-        && let Some(across) = beyond_border(seen, foot.spot)
+        && let Some(across) = beyond_border(surfaces, foot.spot)
     {
         let other = normal(across);
         n = [n[0] + other[0], n[1] + other[1]];

@@ -364,11 +364,15 @@ fn descend(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2], start:
 }
 
 /// The unit vector to the right of a direction.
-fn right_of(d: [f64; 2]) -> [f64; 2] {
+pub(super) fn right_of(d: [f64; 2]) -> [f64; 2] {
     unit([d[1], -d[0]]).unwrap_or([0.0, 1.0])
 }
 
-fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
+pub(super) fn blend(
+    nodes: &[usize],
+    positions: &[[f64; 2]],
+    weights: &[f64; MAX_NODES],
+) -> [f64; 2] {
     nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
         [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
     })
@@ -379,11 +383,11 @@ fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
 }
 
 /// `hypot` costs ten times as much and is not needed: lengths of a scene neither overflow nor underflow when squared.
-fn length(v: [f64; 2]) -> f64 {
+pub(super) fn length(v: [f64; 2]) -> f64 {
     (v[0] * v[0] + v[1] * v[1]).sqrt()
 }
 
-fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
+pub(super) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
     let length = length(v);
     (length > 0.0).then(|| [v[0] / length, v[1] / length])
 }

@@ -18,7 +18,7 @@
 
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
-use crate::interface::tableau::{Begin, PathEnd, Tableau};
+use crate::interface::tableau::{Begin, Columns, PathEnd, Tableau};
 
 /// A path that ends on a ray has come to an answer if the covering variable is no more than this (relative): the rows that
 /// would bound it are tied, and round-off decides which of them does.
@@ -87,22 +87,12 @@ impl Copositive {
             length,
         };
         // (I + R / k) F − R v = start + (I + R / k) F_0, a column at a time.
-        let response = |j: usize| &relation.response[j * count..(j + 1) * count];
-        let of_force = |j: usize, times: f64, column: &mut [f64]| {
-            for (to, r) in column.iter_mut().zip(response(j)) {
-                *to += times * r / relation.stiffness / force;
-            }
-            column[j] += times / force;
-        };
-        let of_motion = |j: usize, times: f64, column: &mut [f64]| {
-            for (to, r) in column.iter_mut().zip(response(j)) {
-                *to -= times * r / force;
-            }
-        };
-        let mut rhs = vec![0.0; rows];
-        for (to, start) in rhs.iter_mut().zip(&relation.start) {
-            *to = start / force;
-        }
+        let columns = Columns { relation, force };
+        let of_force =
+            |j: usize, times: f64, column: &mut [f64]| columns.add_force(j, times, column);
+        let of_motion =
+            |j: usize, times: f64, column: &mut [f64]| columns.add_motion(j, times, column);
+        let mut rhs = columns.start(rows);
         let mut basis = Vec::with_capacity(rows);
         let mut extra = count;
         for (place, node) in problem.nodes.iter().enumerate() {

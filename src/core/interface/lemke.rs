@@ -14,7 +14,7 @@
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
 pub use crate::interface::tableau::PathEnd;
-use crate::interface::tableau::{Begin, Tableau};
+use crate::interface::tableau::{Begin, Columns, Tableau};
 
 /// A variable of the tableau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,22 +84,12 @@ impl Lemke {
         };
         let (force, length) = (lemke.force, lemke.length);
         // (I + R / k) ΔF − R v = start, a column at a time.
-        let response = |j: usize| &relation.response[j * count..(j + 1) * count];
-        let of_force = |j: usize, times: f64, column: &mut [f64]| {
-            for (to, r) in column.iter_mut().zip(response(j)) {
-                *to += times * r / relation.stiffness / force;
-            }
-            column[j] += times / force;
-        };
-        let of_motion = |j: usize, times: f64, column: &mut [f64]| {
-            for (to, r) in column.iter_mut().zip(response(j)) {
-                *to -= times * r / force;
-            }
-        };
-        let mut rhs = vec![0.0; rows];
-        for (to, start) in rhs.iter_mut().zip(&relation.start) {
-            *to = start / force;
-        }
+        let columns = Columns { relation, force };
+        let of_force =
+            |j: usize, times: f64, column: &mut [f64]| columns.add_force(j, times, column);
+        let of_motion =
+            |j: usize, times: f64, column: &mut [f64]| columns.add_motion(j, times, column);
+        let mut rhs = columns.start(rows);
         let mut extra = count;
         for (place, node) in problem.nodes.iter().enumerate() {
             let (n, t) = (2 * place, 2 * place + 1);

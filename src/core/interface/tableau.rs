@@ -6,6 +6,7 @@
 //! are broken lexicographically, so that no basis comes twice, or by a small shift of every row, which is the same for all
 //! shifts that are small enough, and cheap; then the path is that of the shifted rows, and the values are those of the true.
 
+use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
 
 /// Entries of an entering column below this part of its largest are zero: with rows as they are, and with shifted ones,
@@ -44,6 +45,46 @@ pub struct Tableau {
     ended: Option<PathEnd>,
     pivots: usize,
     most: usize,
+}
+
+/// The rows that all problems share, (I + R / k) F − R v = start, divided by a unit of force: what forces and motions are in
+/// them, a column at a time.
+pub struct Columns<'a> {
+    /// How forces answer motions, with R, k and the start.
+    pub relation: &'a InterfaceResponse,
+    /// The unit (force).
+    pub force: f64,
+}
+
+impl Columns<'_> {
+    /// The right-hand side with nothing on it but the relation's start; `rows` are at least as many as the relation has.
+    pub fn start(&self, rows: usize) -> Vec<f64> {
+        let mut rhs = vec![0.0; rows];
+        for (to, start) in rhs.iter_mut().zip(&self.relation.start) {
+            *to = start / self.force;
+        }
+        rhs
+    }
+
+    /// Adds `times` (force) the column of force component j.
+    pub fn add_force(&self, j: usize, times: f64, column: &mut [f64]) {
+        for (to, r) in column.iter_mut().zip(self.response(j)) {
+            *to += times * r / self.relation.stiffness / self.force;
+        }
+        column[j] += times / self.force;
+    }
+
+    /// Adds `times` (length) the column of motion component j.
+    pub fn add_motion(&self, j: usize, times: f64, column: &mut [f64]) {
+        for (to, r) in column.iter_mut().zip(self.response(j)) {
+            *to -= times * r / self.force;
+        }
+    }
+
+    fn response(&self, j: usize) -> &[f64] {
+        let count = self.relation.count();
+        &self.relation.response[j * count..(j + 1) * count]
+    }
 }
 
 /// How a path starts.

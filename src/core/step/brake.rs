@@ -31,10 +31,8 @@ const LEAST: f64 = 1e-7;
 const MOST: f64 = 1e6;
 
 /// How sliding is held back.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Brake {
-    /// Whether the present attempt holds it back.
-    pub on: bool,
     /// The interface's own stiffness as the attempt began (force by length).
     pub spring: f64,
     /// κ of the present major iteration (force by length).
@@ -42,27 +40,12 @@ pub struct Brake {
 }
 
 impl Brake {
-    /// Sliding is held back from the start of an attempt on.
+    /// As an attempt begins, with the interface's own stiffness (force by length).
     pub(super) fn new(spring: f64) -> Self {
         Brake {
-            on: true,
             spring,
             stiffness: spring,
         }
-    }
-
-    /// As at the start of the attempt.
-    pub(super) fn again(self) -> Self {
-        if self.on {
-            Brake::new(self.spring)
-        } else {
-            self
-        }
-    }
-
-    /// Whether nothing is held back.
-    pub fn is_off(&self) -> bool {
-        !self.on
     }
 
     /// Holds back more; false where that does not help any more.

@@ -22,6 +22,8 @@ pub(super) const PATIENCE: u32 = 5;
 pub(super) struct Held {
     /// Where it began.
     state: Box<State>,
+    /// What held it back.
+    brake: Brake,
     /// Slips of the sliding contacts, 0 of the others (length).
     slips: Vec<f64>,
     /// Σ δ d before it (force by length).
@@ -57,26 +59,28 @@ impl Stepper {
     /// The modes of a major iteration do not settle: it begins again with a greater κ, with which they do in the end. `None`
     /// where sliding is not held back, or κ does not help any more.
     pub(super) fn hold_harder(&mut self, why: &Failure) -> Option<Outcome> {
-        if !self.state.brake.on || !self.state.brake.tighten() {
+        let brake = self.state.brake.as_mut()?;
+        if !brake.tighten() {
             return None;
         }
+        let stiffness = brake.stiffness;
         self.state.search = Progress::default();
         self.state.next.minor += 1;
         Some(Outcome::HeldBack {
             why: Some(why.clone()),
-            stiffness: self.state.brake.stiffness,
+            stiffness,
         })
     }
 
     /// Whether what holds sliding back still carries a part of the friction that the judge would miss.
     pub(super) fn is_carried(&self, after: &Norms) -> bool {
-        let Brake { on, stiffness, .. } = self.state.brake;
-        on && stiffness > 0.0 && after.interface > EXACT
+        let holds = |brake: Brake| brake.stiffness > 0.0;
+        self.state.brake.is_some_and(holds) && after.interface > EXACT
     }
 
     /// What a major iteration is about to do, where sliding is held back.
     pub(super) fn hold(&self) -> Option<Held> {
-        self.state.brake.on.then(|| {
+        self.state.brake.map(|brake| {
             let (mut work, mut slips) = (0.0, Vec::new());
             for (contact, node) in self.state.nodes.iter().enumerate() {
                 let record = self.record(contact);
@@ -91,6 +95,7 @@ impl Stepper {
             }
             Held {
                 state: Box::new(self.state.clone()),
+                brake,
                 slips,
                 work,
             }
@@ -101,6 +106,7 @@ impl Stepper {
     pub(super) fn hold_back(&mut self, held: Held) -> Option<Outcome> {
         let Held {
             state,
+            mut brake,
             slips,
             work: before,
         } = held;
@@ -114,13 +120,13 @@ impl Stepper {
         let tiny = self.state.controls.settings.tolerance * self.force_scale() * way;
         let turned = before < -tiny || after < -TURNED * before - tiny;
         let wrong = slips.iter().any(|slip| slip.abs() > far) || turned && !loads;
-        let mut brake = state.brake;
         if !wrong || !brake.tighten() {
-            self.state.brake.loosen();
+            brake.loosen();
+            self.state.brake = Some(brake);
             return None;
         }
         self.state = *state;
-        self.state.brake = brake;
+        self.state.brake = Some(brake);
         self.linearised = false;
         self.begin_again();
         self.state.next.minor += 1;

@@ -143,7 +143,7 @@ impl Stepper {
         self.state.detour = Some(Route { by, from });
         self.restart(part);
         if by == Detour::Held {
-            self.state.brake = Brake::new(self.source.spring());
+            self.state.brake = Some(Brake::new(self.source.spring()));
         }
         let (why, size) = (why.clone(), part.size());
         Some(Outcome::Detour { why, by, size })

@@ -128,7 +128,7 @@ impl State {
     pub(super) fn begin(&mut self) {
         (self.next.major, self.next.minor) = (1, 1);
         (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
-        (self.net, self.brake) = (false, Brake::default());
+        (self.net, self.brake) = (false, None);
         self.load_factor = self.sub_increment.target();
         self.search = Progress::default();
         (self.target, self.last_target) = (self.load_factor, self.start.load_factor);
@@ -230,7 +230,7 @@ impl State {
     pub fn attempt_again(&self) -> State {
         let mut again = self.clone();
         again.start_again();
-        again.brake = self.brake.again();
+        again.brake = self.brake.map(|brake| Brake::new(brake.spring));
         again
     }
 

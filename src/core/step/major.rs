@@ -46,7 +46,7 @@ impl Stepper {
         let size = self.source.largest_motion(&self.state.u);
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
         let balanced = self.is_balanced(&after);
-        let braked = self.state.brake.on;
+        let braked = self.state.brake.is_some();
         let most = self.most_majors(braked);
         let at_limit = self.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;

@@ -39,8 +39,8 @@ impl Stepper {
         let proven = matches!(why, Failure::NoAnswer { .. });
         let next = strategy::next_rung(chosen, search.rung, self.state.nodes.len());
         // The searches know nothing of what holds sliding back.
-        let held = self.state.brake.on;
-        let next = next.filter(|(_, to)| !(held && strategy::method(*to).search().is_some()));
+        let braked = self.state.brake.is_some();
+        let next = next.filter(|(_, to)| !(braked && strategy::method(*to).search().is_some()));
         if let Some((rung, to)) = next
             && !proven
         {

@@ -68,9 +68,9 @@ pub struct State {
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
-    /// How sliding is held back in the present attempt ([`crate::step::brake`]).
-    #[serde(default, skip_serializing_if = "Brake::is_off")]
-    pub brake: Brake,
+    /// How sliding is held back in the present attempt ([`crate::step::brake`]). `None` where it is not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub brake: Option<Brake>,
     /// How far the way along the path has come. `None` under load control.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Box<Way>>,
@@ -206,7 +206,7 @@ impl State {
             net: false,
             correction: 0.0,
             pace: Pace::default(),
-            brake: Brake::default(),
+            brake: None,
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             motion: None,
             detour: None,
@@ -224,7 +224,7 @@ impl State {
         if let Some(route) = self.detour {
             settings = route.by.in_force(settings, rung);
         }
-        if self.brake.on && !self.net {
+        if self.brake.is_some() && !self.net {
             settings.slip = SlipCount::Major;
         }
         settings
@@ -252,7 +252,7 @@ impl State {
             friction: &self.controls.friction,
             entered: self.minor_history.first(self.nodes.len()),
             correction: self.correction,
-            brake: self.brake.stiffness,
+            brake: self.brake.map_or(0.0, |brake| brake.stiffness),
             drag: self.motion.and_then(|motion| motion.drag()),
             chosen: &self.controls.settings,
             settings: self.settings(),
