@@ -12,6 +12,7 @@ mod check;
 mod dense;
 mod fronts;
 mod lu;
+mod order;
 mod pattern;
 mod symmetric;
 

@@ -1,0 +1,46 @@
+//! In which order the unknowns of a symmetric matrix are eliminated.
+
+use super::check::SolveError;
+use super::pattern::Pattern;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
+
+/// A fill-reducing order of the unknowns in which `last` come last.
+pub(super) fn order(pattern: &Pattern, last: &[usize]) -> Result<Vec<usize>, SolveError> {
+    const LAST: usize = usize::MAX;
+    let n = pattern.n;
+    let mut number = vec![0; n];
+    for &i in last {
+        number[i] = LAST;
+    }
+    let mut inner = Vec::with_capacity(n - last.len());
+    for (i, number) in number.iter_mut().enumerate() {
+        if *number != LAST {
+            *number = inner.len();
+            inner.push(i);
+        }
+    }
+    let (mut starts, mut rows) = (vec![0], Vec::new());
+    for &column in &inner {
+        let range = pattern.col_ptr[column]..pattern.col_ptr[column + 1];
+        let entries = pattern.row_idx[range].iter().map(|&row| number[row]);
+        rows.extend(entries.filter(|&row| row != LAST));
+        starts.push(rows.len());
+    }
+    let m = inner.len();
+    let graph = SymbolicSparseColMatRef::new_checked(m, m, &starts, None, &rows);
+    let (mut forward, mut inverse) = (vec![0; m], vec![0; m]);
+    let request = amd::order_scratch::<usize>(m, rows.len());
+    let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
+    amd::order(
+        &mut forward,
+        &mut inverse,
+        graph,
+        Default::default(),
+        MemStack::new(&mut memory),
+    )
+    .map_err(|_| SolveError::OutOfMemory)?;
+    let reduced = forward.iter().map(|&k| inner[k]);
+    Ok(reduced.chain(last.iter().copied()).collect())
+}
