@@ -11,9 +11,9 @@ use crate::explain::report;
 use crate::model::Model;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
+use crate::scene::solver::solver;
 use crate::step::drive::RunEnd;
 use crate::step::event::Outcome;
-use crate::step::stepper::Stepper;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -56,7 +56,7 @@ fn open(input: &str, args: &Args) -> Result<Course, Error> {
 }
 
 fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
-    let mut stepper = Stepper::new(Arc::new(course.scene.model.clone()));
+    let mut stepper = solver(Arc::new(course.scene.model.clone()));
     let mut audit = Audit::default();
     let name = &course.scene.name;
     let end = course.go(&mut stepper, interrupt, &mut |stepper| {

@@ -12,9 +12,9 @@ use crate::model::{AtCycle, AtLimit, Strategy};
 use crate::outside::files::{self, Output};
 use crate::record::export::{self, NoExport, Origin};
 use crate::scene::Scene;
+use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Failure;
-use crate::step::stepper::Stepper;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -82,7 +82,7 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         model.settings.strategy = Strategy::Table2;
     }
     let passes = model.settings.at_minor_limit == AtLimit::Accept;
-    let mut stepper = Stepper::new(Arc::new(model));
+    let mut stepper = solver(Arc::new(model));
     let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
     let RunEnd::Failed(failure) = end else {
         let hint = if passes {

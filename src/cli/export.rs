@@ -15,6 +15,7 @@ use crate::record::export::{self, Kind, MadeOf, Origin};
 use crate::record::journal::Record;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
+use crate::scene::solver::solver;
 use crate::step::drive::RunEnd;
 use crate::step::event::{Failure, Position};
 use crate::step::state::{State, Status};
@@ -180,7 +181,7 @@ fn state(args: &Args, kind: &Kind, interrupt: &Interrupt) -> Result<Result<Vec<u
     };
     let course = open(args)?;
     let scene = &course.scene;
-    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    let mut stepper = solver(Arc::new(scene.model.clone()));
     let mut seen = Seen::at_start(&stepper);
     // The scene's own file needs no solve.
     let solves = kind.extension != "ron" || args.frozen;

@@ -6,7 +6,7 @@ use super::place::{At, seek, tell_missed};
 use crate::outside::files::{self, Output};
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
-use crate::step::stepper::Stepper;
+use crate::scene::solver::solver;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,7 +37,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         name if name == "-" => None,
         _ => Some(Output::create(&path, args.force)?),
     };
-    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    let mut stepper = solver(Arc::new(scene.model.clone()));
     let steps = match seek(&mut stepper, args.at, &interrupt, &mut |_| {}) {
         Ok(steps) => steps,
         Err(missed) => return Ok(tell_missed(&scene, &stepper, args.at, missed)),

@@ -6,8 +6,8 @@ use crate::explain::page;
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
 use crate::outside::shown;
+use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until};
-use crate::step::stepper::Stepper;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
-    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut stepper = solver(Arc::new(scene.model));
     let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
     let RunEnd::Failed(failure) = end else {
         tell("it converges; there is nothing to remedy");

@@ -18,6 +18,7 @@ use crate::outside::shown;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::scene::gaps;
+use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Moves, Outcome};
 use crate::step::stepper::Stepper;
@@ -198,7 +199,7 @@ impl<'a> Run<'a> {
     fn new(scene: &'a Scene, args: &Args) -> Self {
         let quiet = args.quiet;
         Run {
-            stepper: Stepper::new(Arc::new(scene.model.clone())),
+            stepper: solver(Arc::new(scene.model.clone())),
             tally: Tally {
                 scene,
                 progress: Progress::new(quiet),
@@ -282,7 +283,7 @@ impl<'a> Run<'a> {
                 );
                 tell(&format!("{name}: {told}"));
                 let (state, model) = (state.clone(), self.stepper.model().clone());
-                let mut scratch = Stepper::new(model);
+                let mut scratch = solver(model);
                 for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
                     tell(&format!("  {line}"));
                 }

@@ -1,6 +1,7 @@
 //! Patterns of sparse matrices, and products with them.
 
 use faer::sparse::SymbolicSparseColMatRef;
+use std::ops::Range;
 
 /// Where a square sparse matrix has entries: compressed columns, rows ascending in each.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,6 +47,45 @@ impl Pattern {
             .binary_search(&row)
             .ok()
             .map(|k| start + k)
+    }
+
+    /// The diagonal blocks beyond which there are no entries, as ranges of unknowns; together all of them. Of an upper half as of
+    /// the whole.
+    pub fn blocks(&self) -> Vec<Range<usize>> {
+        let mut starts = Vec::new();
+        // The least row of this column and of all after it.
+        let mut reach = self.n;
+        for col in (0..self.n).rev() {
+            let first = self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]].first();
+            reach = reach.min(col).min(first.copied().unwrap_or(col));
+            if reach == col {
+                starts.push(col);
+            }
+        }
+        starts.reverse();
+        let ends = starts.iter().skip(1).copied().chain([self.n]);
+        starts
+            .iter()
+            .copied()
+            .zip(ends)
+            .map(|(a, b)| a..b)
+            .collect()
+    }
+
+    /// The pattern of one of [`Pattern::blocks`], or of some that follow each other, and where its values are among those of
+    /// the whole.
+    pub fn block(&self, unknowns: Range<usize>) -> (Pattern, Range<usize>) {
+        let values = self.col_ptr[unknowns.start]..self.col_ptr[unknowns.end];
+        let columns = &self.col_ptr[unknowns.start..=unknowns.end];
+        let pattern = Pattern {
+            n: unknowns.len(),
+            col_ptr: columns.iter().map(|k| k - values.start).collect(),
+            row_idx: self.row_idx[values.clone()]
+                .iter()
+                .map(|row| row - unknowns.start)
+                .collect(),
+        };
+        (pattern, values)
     }
 
     /// All entries as `(row, column)`, in the order of the values.
@@ -110,4 +150,29 @@ pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, us
         None,
         &pattern.row_idx,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_without_entries_between_them_are_told_apart() {
+        let entries = vec![
+            (0, 0),
+            (0, 2),
+            (1, 1),
+            (2, 2),
+            (3, 3),
+            (4, 4),
+            (4, 5),
+            (5, 5),
+        ];
+        let pattern = Pattern::new(6, entries);
+        assert_eq!(pattern.blocks(), [0..3, 3..4, 4..6]);
+        let (block, values) = pattern.block(4..6);
+        assert_eq!(block, Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
+        let all: Vec<_> = pattern.iter().collect();
+        assert_eq!(all[values], [(4, 4), (4, 5), (5, 5)]);
+    }
 }

@@ -13,6 +13,7 @@ use crate::model::{Mode, Model};
 use crate::outside::files::{self, FileError};
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::scene::Scene;
+use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervene::Intervention;
@@ -305,7 +306,7 @@ impl Snapshot {
     /// If the scene is unsound, or the run does not come that far.
     pub fn replay(&self) -> Result<Snapshot, SnapshotError> {
         let scene = Scene::from_spec(&self.name, self.scene.clone())?;
-        let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+        let mut stepper = solver(Arc::new(scene.model.clone()));
         let mut applied = self.interventions.iter().peekable();
         let mut intervene = |stepper: &mut Stepper, done: u64| {
             while let Some(next) = applied.next_if(|a| a.step == done) {

@@ -3,7 +3,7 @@
 //! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what
 //!   is wrong.
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
-//! - [`siconos`]: interface problems of another code.
+//! - [`siconos`]: interface problems of another code; [`solver`]: the solver of a scene, on all threads.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod builtin;
@@ -13,6 +13,7 @@ pub mod limits;
 pub mod memory;
 pub mod nodes;
 pub mod siconos;
+pub mod solver;
 
 mod blocks;
 mod compile;

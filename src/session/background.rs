@@ -7,8 +7,13 @@
 //! - **Exports**: files of a state: pictures, the frozen problem, the core of its cycle ([`export`]).
 //! - **Remedies**: trials of every way out ([`remedies`]).
 //!
+//! The thread has a solver of its own, of the session's scene. Where the session's solver has the frozen problem at hand, it lends
+//! it, so that nothing is factored twice; a large solver is dropped when nothing is asked, so that the session takes no more
+//! memory than a run.
+//!
 //! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
 
+use super::worker::Lender;
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
 use crate::explain::examination::{Examination, NOT_CONDENSED, Untold, examine_nodes, going_round};
@@ -18,12 +23,14 @@ use crate::explain::remedies::{self, Trial};
 use crate::explain::report;
 use crate::format::spec::Spec;
 use crate::history::strip::Strip;
+use crate::linear::estimate::Estimate;
 use crate::model::Model;
 use crate::outside::files::{self, FileError};
 use crate::record::command::Exported;
 use crate::record::export::shown::{NotMade, Shown};
 use crate::record::export::{self, Kind, MadeOf, NoExport, Origin, UnknownKind};
 use crate::scene::Scene;
+use crate::scene::solver::solver;
 use crate::step::event::Event;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
@@ -36,6 +43,8 @@ use std::thread;
 
 /// Most entries that are kept of pushes, and of examinations.
 const KEPT: usize = 512;
+/// Bytes from which on a solver takes much memory.
+const LARGE: f64 = 2e8;
 /// What a page says that was stopped.
 const STOPPED: &str = "stopped; :census goes on from the beginning";
 /// A place: branch, and step on its line.
@@ -148,6 +157,18 @@ enum Told {
     Exported(Result<String, NotWritten>),
 }
 
+/// What the thread works with.
+struct Helper {
+    model: Arc<Model>,
+    spec: Spec,
+    /// Made when something is asked.
+    stepper: Option<Stepper>,
+    /// Whether the solver takes much memory.
+    large: bool,
+    /// Where the session's solver is asked for what it has at hand.
+    lender: Lender,
+}
+
 /// The thread, and what it found.
 #[derive(Debug)]
 pub struct Background {
@@ -170,18 +191,26 @@ impl Background {
     /// Starts the idle thread.
     ///
     /// `spec` is the scene as its author wrote it, of which a finer mesh may be tried.
-    pub fn new(model: Arc<Model>, spec: Spec) -> Background {
+    /// `lender` takes looks at the session's own solver.
+    pub fn new(model: Arc<Model>, spec: Spec, lender: Lender) -> Background {
         let (asks, orders) = channel::<Ask>();
         let (news, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let flag = stop.clone();
         thread::spawn(move || {
-            let mut stepper = None;
+            let effort = Estimate::of(&model).with(model.settings.solver).0;
+            let mut helper = Helper {
+                large: effort.bytes > LARGE,
+                model,
+                spec,
+                stepper: None,
+                lender,
+            };
             while let Ok(ask) = orders.recv() {
-                let stepper = stepper.get_or_insert_with(|| Stepper::new(model.clone()));
-                if answer(stepper, &spec, ask, &news, &flag).is_none() {
+                if helper.answer(ask, &news, &flag).is_none() {
                     return;
                 }
+                helper.rest();
             }
         });
         Background {
@@ -380,76 +409,132 @@ impl Drop for Background {
     }
 }
 
-/// Answers on the thread; `None` if nobody listens any more.
-fn answer(
+impl Helper {
+    /// Answers; `None` if nobody listens any more.
+    fn answer(&mut self, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
+        match ask {
+            Ask::Pushes(place, slave, way) => {
+                let found = self.pushes(slave, way);
+                news.send(Told::Pushes(place, slave, found)).ok()
+            }
+            Ask::Examination(place, state, nodes) => {
+                self.borrow(&state);
+                let (stepper, spec) = self.solver();
+                examine(stepper, spec, (place, &state, nodes), news, stop)
+            }
+            Ask::Export(ask) => {
+                let done = write(self.solver().0, &ask);
+                let told = done.map(|()| format!("wrote {}", ask.file.display()));
+                news.send(Told::Exported(told)).ok()
+            }
+            Ask::Remedies(state) => try_remedies(self.solver().0, &state, news, stop),
+        }
+    }
+
+    /// Its own solver, and the scene as written.
+    fn solver(&mut self) -> (&mut Stepper, &Spec) {
+        let model = &self.model;
+        let stepper = self.stepper.get_or_insert_with(|| solver(model.clone()));
+        (stepper, &self.spec)
+    }
+
+    /// What pushed a node: by the session's solver where that has the problem at hand, else by its own.
+    fn pushes(&mut self, slave: usize, way: Way) -> Option<Vec<Push>> {
+        let way = Arc::new(way);
+        let theirs = way.clone();
+        let found = self.lender.look(move |stepper| {
+            let at_hand = stepper.condenses() && stepper.stands_for(&theirs.state);
+            at_hand.then(|| pushes(stepper, slave, &theirs))
+        });
+        match found.flatten() {
+            Some(found) => found,
+            None => pushes(self.solver().0, slave, &way),
+        }
+    }
+
+    /// Takes over the frozen problem of a state that the session's solver has at hand.
+    fn borrow(&mut self, state: &State) {
+        let wanted = state.clone();
+        let lent = self.lender.look(move |stepper| stepper.lend(&wanted));
+        if let Some(problem) = lent.flatten() {
+            self.solver().0.borrow(state, problem);
+        }
+    }
+
+    /// Nothing is asked for now.
+    fn rest(&mut self) {
+        if self.large {
+            self.stepper = None;
+        }
+    }
+}
+
+/// Finds out what there is to say of a state: of these nodes, or (none) of what matters.
+fn examine(
     stepper: &mut Stepper,
     spec: &Spec,
-    ask: Ask,
+    (place, state, nodes): (LinePlace, &State, Vec<usize>),
     news: &Sender<Told>,
     stop: &AtomicBool,
 ) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
-    match ask {
-        Ask::Pushes(place, slave, way) => {
-            let found = pushes(stepper, slave, &way);
-            news.send(Told::Pushes(place, slave, found)).ok()
-        }
-        Ask::Examination(place, state, nodes) => {
-            let send = |found: Option<Examination>, going_on: bool| {
-                news.send(Told::Examination {
-                    place,
-                    nodes: nodes.clone(),
-                    found: found.map(Box::new),
-                    going_on,
-                })
-            };
-            let found = match nodes.as_slice() {
-                [] => page(
-                    stepper,
-                    &state,
-                    Some(spec),
-                    &stopped,
-                    // That nobody listens any more shows at the end.
-                    &mut |part| drop(send(Some(part.clone()), true)),
-                ),
-                some => {
-                    let found = examine_nodes(stepper, &state, some, &stopped);
-                    match stopped() {
-                        false => Some(found),
-                        true => {
-                            drop(send(Some(found), true));
-                            None
-                        }
-                    }
-                }
-            };
-            send(found, false).ok()
-        }
-        Ask::Export(ask) => {
-            let done = write(stepper, &ask).map(|()| format!("wrote {}", ask.file.display()));
-            news.send(Told::Exported(done)).ok()
-        }
-        Ask::Remedies(state) => {
-            let all = remedies::all(stepper, &state, &stopped);
-            let mut ended = false;
-            for remedy in &all {
-                let now = remedy.label.clone();
-                news.send(Told::Trying {
-                    all: all.len(),
-                    now,
-                })
-                .ok()?;
-                match remedies::attempt(stepper, &state, remedy, &stopped) {
-                    Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
-                    None => {
-                        ended = true;
-                        break;
-                    }
+    let send = |found: Option<Examination>, going_on: bool| {
+        news.send(Told::Examination {
+            place,
+            nodes: nodes.clone(),
+            found: found.map(Box::new),
+            going_on,
+        })
+    };
+    let found = match nodes.as_slice() {
+        [] => page(
+            stepper,
+            state,
+            Some(spec),
+            &stopped,
+            // That nobody listens any more shows at the end.
+            &mut |part| drop(send(Some(part.clone()), true)),
+        ),
+        some => {
+            let found = examine_nodes(stepper, state, some, &stopped);
+            match stopped() {
+                false => Some(found),
+                true => {
+                    drop(send(Some(found), true));
+                    None
                 }
             }
-            news.send(Told::Done { stopped: ended }).ok()
+        }
+    };
+    send(found, false).ok()
+}
+
+/// Tries every way out of a state.
+fn try_remedies(
+    stepper: &mut Stepper,
+    state: &State,
+    news: &Sender<Told>,
+    stop: &AtomicBool,
+) -> Option<()> {
+    let stopped = || stop.load(Ordering::Relaxed);
+    let all = remedies::all(stepper, state, &stopped);
+    let mut ended = false;
+    for remedy in &all {
+        let now = remedy.label.clone();
+        news.send(Told::Trying {
+            all: all.len(),
+            now,
+        })
+        .ok()?;
+        match remedies::attempt(stepper, state, remedy, &stopped) {
+            Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
+            None => {
+                ended = true;
+                break;
+            }
         }
     }
+    news.send(Told::Done { stopped: ended }).ok()
 }
 
 /// Makes a file of a state.

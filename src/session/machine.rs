@@ -86,13 +86,14 @@ impl Session {
     pub fn with_budget(scene: Scene, bytes: usize) -> Self {
         let model = Arc::new(scene.model.clone());
         let start = Stepper::new(model.clone()).state().clone();
-        let background = Background::new(model.clone(), scene.spec.clone());
+        let worker = Worker::new(model.clone());
+        let background = Background::new(model.clone(), scene.spec.clone(), worker.lender());
         Session {
             start: (gaps::words(&model).join(", "), gaps::warnings(&model)),
             scene,
             tree: Tree::new(model.clone(), start, bytes),
             cursor: 0,
-            worker: Worker::new(model),
+            worker,
             task: None,
             breakpoints: Vec::new(),
             numbered: 0,

@@ -5,6 +5,7 @@ use crate::history::frame::Frame;
 use crate::history::strip::Strip;
 use crate::model::Model;
 use crate::record::command::Unit;
+use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Event;
 use crate::step::intervene::Intervention;
@@ -47,6 +48,8 @@ pub enum Job {
         /// The steps, in order; `None` is a minor iteration.
         steps: Vec<Option<Intervention>>,
     },
+    /// A look at the solver, between two other jobs.
+    Look(Look),
     /// The same steps as once before, from a state: each a minor iteration, or an intervention.
     Again {
         /// Where it starts.
@@ -56,6 +59,35 @@ pub enum Job {
         /// The steps, in order; `None` is a minor iteration.
         steps: Vec<Option<Intervention>>,
     },
+}
+
+/// What is done with the solver, and told by whoever does it. It may leave the solver at another state, since every job goes to
+/// its own first.
+pub type Look = Box<dyn FnOnce(&mut Stepper) + Send>;
+
+/// Where others may look at the worker's solver while it has nothing to do.
+pub struct Lender {
+    jobs: Sender<Job>,
+    busy: Arc<AtomicBool>,
+}
+
+impl Lender {
+    /// Has the solver looked at, and waits for what is seen; `None` where the solver is busy, or gone.
+    pub fn look<T: Send + 'static>(
+        &self,
+        look: impl FnOnce(&mut Stepper) -> T + Send + 'static,
+    ) -> Option<T> {
+        if self.busy.load(Ordering::Relaxed) {
+            return None;
+        }
+        let (reply, answer) = channel();
+        let look: Look = Box::new(move |stepper| {
+            // Who asked waits for it.
+            let _ = reply.send(look(stepper));
+        });
+        self.jobs.send(Job::Look(look)).ok()?;
+        answer.recv().ok()
+    }
 }
 
 /// What the worker tells.
@@ -82,6 +114,8 @@ pub struct Worker {
     jobs: Sender<Job>,
     messages: Receiver<Message>,
     stop: Arc<AtomicBool>,
+    /// Whether it is at a job that takes its time.
+    busy: Arc<AtomicBool>,
 }
 
 impl Worker {
@@ -91,9 +125,12 @@ impl Worker {
         let (news, messages) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let flag = stop.clone();
+        let busy = Arc::new(AtomicBool::new(false));
+        let at_work = busy.clone();
         thread::spawn(move || {
-            let mut stepper = Stepper::new(model);
+            let mut stepper = solver(model);
             while let Ok(job) = orders.recv() {
+                at_work.store(!matches!(job, Job::Look(_)), Ordering::Relaxed);
                 let done = match job {
                     Job::Run {
                         state,
@@ -120,6 +157,10 @@ impl Worker {
                         stepper.restore(&state);
                         follow(&mut stepper, *before, steps, &news, &flag)
                     }
+                    Job::Look(look) => {
+                        look(&mut stepper);
+                        Some(())
+                    }
                     Job::Again {
                         state,
                         event,
@@ -129,6 +170,7 @@ impl Worker {
                         again(&mut stepper, event, &steps, &news, &flag)
                     }
                 };
+                at_work.store(false, Ordering::Relaxed);
                 if done.is_none() {
                     return;
                 }
@@ -138,12 +180,22 @@ impl Worker {
             jobs,
             messages,
             stop,
+            busy,
+        }
+    }
+
+    /// Where a look may be asked for.
+    pub fn lender(&self) -> Lender {
+        Lender {
+            jobs: self.jobs.clone(),
+            busy: self.busy.clone(),
         }
     }
 
     /// Starts a job. A dead worker answers [`Message::Died`].
     pub fn start(&self, job: Job) {
         self.stop.store(false, Ordering::Relaxed);
+        self.busy.store(true, Ordering::Relaxed);
         // A failing send means that the thread is gone, which the next message says.
         let _ = self.jobs.send(job);
     }

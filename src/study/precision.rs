@@ -18,7 +18,6 @@ use super::reference::{self, Reference};
 use super::result::{CaseEnd, Run};
 use super::run::{Watch, one};
 use crate::format::SceneError;
-use crate::linear::estimate::Estimate;
 use crate::model::Model;
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
@@ -277,17 +276,13 @@ fn measured(
         let load = crate::explain::number::six(failed.load);
         format!("{} at load {load}", failed.verdict)
     });
-    let factorizations = match Estimate::of(&model).is_condensed(model.settings.solver) {
-        true => run.begun,
-        false => run.minors(),
-    };
     let point = Point {
         series,
         name,
         settings,
         seconds: times[times.len() / 2],
         repeats: times.len(),
-        factorizations,
+        factorizations: run.factorizations,
         majors: run.begun,
         minors: run.minors(),
         increments: run.rows.len() as u64,

@@ -15,6 +15,8 @@ pub struct Run {
     pub rows: Vec<Row>,
     /// Major iterations that were begun in all, those of attempts that were cut or damped included.
     pub begun: u64,
+    /// Factorizations of the bodies, or of bodies and interface together.
+    pub factorizations: u64,
     /// How it ended.
     pub end: CaseEnd,
 }

@@ -78,6 +78,7 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
         start: row(&mut stepper, 0, 0, 0),
         rows: Vec::new(),
         begun: 0,
+        factorizations: 0,
         end: CaseEnd::NotRun,
     };
     let mut minors = 0;
@@ -99,6 +100,7 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
         }
         ControlFlow::<Infallible>::Continue(())
     });
+    run.factorizations = stepper.work().factorizations;
     run.end = match end {
         RunEnd::Failed(failure) => {
             let event = stepper.event();

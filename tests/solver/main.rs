@@ -36,6 +36,8 @@ mod arc;
 mod scales;
 // The examples of the library run, and write what they promise.
 mod examples;
+// Nothing is assembled or factored twice, and old factors lead to the same answers.
+mod work;
 // Structures that hold each other by more contacts than they have motions.
 mod structures;
 // Forces that are not unique, and matrices that are indefinite by rounding.

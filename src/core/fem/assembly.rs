@@ -191,6 +191,58 @@ impl Assembly {
         }
     }
 
+    /// Internal forces alone, as [`Assembly::assemble`] finds them.
+    pub fn resist(&mut self, moved: Moved<'_>, force: &mut [f64], size: &mut [f64]) {
+        force.fill(0.0);
+        size.fill(0.0);
+        for placed in &self.elements {
+            let n = placed.dofs.len();
+            let (u, before) = (&mut self.u[..n], &mut self.before[..n]);
+            let (own, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
+            placed.gather(moved.u, u);
+            own.fill(0.0);
+            let history = &moved.history[placed.history.clone()];
+            if !history.is_empty() {
+                placed.gather(moved.before, before);
+            }
+            let past = Past { u: before, history };
+            let answers = placed.element.resist(&past, u, own, tangent);
+            for (&d, own) in placed.dofs.iter().zip(&*own) {
+                // No finite force balances anything where there is no answer.
+                force[d] += if answers { *own } else { f64::INFINITY };
+                size[d] += if answers { own.abs() } else { 0.0 };
+            }
+        }
+        for matrix in &self.matrices {
+            matrix.resist(moved.u, force, size);
+        }
+    }
+
+    /// Forces at the equations due to `step` of the degrees of freedom that have none, as [`Assembly::assemble`] finds them.
+    pub fn couple(&mut self, dofs: &Dofs, moved: Moved<'_>, coupling: &mut [f64]) {
+        coupling.fill(0.0);
+        for placed in self.elements.iter().filter(|p| p.held) {
+            let n = placed.dofs.len();
+            let (u, before) = (&mut self.u[..n], &mut self.before[..n]);
+            let (force, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
+            placed.gather(moved.u, u);
+            force.fill(0.0);
+            tangent.fill(0.0);
+            let history = &moved.history[placed.history.clone()];
+            if !history.is_empty() {
+                placed.gather(moved.before, before);
+            }
+            let past = Past { u: before, history };
+            if placed.element.add(&past, u, force, tangent) {
+                placed.element.mirror(tangent);
+                placed.couple(dofs, tangent, moved.step, coupling);
+            }
+        }
+        for matrix in &self.matrices {
+            matrix.couple(dofs, moved.step, coupling);
+        }
+    }
+
     /// Renews what the elements remember, once displacements `u` are accepted; `before` are those accepted last.
     pub fn advance(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {
         for placed in self.elements.iter().filter(|p| !p.history.is_empty()) {

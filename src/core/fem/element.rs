@@ -24,6 +24,11 @@ pub trait Element: Send + Sync {
     /// of the sums missing, where there is no force for such displacements.
     fn add(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool;
 
+    /// Internal forces alone, with the same bits; `room` is for a tangent, and left with anything in it.
+    fn resist(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], room: &mut [f64]) -> bool {
+        self.add(past, u, force, room)
+    }
+
     /// Fills in what [`Element::add`] leaves out of a symmetric tangent.
     fn mirror(&self, _tangent: &mut [f64]) {}
 

@@ -97,6 +97,30 @@ impl Element {
         self.slots = slots;
     }
 
+    /// Adds forces at displacements `u`.
+    pub fn resist(&self, u: &[f64], force: &mut [f64], size: &mut [f64]) {
+        for (dof, range) in self.ranges() {
+            let own: f64 = range.map(|k| self.values[k] * u[self.columns[k]]).sum();
+            force[dof] += own;
+            size[dof] += own.abs();
+        }
+    }
+
+    /// Adds what `step` of the held degrees of freedom does.
+    pub fn couple(&self, dofs: &Dofs, step: &[f64], coupling: &mut [f64]) {
+        for (dof, range) in self.ranges() {
+            let Some(row) = dofs.equation[dof] else {
+                continue;
+            };
+            for k in range {
+                let column = self.columns[k];
+                if self.slots[k] == NOWHERE && dofs.equation[column].is_none() {
+                    coupling[row] += self.values[k] * step[column];
+                }
+            }
+        }
+    }
+
     /// Adds forces at displacements `u`, the matrix, and what `step` of the held degrees of freedom does.
     pub fn add(&self, dofs: &Dofs, u: &[f64], step: &[f64], out: &mut Assembled<'_>) {
         for (dof, range) in self.ranges() {

@@ -90,6 +90,7 @@ impl System {
         let Some(factors) = &mut self.whole else {
             return Solved::Not;
         };
+        self.done.factorizations += 1;
         if factors.factor(&self.values).is_err() || factors.solve(&self.rhs, &mut self.x).is_err() {
             return Solved::Not;
         }

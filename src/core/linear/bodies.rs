@@ -12,9 +12,10 @@ use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
 use crate::linear::drag::add_drag;
+use crate::linear::executor::{Executor, InTurn};
 use crate::linear::norms::Norms;
 use crate::linear::singular::{self, Singular};
-use crate::linear::source::{At, Solved, Source};
+use crate::linear::source::{At, Solved, Source, Work};
 use crate::linear::stability::Stability;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
@@ -56,11 +57,16 @@ struct Bench {
 }
 
 impl Bodies {
-    /// Lays out the bodies of a model.
+    /// The bodies of a model, worked on in turn.
     pub fn new(model: Arc<Model>) -> Self {
+        Bodies::with_executor(model, Arc::new(InTurn))
+    }
+
+    /// The bodies of a model, worked on side by side by whoever this is; the answers are the same.
+    pub fn with_executor(model: Arc<Model>, executor: Arc<dyn Executor>) -> Self {
         let (nodes, contacts) = (model.nodes.len(), model.contacts.len());
         Bodies {
-            system: System::new(&model),
+            system: System::new(&model, executor),
             bench: Bench {
                 judge: Judge::with_capacity(nodes, contacts),
                 before: Vec::with_capacity(nodes),
@@ -162,8 +168,7 @@ impl Source for Bodies {
     }
 
     fn aim(&mut self, at: &At<'_>) -> bool {
-        let constant = self.model.prescribed.is_empty() && !self.overlaps;
-        let holds = constant && at.accepted.history.is_empty() && !self.system.is_dragged(at);
+        let holds = at.accepted.history.is_empty() && !self.system.is_dragged(at);
         if holds {
             self.system.aim(&self.model, at);
         }
@@ -383,6 +388,10 @@ impl Source for Bodies {
             .tangent
             .get_or_insert_with(|| Tangent::new(model, system));
         tangent.stability(system, model, at)
+    }
+
+    fn work(&self) -> Work {
+        self.system.done
     }
 
     fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {

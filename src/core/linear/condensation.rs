@@ -11,8 +11,9 @@
 //!
 //! where v is the relative motion of all slave nodes, normal and tangential, r̃ the condensed out-of-balance force and
 //! T what turning interaction forces add. The springs make a body regular that only its contacts hold, and drop out
-//! again exactly when z is solved for. All of it is of the interface's size, and no sparse solve is needed but one for
-//! r̃ and one to recover the displacements inside.
+//! again exactly when z is solved for. All of it is of the interface's size, and each body's factors are read no more than
+//! twice: for r̃, and to recover the displacements inside. Bodies know nothing of each other before they meet in A, so they are
+//! factored side by side where somebody has threads to give ([`Executor`]).
 //!
 //! Where all bodies are solids, and every slave node can move both ways and is no master's, no springs are needed
 //! ([`Way::Direct`]): with F the frames and M the master nodes' shares in S*, v = F (M u_m − u_s), so that the slave nodes'
@@ -27,8 +28,13 @@
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
 use crate::linear::coupling::Interface;
+use crate::linear::executor::{Executor, each};
 use crate::model::{Body, BodyKind, Model};
+use std::ops::Range;
 use std::sync::Arc;
+
+/// Bodies with fewer unknowns together are factored as one.
+const SMALL: usize = 1000;
 
 /// How the interface's answer is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,16 +48,13 @@ enum Way {
 /// The condensed bodies of a major iteration. Matrices are stored column by column.
 pub struct Condensation {
     pattern: Arc<Pattern>,
-    factors: SymmetricFactors,
+    parts: Vec<Part>,
+    executor: Arc<dyn Executor>,
     way: Way,
     /// Number among the interface's unknowns, by equation.
     number: Vec<Option<usize>>,
     /// The equations of the interface's unknowns.
     equations: Vec<usize>,
-    /// Added to S's diagonal where it is factored.
-    shift: f64,
-    /// S with the shift.
-    schur: Vec<f64>,
     /// T.
     pub turning: Vec<f64>,
     /// A, or S + T and then K'.
@@ -59,16 +62,31 @@ pub struct Condensation {
     /// What is factored.
     inner: Vec<f64>,
     dense: DenseFactors,
-    /// Out-of-balance force of all equations, and their displacements under it with the interface on the shift's springs.
+    /// Out-of-balance force of all equations.
     residual: Vec<f64>,
-    free: Vec<f64>,
     /// u_c at z = 0; directly, r' and then u_m at v = 0.
     start: Vec<f64>,
     /// Change of u_c by z; directly, that of u_m by −v.
     motions: Vec<f64>,
-    /// u_c of the last solve, less that of `free`, and the force that it takes.
-    offset: Vec<f64>,
-    pull: Vec<f64>,
+    /// u_c of the last solve.
+    moved: Vec<f64>,
+}
+
+/// Bodies that no stiffness joins to others.
+struct Part {
+    factors: SymmetricFactors,
+    /// Their equations, and the values of their stiffness among all.
+    equations: Range<usize>,
+    values: Range<usize>,
+    /// Their unknowns among those of the interface.
+    unknowns: Vec<usize>,
+    /// S, column by column, and r̃.
+    schur: Vec<f64>,
+    load: Vec<f64>,
+    /// u_c, and all displacements.
+    known: Vec<f64>,
+    moved: Vec<f64>,
+    done: Result<(), SolveError>,
 }
 
 impl Condensation {
@@ -76,7 +94,11 @@ impl Condensation {
     ///
     /// # Errors
     /// [`SolveError`] if it cannot be analysed.
-    pub fn new(model: &Model, mut entries: Vec<(usize, usize)>) -> Result<Self, SolveError> {
+    pub fn new(
+        model: &Model,
+        mut entries: Vec<(usize, usize)>,
+        executor: Arc<dyn Executor>,
+    ) -> Result<Self, SolveError> {
         let n = model.dofs.equations;
         entries.retain(|(row, column)| row <= column);
         let pattern = Arc::new(Pattern::new(n, entries));
@@ -95,21 +117,18 @@ impl Condensation {
         };
         Ok(Condensation {
             way,
-            factors: SymmetricFactors::new(pattern.clone(), &equations)?,
+            parts: parts(&pattern, &equations, &*executor)?,
+            executor,
             pattern,
             number,
-            shift: 0.0,
-            schur: vec![0.0; c * c],
             turning: vec![0.0; c * c],
             matrix: vec![0.0; c * c],
             dense: DenseFactors::new(solved, z)?,
             inner: vec![0.0; solved * solved],
             residual: vec![0.0; n],
-            free: vec![0.0; n],
             start: vec![0.0; c],
             motions: vec![0.0; c * z],
-            offset: vec![0.0; c],
-            pull: vec![0.0; c],
+            moved: vec![0.0; c],
             equations,
         })
     }
@@ -129,13 +148,14 @@ impl Condensation {
         Some(column * self.equations.len() + row)
     }
 
-    /// Factors the stiffness with these values and finds how the interface answers: fills `start` and `response` of
+    /// Factors the stiffness with these values, unless that of the last time `stands`, and finds how the interface answers: fills `start` and `response` of
     /// `out`, whose springs it takes. Returns an estimate of the norm of A's scaled inverse.
     ///
     /// # Errors
     /// [`SolveError::Singular`] where the stiffness cannot be factored without pivoting.
     pub fn condense(
         &mut self,
+        stands: bool,
         stiffness: &[f64],
         residual: &[f64],
         interfaces: &[Interface],
@@ -143,12 +163,16 @@ impl Condensation {
         out: &mut InterfaceResponse,
     ) -> Result<f64, SolveError> {
         let k = out.stiffness;
-        self.shift = k;
-        self.factors.factor(stiffness, k)?;
         self.residual.copy_from_slice(residual);
-        self.factors.solve(&self.residual, &mut self.free)?;
-        self.factors.condensed(&mut self.schur);
-        self.load();
+        each(&*self.executor, &mut self.parts, &|part| {
+            part.done = part.condense(stands, stiffness, residual, k);
+        });
+        for part in &self.parts {
+            part.done?;
+            for (&i, load) in part.unknowns.iter().zip(&part.load) {
+                self.start[i] = *load;
+            }
+        }
         if self.way == Way::Direct {
             return self.relate(interfaces, frames, out);
         }
@@ -238,15 +262,17 @@ impl Condensation {
 
     /// S + T into `matrix`.
     fn add_turning(&mut self) {
-        let parts = self.schur.iter().zip(&self.turning);
-        for (to, (schur, turning)) in self.matrix.iter_mut().zip(parts) {
-            *to = schur + turning;
-        }
         let c = self.equations.len();
-        self.matrix
-            .iter_mut()
-            .step_by(c + 1)
-            .for_each(|entry| *entry -= self.shift);
+        self.matrix.copy_from_slice(&self.turning);
+        for part in &self.parts {
+            let columns = part.schur.chunks_exact(part.unknowns.len().max(1));
+            for (&j, column) in part.unknowns.iter().zip(columns) {
+                let to = &mut self.matrix[j * c..(j + 1) * c];
+                for (&i, schur) in part.unknowns.iter().zip(column) {
+                    to[i] += schur;
+                }
+            }
+        }
     }
 
     /// A.
@@ -263,14 +289,6 @@ impl Condensation {
                 }
             }
         }
-    }
-
-    /// r̃ into `start`.
-    fn load(&mut self) {
-        for (offset, &equation) in self.offset.iter_mut().zip(&self.equations) {
-            *offset = self.free[equation];
-        }
-        multiply(&self.schur, &self.offset, &mut self.start);
     }
 
     /// k Gᵀ into `motions`.
@@ -336,42 +354,42 @@ impl Condensation {
         x: &mut [f64],
     ) -> Result<(), SolveError> {
         match self.way {
-            Way::Springs => self.offset.copy_from_slice(&self.start),
+            Way::Springs => self.moved.copy_from_slice(&self.start),
             Way::Direct => self.move_masters(gaps),
         }
         let sign = if self.way == Way::Direct { -1.0 } else { 1.0 };
-        let moved = match self.way {
+        let count = match self.way {
             Way::Springs => self.equations.len(),
             Way::Direct => self.equations.len() - gaps.len(),
         };
-        for (column, gap) in self.motions.chunks_exact(moved.max(1)).zip(gaps) {
-            for (offset, motion) in self.offset.iter_mut().zip(column) {
-                *offset += sign * motion * gap;
+        for (column, gap) in self.motions.chunks_exact(count.max(1)).zip(gaps) {
+            for (moved, motion) in self.moved.iter_mut().zip(column) {
+                *moved += sign * motion * gap;
             }
         }
         if self.way == Way::Direct {
             self.move_slaves(gaps, interfaces, frames);
         }
-        for (offset, &equation) in self.offset.iter_mut().zip(&self.equations) {
-            *offset -= self.free[equation];
+        let (residual, known) = (&self.residual, &self.moved);
+        each(&*self.executor, &mut self.parts, &|part| {
+            part.done = part.recover(residual, known);
+        });
+        for part in &self.parts {
+            part.done?;
+            x[part.equations.clone()].copy_from_slice(&part.moved);
         }
-        // Forces on the interface that bring its unknowns from `free` to where they must be.
-        multiply(&self.schur, &self.offset, &mut self.pull);
-        for (force, &equation) in self.pull.iter().zip(&self.equations) {
-            self.residual[equation] += force;
-        }
-        self.factors.solve(&self.residual, x)
+        Ok(())
     }
 
-    /// u_m at v = 0 into `offset`.
+    /// u_m at v = 0 into `moved`.
     fn move_masters(&mut self, gaps: &[f64]) {
         let m = self.equations.len() - gaps.len();
-        self.offset[..m].copy_from_slice(&self.start[..m]);
+        self.moved[..m].copy_from_slice(&self.start[..m]);
     }
 
-    /// u_s into `offset`, which has u_m.
+    /// u_s into `moved`, which has u_m.
     fn move_slaves(&mut self, gaps: &[f64], interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
-        let (masters, slaves) = self.offset.split_at_mut(self.equations.len() - gaps.len());
+        let (masters, slaves) = self.moved.split_at_mut(self.equations.len() - gaps.len());
         let nodes = interfaces.iter().zip(frames).zip(gaps.chunks_exact(2));
         for (((interface, frame), v), own) in nodes.zip(slaves.chunks_exact_mut(2)) {
             for (axis, own) in own.iter_mut().enumerate() {
@@ -386,19 +404,88 @@ impl Condensation {
     }
 }
 
+impl Part {
+    fn new(
+        pattern: &Pattern,
+        equations: Range<usize>,
+        interface: &[usize],
+    ) -> Result<Self, SolveError> {
+        let own = interface.iter().enumerate();
+        let own = own.filter(|(_, equation)| equations.contains(equation));
+        let (unknowns, last): (Vec<usize>, Vec<usize>) = own
+            .map(|(k, equation)| (k, equation - equations.start))
+            .unzip();
+        let (pattern, values) = pattern.block(equations.clone());
+        let c = unknowns.len();
+        Ok(Part {
+            factors: SymmetricFactors::new(Arc::new(pattern), &last)?,
+            values,
+            unknowns,
+            schur: vec![0.0; c * c],
+            load: vec![0.0; c],
+            known: vec![0.0; c],
+            moved: vec![0.0; equations.len()],
+            equations,
+            done: Ok(()),
+        })
+    }
+
+    /// S and r̃, S only where that of the last time does not stand; the shift makes it regular where nothing but the interface holds a body.
+    fn condense(
+        &mut self,
+        stands: bool,
+        stiffness: &[f64],
+        residual: &[f64],
+        shift: f64,
+    ) -> Result<(), SolveError> {
+        let residual = &residual[self.equations.clone()];
+        if stands {
+            self.factors.condense(residual, &mut self.load);
+            return Ok(());
+        }
+        self.factors
+            .factor(&stiffness[self.values.clone()], shift)?;
+        self.factors.condense(residual, &mut self.load);
+        self.factors.condensed(&mut self.schur);
+        let next = self.unknowns.len() + 1;
+        let diagonal = self.schur.iter_mut().step_by(next);
+        diagonal.for_each(|entry| *entry -= shift);
+        Ok(())
+    }
+
+    /// All displacements for u_c of the whole interface.
+    fn recover(&mut self, residual: &[f64], interface: &[f64]) -> Result<(), SolveError> {
+        for (known, &k) in self.known.iter_mut().zip(&self.unknowns) {
+            *known = interface[k];
+        }
+        let residual = &residual[self.equations.clone()];
+        self.factors.recover(residual, &self.known, &mut self.moved)
+    }
+}
+
+/// The bodies in parts that no stiffness joins, laid out side by side; small ones that follow each other are one part.
+fn parts(
+    pattern: &Pattern,
+    interface: &[usize],
+    executor: &dyn Executor,
+) -> Result<Vec<Part>, SolveError> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for block in pattern.blocks() {
+        match ranges.last_mut() {
+            Some(last) if last.len().min(block.len()) < SMALL => last.end = block.end,
+            _ => ranges.push(block),
+        }
+    }
+    let mut parts: Vec<_> = ranges.into_iter().map(|range| (range, None)).collect();
+    each(executor, &mut parts, &|(range, part)| {
+        *part = Some(Part::new(pattern, range.clone(), interface));
+    });
+    parts.into_iter().filter_map(|(_, part)| part).collect()
+}
+
 /// Component of a vector along a direction.
 fn along(direction: [f64; 2], x: f64, y: f64) -> f64 {
     direction[0] * x + direction[1] * y
-}
-
-/// y = A x, A stored column by column.
-fn multiply(a: &[f64], x: &[f64], y: &mut [f64]) {
-    y.fill(0.0);
-    for (column, x) in a.chunks_exact(y.len().max(1)).zip(x) {
-        for (y, a) in y.iter_mut().zip(column) {
-            *y += a * x;
-        }
-    }
 }
 
 /// The interface's equations for [`Way::Direct`]: the masters' first, then x and y of every slave node. None where some body

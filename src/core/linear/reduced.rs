@@ -98,8 +98,10 @@ impl System {
         if self.layout == Some(Layout::Bodies) {
             self.condensed.relation.stiffness = self.spring(model);
             self.start_rhs();
+            self.done.factorizations += u64::from(!self.stands);
             if let Some(bodies) = &mut self.bodies
                 && let Ok(norm) = bodies.condense(
+                    self.stands,
                     &self.stiffness,
                     &self.rhs,
                     &self.interfaces,
@@ -132,6 +134,7 @@ impl System {
         let Some(factors) = &mut self.whole else {
             return Err(SolveError::Singular);
         };
+        self.done.factorizations += 1;
         factors.factor(&self.values)?;
         factors.solve(&self.rhs, &mut self.x)?;
         let norm = factors.inverse_norm();

@@ -38,7 +38,7 @@ impl System {
                 self.residual[*equation] = balance;
             }
         }
-        let [floor, length_floor] = self.round_off(model, at.u);
+        let [floor, length_floor] = self.floors;
         let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
         let wanted = self.sizes.wanted(model, at, |dof| self.nodal_force(dof));
         let noise = if floor > 0.0 { floor / wanted } else { 0.0 };
@@ -56,10 +56,16 @@ impl System {
         self.norms.interface = self.violation(model, at);
     }
 
-    /// Aims the last linearisation at another load, at the same displacements; nothing else of it changes where no motion is
-    /// prescribed and no element remembers what was accepted.
+    /// Aims the last linearisation at another load, at the same displacements; but for what is prescribed, nothing else of it
+    /// changes where no element remembers what was accepted.
     pub fn aim(&mut self, model: &Model, at: &At<'_>) {
         self.load(model, at);
+        self.allow(model, at);
+        if !model.prescribed.is_empty() {
+            self.prescribe(model, at);
+            self.couple(model, at);
+            self.measure_interfaces(model, at);
+        }
         self.balance(model, at);
     }
 
@@ -77,7 +83,7 @@ impl System {
     }
 
     /// Round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
-    fn round_off(&mut self, model: &Model, u: &[f64]) -> [f64; 2] {
+    pub(super) fn round_off(&mut self, model: &Model, u: &[f64]) -> [f64; 2] {
         let Some(pattern) = self.pattern().cloned() else {
             return [0.0; 2];
         };

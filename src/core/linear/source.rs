@@ -44,6 +44,8 @@ pub struct At<'a> {
     /// Stiffness that holds sliding back in this major iteration (force by length); 0 where nothing does
     /// ([`crate::step::brake`]).
     pub brake: f64,
+    /// The source's own unknowns about which the stiffness in use is taken; `None` for `u`.
+    pub factored: Option<&'a [f64]>,
     /// Drag of a damped motion since the last accepted state (force by length), on every displacement.
     pub drag: Option<f64>,
     /// The settings as the user has them.
@@ -111,6 +113,15 @@ pub struct Accepted<'a> {
     pub contacts: &'a [ContactState],
 }
 
+/// What has been done since a source was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Assemblies of the bodies' stiffness.
+    pub assemblies: u64,
+    /// Factorizations: of the bodies, or of bodies and interface together.
+    pub factorizations: u64,
+}
+
 /// How one solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solved {
@@ -158,8 +169,11 @@ pub trait Source: Send {
     /// Places the stick points of contacts that bring slip into the scene.
     fn place_stick_points(&mut self, _contacts: &mut [ContactState]) {}
 
-    /// Goes back, or on, to a state; [`Source::linearise`] follows. What keeps nothing but workspace has nothing to do.
-    fn restore(&mut self, _at: &At<'_>) {}
+    /// Goes back, or on, to a state. What keeps nothing but workspace has nothing to do. Returns whether the last linearisation
+    /// still stands, where it was about such a state; where it does not, [`Source::linearise`] follows.
+    fn restore(&mut self, _at: &At<'_>) -> bool {
+        true
+    }
 
     /// Freezes geometry, stiffness and out-of-balance forces about a state (eqn 5).
     ///
@@ -275,6 +289,11 @@ pub trait Source: Send {
     /// Stability of the state of the last linearisation, with the modes that its contacts have.
     fn stability(&mut self, _at: &At<'_>) -> Stability {
         Stability::NotKnown
+    }
+
+    /// What it has done so far, as far as it counts.
+    fn work(&self) -> Work {
+        Work::default()
     }
 
     /// Value of a monitor in the state of the last linearisation.

@@ -20,10 +20,11 @@ use crate::linear::condensed::Condensed;
 use crate::linear::coupling::Interface;
 use crate::linear::drag::stiffen;
 use crate::linear::estimate::{Estimate, condensable};
+use crate::linear::executor::Executor;
 use crate::linear::norms::Norms;
 use crate::linear::sizes::Sizes;
-use crate::linear::source::{At, Solved};
-use crate::model::{Geometry, Model, Settings};
+use crate::linear::source::{At, Solved, Work};
+use crate::model::{Geometry, Model, Refactor, Settings};
 use std::sync::Arc;
 
 /// An equation whose coefficients are all smaller than this (the largest is one) is empty.
@@ -38,17 +39,37 @@ pub(super) enum Layout {
     Bodies,
 }
 
+/// Where turning interaction forces are entered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Turned {
+    /// In the stiffness, and in what prescribed motions do through it.
+    Both,
+    /// In the latter alone.
+    Coupling,
+}
+
 /// The linearised system about a state.
 pub struct System {
     pub(super) assembly: Assembly,
     /// What `stiffness` is laid out for.
     pub(super) layout: Option<Layout>,
     pub(super) whole: Option<Factors>,
+    /// Displacements about which `stiffness` was taken, what the elements remembered then, and its values before the interface's
+    /// part; where it may be used again.
+    taken: Vec<f64>,
+    remembered: Vec<f64>,
+    plain: Vec<f64>,
+    /// Whether the stiffness of the last linearisation was taken about others, and is factored already.
+    pub(super) stands: bool,
+    /// What has been done so far.
+    pub done: Work,
     /// Whether there is a drag in the last linearisation.
     dragged: bool,
     /// Whether `whole` is scaled for the present linearisation.
     pub(super) scaled: bool,
     pub(super) bodies: Option<Condensation>,
+    /// Who works on bodies side by side.
+    executor: Arc<dyn Executor>,
     pub(super) estimate: Estimate,
     /// Whether the scene's bodies may be condensed by [`Condensation`].
     pub(super) condensable: bool,
@@ -72,6 +93,8 @@ pub struct System {
     pub(super) interaction: Vec<f64>,
     pub(super) step: Vec<f64>,
     pub(super) residual: Vec<f64>,
+    /// Round-off of forces and of lengths.
+    pub(super) floors: [f64; 2],
     pub(super) coupling: Vec<f64>,
     pub(super) rhs: Vec<f64>,
     pub(super) x: Vec<f64>,
@@ -85,7 +108,7 @@ pub struct System {
 
 impl System {
     /// Lays out the system of a scene.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(model: &Model, executor: Arc<dyn Executor>) -> Self {
         let (dofs, equations) = (model.dofs.len(), model.dofs.equations);
         let interfaces: Vec<Interface> = model
             .contacts
@@ -96,9 +119,15 @@ impl System {
             assembly: Assembly::new(model),
             layout: None,
             whole: None,
+            taken: Vec::new(),
+            remembered: Vec::new(),
+            plain: Vec::new(),
+            stands: false,
+            done: Work::default(),
             dragged: false,
             scaled: false,
             bodies: None,
+            executor,
             estimate: Estimate::of(model),
             condensable: condensable(model),
             pairing: Vec::new(),
@@ -115,6 +144,7 @@ impl System {
             interaction: vec![0.0; dofs],
             step: vec![0.0; dofs],
             residual: vec![0.0; equations],
+            floors: [0.0; 2],
             coupling: vec![0.0; equations],
             rhs: Vec::new(),
             x: Vec::new(),
@@ -162,7 +192,6 @@ impl System {
         self.condensed.fresh = false;
         self.scaled = false;
         self.place(model, at.u);
-        let unclosed = model.unclosed(at.leg, at.target);
         for (interface, (node, slave)) in self
             .interfaces
             .iter_mut()
@@ -174,24 +203,89 @@ impl System {
                 Some(_) => here.along(node.normal, point),
                 None => here,
             });
-            interface.allowed = slave.overlap * unclosed;
         }
+        self.allow(model, at);
         match layout {
             Layout::Whole => self.bind_whole(model, at)?,
             Layout::Bodies => self.bind_bodies(model, at)?,
         }
         self.load(model, at);
-        self.step.fill(0.0);
-        for p in &model.prescribed {
-            self.step[p.dof] = p.value * p.scale.at(at.target) - at.u[p.dof];
-        }
-        self.assemble(model, at);
+        self.prescribe(model, at);
+        self.take_stiffness(layout, model, at);
         if let (Layout::Bodies, Some(bodies)) = (layout, &mut self.bodies) {
             bodies.turning.fill(0.0);
         }
         self.measure_interfaces(model, at);
+        self.floors = self.round_off(model, at.u);
         self.balance(model, at);
         Ok(())
+    }
+
+    /// Internal forces, and the stiffness: about the displacements at hand, or about those of before where these stand.
+    fn take_stiffness(&mut self, layout: Layout, model: &Model, at: &At<'_>) {
+        let about = at.factored.unwrap_or(at.u);
+        self.stands =
+            at.factored.is_some() && self.taken == about && self.remembered == at.accepted.history;
+        if !self.stands {
+            self.assemble(model, &At { u: about, ..*at });
+            self.taken.clear();
+            if at.chosen.factor == Refactor::Needed {
+                self.taken.extend_from_slice(about);
+                self.remembered.clear();
+                self.remembered.extend_from_slice(at.accepted.history);
+                if layout == Layout::Whole {
+                    self.plain.clone_from(&self.stiffness);
+                }
+            }
+        } else if layout == Layout::Whole {
+            self.stiffness.copy_from_slice(&self.plain);
+        }
+        if at.factored.is_some() {
+            let moved = Moved {
+                u: at.u,
+                step: &self.step,
+                before: at.accepted.u,
+                history: at.accepted.history,
+            };
+            self.assembly.resist(moved, &mut self.force, &mut self.size);
+        }
+        if self.stands {
+            let moved = Moved {
+                u: about,
+                step: &self.step,
+                before: at.accepted.u,
+                history: at.accepted.history,
+            };
+            self.assembly.couple(&model.dofs, moved, &mut self.coupling);
+        }
+    }
+
+    /// What is left of the overlaps at the load that is aimed at.
+    pub(super) fn allow(&mut self, model: &Model, at: &At<'_>) {
+        let unclosed = model.unclosed(at.leg, at.target);
+        for (interface, slave) in self.interfaces.iter_mut().zip(&model.contacts) {
+            interface.allowed = slave.overlap * unclosed;
+        }
+    }
+
+    /// What prescribed motions have still to do.
+    pub(super) fn prescribe(&mut self, model: &Model, at: &At<'_>) {
+        self.step.fill(0.0);
+        for p in &model.prescribed {
+            self.step[p.dof] = p.value * p.scale.at(at.target) - at.u[p.dof];
+        }
+    }
+
+    /// Finds anew what they do through the stiffness of the last linearisation.
+    pub(super) fn couple(&mut self, model: &Model, at: &At<'_>) {
+        let moved = Moved {
+            u: at.factored.unwrap_or(at.u),
+            step: &self.step,
+            before: at.accepted.u,
+            history: at.accepted.history,
+        };
+        self.assembly.couple(&model.dofs, moved, &mut self.coupling);
+        self.turn_into(model, at, Turned::Coupling);
     }
 
     /// Internal forces and stiffness of the bodies, and what prescribed motions do through it.
@@ -209,6 +303,7 @@ impl System {
             history: at.accepted.history,
         };
         self.assembly.assemble(&model.dofs, moved, out);
+        self.done.assemblies += 1;
         self.drag(model, at);
     }
 
@@ -246,6 +341,7 @@ impl System {
         };
         if changed || self.layout != Some(Layout::Whole) {
             let size = factors.pattern().size();
+            self.taken.clear();
             self.assembly.bind(&model.dofs, factors.pattern(), false);
             self.stiffness.resize(factors.pattern().entries(), 0.0);
             self.values.resize(factors.pattern().entries(), 0.0);
@@ -268,12 +364,14 @@ impl System {
             self.bodies = Some(Condensation::new(
                 model,
                 self.assembly.entries(&model.dofs),
+                self.executor.clone(),
             )?);
         }
         let Some(bodies) = &self.bodies else {
             return Ok(());
         };
         if self.layout != Some(Layout::Bodies) {
+            self.taken.clear();
             self.assembly.bind(&model.dofs, bodies.pattern(), true);
             self.stiffness.resize(bodies.pattern().entries(), 0.0);
             for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
@@ -329,7 +427,7 @@ impl System {
         Ok(())
     }
 
-    fn measure_interfaces(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn measure_interfaces(&mut self, model: &Model, at: &At<'_>) {
         for (interface, node) in self.interfaces.iter_mut().zip(at.contacts) {
             interface.room = node.spot.map_or([None; 2], |spot| {
                 room(&model.surfaces[spot.surface], spot, &self.positions)
@@ -354,6 +452,10 @@ impl System {
     /// Adds what turning and travelling interaction forces do to the stiffness, where the settings want it; once
     /// after each linearisation, when the state has its final forces.
     pub fn turn(&mut self, model: &Model, at: &At<'_>) {
+        self.turn_into(model, at, Turned::Both);
+    }
+
+    fn turn_into(&mut self, model: &Model, at: &At<'_>, turned: Turned) {
         if at.chosen.geometry == Geometry::Frozen {
             return;
         }
@@ -388,7 +490,8 @@ impl System {
                         &col.variation,
                     );
                     match interface.pairs[i * count + j] {
-                        Some(slot) => matrix[slot] -= value,
+                        Some(slot) if turned == Turned::Both => matrix[slot] -= value,
+                        Some(_) => {}
                         None => self.coupling[equation] -= value * self.step[col.dof],
                     }
                 }

@@ -27,8 +27,8 @@ pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, least};
 pub use mesh::ElementKind;
 pub use settings::{
-    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, ResidualMethod, Settings, SlipCount,
-    Solver, Sticking, Strategy, Ties, Touch,
+    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, Refactor, ResidualMethod, Settings,
+    SlipCount, Solver, Sticking, Strategy, Ties, Touch,
 };
 
 /// A checked scene.

@@ -14,6 +14,9 @@ documented! {
         pub residual: ResidualMethod,
         /// What the minor iterations solve. Default: auto.
         pub solver: Solver,
+        /// How often the bodies' stiffness is taken and factored. Default: each.
+        #[serde(skip_serializing_if = "Refactor::is_default")]
+        pub factor: Refactor,
         /// Whether the tangent knows that the contact geometry changes. Default: consistent.
         pub geometry: Geometry,
         /// How the sliding node's T_max enters the equations. Default: lagged.
@@ -60,6 +63,7 @@ impl Default for Settings {
             strategy: Strategy::default(),
             residual: ResidualMethod::default(),
             solver: Solver::default(),
+            factor: Refactor::default(),
             geometry: Geometry::default(),
             t_max: BoundUpdate::default(),
             slip: SlipCount::default(),
@@ -236,6 +240,29 @@ documented! {
         /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
         /// costs a dense solve of the size of the interface.
         Condensed,
+    }
+}
+
+documented! {
+    /// How often the bodies' stiffness is taken and factored.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Refactor {
+        /// In each major iteration, as in the paper.
+        #[default]
+        Each,
+        /// In the first of an increment, and where the out-of-balance force of the one before fell by less than ten times. That
+        /// force is always the true one and the interface's geometry that of the major iteration, so that the answers are the
+        /// same within the tolerance; there are more major iterations, and they cost less. With `history.control: arc` and in
+        /// damped motions as `each`.
+        Needed,
+    }
+}
+
+impl Refactor {
+    /// Whether it is what a scene that does not name it has.
+    pub fn is_default(&self) -> bool {
+        *self == Refactor::default()
     }
 }
 

@@ -290,6 +290,8 @@ impl Stepper {
     }
 
     fn next_increment(&mut self) {
+        // The stiffness that the next increment starts with is that of its own start.
+        let taken_here = self.drop_factors();
         let next = &mut self.state.next;
         (next.increment, next.attempt) = (next.increment + 1, 1);
         let whole = || {
@@ -299,6 +301,6 @@ impl Stepper {
         self.state.detour = None;
         self.state.sub_increment = self.state.sub_increment.next().unwrap_or_else(whole);
         self.state.begin();
-        self.linearised = self.linearised && self.source.aim(&self.state.at());
+        self.linearised = self.linearised && taken_here && self.source.aim(&self.state.at());
     }
 }

@@ -128,7 +128,7 @@ impl State {
     pub(super) fn begin(&mut self) {
         (self.next.major, self.next.minor) = (1, 1);
         (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
-        (self.net, self.brake) = (false, None);
+        (self.net, self.brake, self.factored) = (false, None, None);
         self.load_factor = self.sub_increment.target();
         self.search = Progress::default();
         (self.target, self.last_target) = (self.load_factor, self.start.load_factor);

@@ -5,7 +5,7 @@ use crate::interface::method::Searched;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
-use crate::model::{AtLimit, Mode, ResidualMethod, SlipCount, Sticking};
+use crate::model::{AtLimit, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
 use crate::step::event::{Failure, Outcome};
 use crate::step::hold::PATIENCE;
 use crate::step::major_history::{MajorCycle, Scales};
@@ -17,6 +17,8 @@ const DIVERGED: f64 = 1e4;
 /// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
 /// the length instead.
 const STILL: f64 = 1e-8;
+/// Part of the out-of-balance force that a major iteration may leave with old factors before they are renewed.
+const ENOUGH: f64 = 0.1;
 /// Times the major iterations that keep its size after which an increment along the path is lost.
 const LOST: u32 = 2;
 
@@ -58,6 +60,7 @@ impl Stepper {
             self.state.unsettled += 1;
             return self.finish(after);
         }
+        self.renew_factors(&after);
         self.next_major();
         if !bounded {
             return self.fail(Failure::Diverged {
@@ -82,6 +85,39 @@ impl Stepper {
             });
         }
         Outcome::Major { after, settled }
+    }
+
+    /// Lets the next major iteration go on with the stiffness in use, where the settings want that.
+    fn keep_factors(&mut self) {
+        let state = &self.state;
+        let loaded = state.way.is_none() && state.motion.is_none();
+        if !loaded || state.controls.settings.factor == Refactor::Each {
+            self.drop_factors();
+        } else if state.factored.is_none() {
+            let mut about = std::mem::take(&mut self.room);
+            Arc::make_mut(&mut about).clone_from(&self.state.u);
+            self.state.factored = Some(about);
+        }
+    }
+
+    /// Has the stiffness taken anew; returns whether that in use was that of the present displacements.
+    pub(super) fn drop_factors(&mut self) -> bool {
+        match self.state.factored.take() {
+            Some(about) => {
+                self.room = about;
+                false
+            }
+            None => true,
+        }
+    }
+
+    /// Has the stiffness taken anew where that in use has brought the out-of-balance force down too little. In the first major
+    /// iteration of an increment there is none before what is prescribed has moved.
+    fn renew_factors(&mut self, after: &Norms) {
+        let little = after.relative > ENOUGH * self.event.before.relative;
+        if self.state.next.major > 1 && little && !self.drop_factors() {
+            (self.linearised, self.measured) = (false, false);
+        }
     }
 
     /// After how many major iterations an increment fails. Along the path, one that takes long has lost the way: what it
@@ -126,8 +162,10 @@ impl Stepper {
 
     /// Takes displacements and forces of the last minor iteration into the state, and linearises about that.
     fn update(&mut self) {
+        self.measured = false;
         self.state.last_target = self.state.target;
         self.state.target = self.state.load_factor;
+        self.keep_factors();
         let largest = self
             .source
             .advance(Arc::make_mut(&mut self.state.u).as_mut_slice());
@@ -142,6 +180,7 @@ impl Stepper {
         self.state.forget_minors();
         self.follow();
         self.linearised = self.source.linearise(&self.state.at()).is_ok();
+        self.measured = self.linearised;
         let by_stress = self.state.controls.settings.residual == ResidualMethod::Stress;
         if by_stress && self.source.take_forces_from_stresses(&mut self.state.nodes) {
             self.source.rebalance(&self.state.at());

@@ -65,6 +65,10 @@ pub struct State {
     pub net: bool,
     /// Largest displacement change in the last major iteration over the length scale.
     pub correction: f64,
+    /// Displacements about which the bodies' stiffness in use was taken; `None` for those of the present major iteration
+    /// ([`crate::model::Refactor`]).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factored: Option<Arc<Vec<f64>>>,
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
@@ -205,6 +209,7 @@ impl State {
             unsettled: 0,
             net: false,
             correction: 0.0,
+            factored: None,
             pace: Pace::default(),
             brake: None,
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
@@ -235,6 +240,37 @@ impl State {
         self.way.as_ref().map(|way| way.length)
     }
 
+    /// Whether a source linearises about another state as about this one: they differ by no more than minor iterations change.
+    pub(super) fn is_linearised_as(&self, other: &State) -> bool {
+        let same = |a: &Arc<Vec<f64>>, b: &Arc<Vec<f64>>| Arc::ptr_eq(a, b) || a == b;
+        let stands = |(node, other): (&ContactState, &ContactState)| {
+            let minor = ContactState {
+                mode: node.mode,
+                forced: node.forced,
+                t_max: node.t_max,
+                sign: node.sign,
+                ratio: node.ratio,
+                travel: node.travel,
+                ..*other
+            };
+            *node == minor
+        };
+        let factored = match (&self.factored, &other.factored) {
+            (Some(a), Some(b)) => same(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        factored
+            && same(&self.u, &other.u)
+            && (Arc::ptr_eq(&self.start, &other.start) || self.start == other.start)
+            && (Arc::ptr_eq(&self.controls, &other.controls) || self.controls == other.controls)
+            && [self.target, self.last_target, self.correction]
+                == [other.target, other.last_target, other.correction]
+            && (self.brake, &self.way, &self.motion) == (other.brake, &other.way, &other.motion)
+            && self.nodes.len() == other.nodes.len()
+            && self.nodes.iter().zip(&other.nodes).all(stands)
+    }
+
     /// What a source may look at.
     pub fn at(&self) -> At<'_> {
         At {
@@ -252,6 +288,7 @@ impl State {
             friction: &self.controls.friction,
             entered: self.minor_history.first(self.nodes.len()),
             correction: self.correction,
+            factored: self.factored.as_deref().map(Vec::as_slice),
             brake: self.brake.map_or(0.0, |brake| brake.stiffness),
             drag: self.motion.and_then(|motion| motion.drag()),
             chosen: &self.controls.settings,

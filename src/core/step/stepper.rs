@@ -16,9 +16,10 @@ use crate::contact::state::ContactState;
 use crate::interface::kinematics::NodeKinematics;
 use crate::interface::problem::InterfaceProblem;
 use crate::linear::bodies::Bodies;
+use crate::linear::executor::Executor;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::linear::source::{Solved, Source};
+use crate::linear::source::{Solved, Source, Work};
 use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::step::event::{Event, Failure, Outcome, Position};
@@ -34,10 +35,16 @@ pub struct Stepper {
     pub(super) source: Box<dyn Source>,
     /// Whether `source` is linearised about `state`.
     pub(super) linearised: bool,
+    /// Whether the last linearisation is about the displacements of `state`, so that what is watched can be read off it.
+    pub(super) measured: bool,
     /// Norms of the last linearisation.
     pub(super) norms: Norms,
     /// What a search over all nodes keeps from one proposal to the next.
     pub(super) kept: Option<Box<dyn Any + Send>>,
+    /// Room for the displacements about which a stiffness is taken.
+    pub(super) room: Arc<Vec<f64>>,
+    /// A state, and the interface problem that another solver had at hand for it.
+    borrowed: Option<Box<(State, InterfaceProblem)>>,
     /// What the contacts came with into the present minor iteration, where only one of them may change.
     pub(super) before: Vec<ContactState>,
     pub(super) event: Event,
@@ -47,6 +54,12 @@ impl Stepper {
     /// A solver of our own bodies at the start of a scene's history.
     pub fn new(model: Arc<Model>) -> Self {
         let bodies = Bodies::new(model.clone());
+        Stepper::with_source(model, Box::new(bodies))
+    }
+
+    /// The same, whose bodies this executor works on side by side.
+    pub fn with_executor(model: Arc<Model>, executor: Arc<dyn Executor>) -> Self {
+        let bodies = Bodies::with_executor(model.clone(), executor);
         Stepper::with_source(model, Box::new(bodies))
     }
 
@@ -65,8 +78,11 @@ impl Stepper {
                 outcome: Outcome::Minor,
             },
             linearised: false,
+            measured: false,
             norms: Norms::default(),
             kept: None,
+            room: Arc::default(),
+            borrowed: None,
             before: Vec::new(),
             model,
         };
@@ -152,10 +168,14 @@ impl Stepper {
     }
 
     /// Goes to a state of the same scene; what follows has the same bits as the first time.
+    ///
+    /// Within a major iteration it costs nothing: the linearisation and its factors stand.
     pub fn restore(&mut self, state: &State) {
+        let stands = self.stands_for(state);
         self.state.clone_from(state);
-        self.source.restore(&self.state.at());
+        let kept = self.source.restore(&self.state.at());
         self.forget_workspace();
+        (self.linearised, self.measured) = (stands && kept, stands && kept);
     }
 
     /// Applies what the user wants changed.
@@ -163,8 +183,12 @@ impl Stepper {
     /// # Errors
     /// Those of [`State::intervene`].
     pub fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+        let before = self.state.clone();
+        let done = self.state.intervene(&self.model, intervention);
+        let stands = self.stands_for(&before);
         self.forget_workspace();
-        self.state.intervene(&self.model, intervention)
+        (self.linearised, self.measured) = (stands, stands);
+        done
     }
 
     /// Norms of the present state, about which the next minor iteration is linearised; `None` where it cannot be.
@@ -183,10 +207,48 @@ impl Stepper {
 
     /// The interface problem of the present major iteration; `None` where the bodies cannot be condensed.
     pub fn interface_problem(&mut self) -> Option<InterfaceProblem> {
+        if let Some(problem) = self.borrowed() {
+            return Some(problem);
+        }
         if !self.linearise() {
             return None;
         }
         self.source.problem(&self.state.at()).ok()
+    }
+
+    /// The interface problem of a state, where it is at hand: the bodies are condensed, and within the same major iteration. It
+    /// goes to that state.
+    pub fn lend(&mut self, state: &State) -> Option<InterfaceProblem> {
+        let at_hand = self.condenses() && self.stands_for(state);
+        at_hand.then(|| self.restore(state))?;
+        self.interface_problem()
+    }
+
+    /// Takes the interface problem of a state that another solver of the same scene has at hand, so that it need not be found
+    /// again within its major iteration.
+    pub fn borrow(&mut self, state: &State, problem: InterfaceProblem) {
+        self.borrowed = Some(Box::new((state.clone(), problem)));
+    }
+
+    /// What was borrowed, for the present state.
+    fn borrowed(&self) -> Option<InterfaceProblem> {
+        let (state, problem) = &**self.borrowed.as_ref()?;
+        if !state.is_linearised_as(&self.state) {
+            return None;
+        }
+        let mut problem = problem.clone();
+        problem.settings = self.state.settings();
+        for node in &mut problem.nodes {
+            node.state = self.state.nodes[node.slave];
+            let friction = &self.state.controls.friction[node.slave];
+            node.friction = node.state.friction(friction);
+        }
+        Some(problem)
+    }
+
+    /// Whether linearisation and factors are those of a state.
+    pub fn stands_for(&self, state: &State) -> bool {
+        self.linearised && self.state.is_linearised_as(state)
     }
 
     /// How a contact stands over its surface at the start of the present major iteration; `None` where it has no surface,
@@ -206,7 +268,9 @@ impl Stepper {
     /// Values of the scene's monitors at the start of the present major iteration (after an accepted increment: at
     /// its end), appended to `out`.
     pub fn monitors(&mut self, out: &mut Vec<f64>) {
-        self.linearise();
+        if !self.measured {
+            self.linearise();
+        }
         let at = self.state.at();
         let monitors = self.model.monitors.iter();
         out.extend(monitors.map(|monitor| self.source.monitor(&monitor.of, &at)));
@@ -221,11 +285,17 @@ impl Stepper {
         self.source.stability(&self.state.at())
     }
 
+    /// What has been assembled and factored so far.
+    pub fn work(&self) -> Work {
+        self.source.work()
+    }
+
     /// Linearises about the present state, unless that is done; false where it cannot be.
     pub(super) fn linearise(&mut self) -> bool {
         if !self.linearised {
             let at = self.state.at();
             self.linearised = self.source.linearise(&at).is_ok();
+            self.measured = self.linearised;
             self.source.turn(&at);
         }
         self.linearised
@@ -233,7 +303,7 @@ impl Stepper {
 
     /// What was made from another state is of no use any more.
     pub(super) fn forget_workspace(&mut self) {
-        self.linearised = false;
+        (self.linearised, self.measured) = (false, false);
         self.kept = None;
     }
 

@@ -7,8 +7,8 @@ use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, typ
 use crate::model::documented::text;
 use crate::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, Friction, Geometry, InitialGaps,
-    InitialState, Jumps, Law, Mode, Plane, ResidualMethod, Settings, SlipCount, Solver, Sticking,
-    Strategy, Ties, Touch, Update,
+    InitialState, Jumps, Law, Mode, Plane, Refactor, ResidualMethod, Settings, SlipCount, Solver,
+    Sticking, Strategy, Ties, Touch, Update,
 };
 
 macro_rules! fields {
@@ -93,6 +93,7 @@ fields!(Settings {
     strategy,
     residual,
     solver,
+    factor,
     geometry,
     t_max,
     slip,
@@ -123,6 +124,7 @@ words!(
     Law,
     Mode,
     Plane,
+    Refactor,
     ResidualMethod,
     SlipCount,
     Solver,

@@ -1,0 +1,185 @@
+//! What is assembled and factored, and what is not done twice.
+
+use crate::common::{run, scene};
+use std::sync::Arc;
+use stickslip::model::Mode;
+use stickslip::step::event::Outcome;
+use stickslip::step::intervene::Intervention;
+use stickslip::step::state::State;
+use stickslip::step::stepper::Stepper;
+
+const BLOCKS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/benches/two-blocks-pressed-sheared.ron"
+);
+
+fn stepper(name: &str, set: &[(&str, &str)]) -> Stepper {
+    Stepper::new(Arc::new(scene(name, set).model))
+}
+
+/// A stepper in the middle of a major iteration of many minor ones, and the state before its last minor iteration.
+fn in_a_major(solver: &str) -> (Stepper, State) {
+    let mut stepper = stepper(BLOCKS, &[("settings.solver", solver)]);
+    loop {
+        let before = stepper.state().clone();
+        let event = stepper.step().expect("the scene goes on");
+        if event.outcome == Outcome::Minor && event.position.minor > 1 {
+            return (stepper, before);
+        }
+    }
+}
+
+#[test]
+fn within_a_major_iteration_going_back_assembles_and_factors_nothing() {
+    for solver in ["condensed", "augmented"] {
+        let (mut stepper, before) = in_a_major(solver);
+        let (after, done) = (stepper.state().clone(), stepper.work());
+        let mut others = Vec::new();
+        for _ in 0..3 {
+            stepper.restore(&before);
+            stepper.step().expect("it went on from there");
+            assert_eq!(*stepper.state(), after);
+            stepper.restore(&before);
+            let force = Intervention::Force {
+                slave: 3,
+                mode: Mode::Free,
+                hold: false,
+            };
+            stepper.intervene(&force).expect("a node can be forced");
+            stepper.step().expect("it goes on");
+            others.push(stepper.state().clone());
+        }
+        assert!(others.iter().all(|other| *other == others[0]));
+        let more = stepper.work();
+        assert_eq!(more.assemblies, done.assemblies, "{solver}");
+        // The whole system is factored for every assumption of modes.
+        let factored = if solver == "condensed" { 0 } else { 6 };
+        assert_eq!(more.factorizations, done.factorizations + factored);
+    }
+}
+
+#[test]
+fn a_step_after_going_back_and_forth_between_increments_has_the_bits_of_one_that_never_left() {
+    for factor in ["each", "needed"] {
+        let set = [("settings.factor", factor), ("refine", "2")];
+        let mut first = stepper(BLOCKS, &set);
+        let mut states = vec![first.state().clone()];
+        while states.len() < 24 {
+            first.step().expect("the scene goes on");
+            states.push(first.state().clone());
+        }
+        let mut other = stepper(BLOCKS, &set);
+        // To and fro: each step from a state of another major iteration, or increment.
+        for k in (1..states.len()).rev().chain([7, 2, 19, 3, 20, 4]) {
+            other.restore(&states[k - 1]);
+            other.step().expect("it went on from there");
+            assert_eq!(*other.state(), states[k], "{factor}, step {k}");
+        }
+    }
+}
+
+#[test]
+fn every_major_iteration_assembles_once_and_what_is_watched_nothing() {
+    // Prescribed motions, dead loads, and elements that remember what was accepted: those start anew from there.
+    for (name, set, remembers) in [
+        (BLOCKS, ("refine", "1"), false),
+        (
+            "04-cantilever-rigid-circle",
+            ("history.increment", "0.25"),
+            false,
+        ),
+        (
+            "05-cantilever-elastic-block",
+            ("history.path[1]", "0.3"),
+            false,
+        ),
+        (
+            "05-cantilever-elastic-block",
+            ("materials.*.update", "updated"),
+            true,
+        ),
+    ] {
+        let set = [
+            set,
+            ("settings.strategy", "table2"),
+            ("history.increment", "0.1"),
+        ];
+        let set = if name == BLOCKS { &set[..1] } else { &set[..] };
+        let mut stepper = stepper(name, set);
+        let (mut majors, mut increments, mut values) = (0, 0, Vec::new());
+        while let Some(event) = stepper.step() {
+            let accepted = matches!(event.outcome, Outcome::Increment { .. });
+            majors += u64::from(accepted || matches!(event.outcome, Outcome::Major { .. }));
+            if matches!(event.outcome, Outcome::Failed(_)) {
+                break;
+            }
+            if accepted {
+                increments += 1;
+                stepper.monitors(&mut values);
+            }
+        }
+        let anew = if remembers { increments } else { 1 };
+        let made = stepper.work().assemblies;
+        assert!(increments > 2, "{name}");
+        assert!(
+            made <= majors + anew,
+            "{name}: {made} for {majors}, {increments}"
+        );
+    }
+}
+
+#[test]
+fn old_factors_lead_to_the_same_answers_with_fewer_factorizations() {
+    let circle = [("history.increment", "0.25")];
+    for (name, set) in [
+        (BLOCKS, &[("refine", "2")][..]),
+        (BLOCKS, &[("settings.solver", "augmented")]),
+        (BLOCKS, &[("materials.*.update", "updated")]),
+        ("04-cantilever-rigid-circle", &circle),
+        ("02-two-cantilevers-smooth", &[("history.increment", "0.1")]),
+    ] {
+        let with = |factor| {
+            let set: Vec<_> = set
+                .iter()
+                .copied()
+                .chain([("settings.factor", factor)])
+                .collect();
+            run(&scene(name, &set))
+        };
+        let [each, needed] = ["each", "needed"].map(with);
+        assert!(each.failure.is_none() && needed.failure.is_none(), "{name}");
+        assert_eq!(each.accepted.len(), needed.accepted.len());
+        let length = each.stepper.model().length;
+        for (a, b) in each.accepted.iter().zip(&needed.accepted) {
+            let modes = |state: &State| state.nodes.iter().map(|n| n.mode).collect::<Vec<_>>();
+            assert_eq!(modes(&a.state), modes(&b.state), "{name} at {}", a.load);
+            let apart = a.state.u.iter().zip(b.state.u.iter());
+            let apart = apart.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+            assert!(apart < 1e-8 * length, "{name} at {}: {apart:e}", a.load);
+        }
+        if !each.stepper.condenses() {
+            continue;
+        }
+        let [each, needed] = [&each, &needed].map(|run| run.stepper.work());
+        assert!(
+            2 * needed.factorizations <= each.factorizations,
+            "{name}: {each:?} {needed:?}"
+        );
+    }
+}
+
+#[test]
+fn a_borrowed_interface_problem_is_the_one_that_would_have_been_found() {
+    let (mut lender, before) = in_a_major("condensed");
+    let mut borrower = stepper(BLOCKS, &[("settings.solver", "condensed")]);
+    let lent = lender.lend(&before).expect("it is at hand");
+    borrower.borrow(&before, lent);
+    lender.step().expect("it goes on");
+    let state = lender.state().clone();
+    borrower.restore(&state);
+    let own = lender.interface_problem().expect("bodies can be condensed");
+    assert_eq!(borrower.interface_problem(), Some(own));
+    assert_eq!(borrower.work().assemblies, 0);
+    let start = stepper(BLOCKS, &[]).state().clone();
+    assert_eq!(lender.lend(&start), None);
+}
