@@ -27,10 +27,11 @@ fn values(listed: &paths::Listed) -> Vec<String> {
     others.into_iter().map(str::to_owned).collect()
 }
 
-/// How often the base had a model, and how often it had none.
+/// How often the base had a model, how often without compiling the scene again, and how often it had none.
 #[derive(Default)]
 struct Seen {
     models: usize,
+    quick: usize,
     none: usize,
 }
 
@@ -52,6 +53,7 @@ impl Seen {
         let model = base.model(&set);
         assert_eq!(bits(&model), bits(&read), "{settings:?}");
         if let Some(count) = base.increments(&set) {
+            self.quick += 1;
             let model = read.expect("what can be counted can be read");
             let legs = model.path.windows(2);
             let least: f64 = legs
@@ -85,17 +87,15 @@ fn try_all(name: &str, text: &str) {
             before[0].1 = "0.75".to_owned();
         }
     }
-    assert!(seen.models > 50 && seen.none > 20, "{name}");
+    assert!(
+        seen.models > 50 && seen.quick > 50 && seen.none > 20,
+        "{name}"
+    );
 }
 
 #[test]
 fn whatever_is_set_a_base_has_the_model_of_the_scene_read_with_it_or_none() {
-    for name in [
-        "osc-two3",
-        "osc-lag4",
-        "osc-valley",
-        "02-two-cantilevers-rough",
-    ] {
+    for name in ["osc-two3", "osc-lag4", "02-two-cantilevers-rough"] {
         try_all(name, builtin::find(name).unwrap().text);
     }
     try_all("all", EVERYTHING);
