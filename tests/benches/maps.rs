@@ -1,8 +1,9 @@
 //! Cells of stability maps a second, on one thread and on two: `cargo bench --bench maps`.
 //!
-//! The last column is the part of a map's time on one thread that its solver takes by itself, with every model made before: what
-//! is missing to 1 goes into making models, judging ends and random problems. A table, not a statistic; each time is the
-//! least of some, taken in turn.
+//! The last column is the time of the solver by itself, with every model made before and a new solver for each, over that of the
+//! map on one thread. What is missing to 1 goes into making models, judging ends and random problems; it can be above 1, since
+//! a map's solvers keep their workspace from cell to cell. A table, not a statistic; each time is the least of some, taken
+//! in turn.
 
 use std::num::NonZeroUsize;
 use std::sync::Arc;
