@@ -36,7 +36,7 @@ pub fn list(spec: &Spec) -> Vec<Listed> {
     // The walk is for setting too and needs a scene that it may change.
     walk(&mut spec.clone(), &mut |place, scalar| {
         all.push(Listed {
-            path: place.name.clone(),
+            path: place.name(),
             value: scalar.value(),
             kind: scalar.kind(),
         });
@@ -47,13 +47,14 @@ pub fn list(spec: &Spec) -> Vec<Listed> {
 /// The settings by their paths, and the words that each can be; no words for a number.
 pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
     let mut all = Vec::new();
-    let place = ScalarPlace::root().field("settings");
+    let root = ScalarPlace::root();
+    let place = root.field("settings");
     Settings::default().walk(&place, &mut |place, scalar| {
         let words: &[&str] = match scalar {
             Scalar::Choice(choice) => choice.names(),
             _ => &[],
         };
-        all.push((place.name.clone(), words));
+        all.push((place.name(), words));
     });
     all
 }
@@ -66,8 +67,8 @@ pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, NotSet>
     let path = path.trim();
     let mut done = None;
     walk(spec, &mut |place, scalar| {
-        if place.name == path && done.is_none() {
-            done = Some(scalar.set(value.trim()).map(|()| place.at.clone()));
+        if done.is_none() && place.is(path) {
+            done = Some(scalar.set(value.trim()).map(|()| place.at()));
         }
     });
     match done {
@@ -80,22 +81,63 @@ pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, NotSet>
     }
 }
 
+/// Where a scalar of a scene stands, found once for many settings of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Found {
+    /// Its number in the walk, which no setting changes: what is listed hangs on nothing that can be set.
+    number: usize,
+    /// Where it stands in the scene.
+    pub(crate) at: Path,
+}
+
+/// Finds a scalar; `None` if there is none of that path.
+pub(crate) fn find(spec: &Spec, path: &str) -> Option<Found> {
+    let path = path.trim();
+    let (mut number, mut found) = (0, None);
+    // The walk is for setting too and needs a scene that it may change.
+    walk(&mut spec.clone(), &mut |place, _| {
+        if found.is_none() && place.is(path) {
+            let at = place.at();
+            found = Some(Found { number, at });
+        }
+        number += 1;
+    });
+    found
+}
+
+impl Found {
+    /// Sets the scalar, in the scene where it was found or one that differs from that in scalars only; `None` if the
+    /// value is not of its kind.
+    pub(crate) fn set(&self, spec: &mut Spec, value: &str) -> Option<()> {
+        let (mut number, mut done) = (0, None);
+        walk(spec, &mut |_, scalar| {
+            if number == self.number {
+                done = scalar.set(value.trim()).ok();
+            }
+            number += 1;
+        });
+        done
+    }
+}
+
 /// The whole path for one without its first or last step, where a person may leave it out: `increment` for
 /// `history.increment`, `t_max` for `settings.t_max`, `friction` for `friction.angle`. What is none of these stays.
 pub fn whole(spec: &Spec, path: &str) -> String {
-    let all = list(spec);
     let path = path.trim();
-    let wholes = [
+    let mut wholes = [
         path.to_owned(),
         format!("history.{path}"),
         format!("settings.{path}"),
         format!("{path}.angle"),
     ];
-    let known = |whole: &String| all.iter().any(|listed| listed.path == *whole);
-    wholes
-        .into_iter()
-        .find(known)
-        .unwrap_or_else(|| path.to_owned())
+    // The walk is for setting too and needs a scene that it may change.
+    let mut spec = spec.clone();
+    let mut first = None;
+    walk(&mut spec, &mut |place, _| {
+        let before = first.unwrap_or(wholes.len());
+        first = (0..before).find(|&k| place.is(&wholes[k])).or(first);
+    });
+    std::mem::take(&mut wholes[first.unwrap_or(0)])
 }
 
 fn unknown(spec: &Spec, path: &str) -> String {

@@ -3,9 +3,11 @@
 //! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what
 //!   is wrong.
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
-//! - [`siconos`]: interface problems of another code; [`solver`]: the solver of a scene, on all threads.
+//! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
+//! - [`siconos`]: interface problems of another code.
 //! - [`builtin`]: the scenes that the program carries.
 
+pub mod base;
 pub mod builtin;
 pub mod cost;
 pub mod gaps;

@@ -81,7 +81,7 @@ fn axis(plan: &Plan, quantity: &AxisQuantity) -> Axis {
 /// What a monitor is measured in: of lengths and forces the scene's own units.
 fn unit(plan: &Plan, monitor: &str) -> &'static str {
     let of = |case: &Case| {
-        let model = case.open().ok()?.model;
+        let model = case.model().ok()?;
         let found = model.monitors.iter().find(|own| own.name == monitor)?;
         Some(kind(&model, &found.of))
     };

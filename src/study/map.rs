@@ -12,7 +12,7 @@ use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
 use super::result::{CaseEnd, Run};
-use super::run::{RunError, Watch, one, pool};
+use super::run::{RunError, Spare, Watch, one, pool};
 use super::verdict::RunVerdict;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -21,6 +21,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Ends of two runs that differ by more than this part of the largest value are on different branches, where nobody
 /// says otherwise.
@@ -186,6 +187,7 @@ pub fn run(
     watch: &Watch,
 ) -> Result<Map, RunError> {
     let opened = kept.map(Log::open::<Ended>).transpose()?;
+    let spare = Spare::default();
     let ended = |case: &Case| -> Result<Option<Ended>, RunError> {
         let key = key(case.identity());
         if let Some((_, found)) = &opened
@@ -194,8 +196,8 @@ pub fn run(
             (watch.done)(case.increments);
             return Ok(Some(ended.value.clone()));
         }
-        let model = case.open()?.model;
-        let ended = Ended::of(&one(case, watch)?, &model);
+        let model = Arc::new(case.model()?);
+        let ended = Ended::of(&one(case, model.clone(), &spare, watch), &model);
         if let (Some((log, _)), Some(ended)) = (&opened, &ended) {
             log.keep(&key, ended)?;
         }

@@ -2,7 +2,9 @@
 
 use super::read::{AxisQuantity, Study, Vary};
 use crate::format::error::{SceneError, did_you_mean, some_of};
-use crate::format::paths;
+use crate::format::paths::{self, Listed};
+use crate::model::Model;
+use crate::scene::base::{Base, Place};
 use crate::scene::{Scene, increments};
 use std::sync::Arc;
 
@@ -33,13 +35,24 @@ pub struct Plan {
 pub struct Case {
     /// A value per column of the plan.
     pub values: Vec<String>,
-    /// Name of the scene, and its text.
-    scene: String,
-    text: Arc<str>,
-    /// All settings, path by path.
-    settings: Vec<(String, String)>,
+    /// Its scene, which it has in common with others.
+    of: Arc<Posed>,
+    /// A value for each path that is set.
+    set: Vec<String>,
     /// Increments from start to end of the history.
     pub increments: u64,
+}
+
+/// What all cases of a scene have in common.
+#[derive(Debug)]
+struct Posed {
+    /// The scene's text.
+    text: Arc<str>,
+    base: Base,
+    /// The paths that are set, in this order.
+    paths: Vec<String>,
+    /// Where each of them stands in the scene; `None` where one stands nowhere, or is not for the base to set.
+    places: Option<Vec<Place>>,
 }
 
 impl Case {
@@ -48,20 +61,51 @@ impl Case {
     /// # Errors
     /// None that the plan has not refused already.
     pub fn open(&self) -> Result<Scene, SceneError> {
-        Scene::from_text(&self.scene, &self.text, &self.settings)
+        let pairs = self.of.paths.iter().zip(&self.set);
+        let settings: Vec<_> = pairs.map(|(p, v)| (p.clone(), v.clone())).collect();
+        Scene::from_text(&self.of.base.scene().name, &self.of.text, &settings)
+    }
+
+    /// Its model: that of the scene that [`Case::open`] reads, without reading it.
+    ///
+    /// # Errors
+    /// None that the plan has not refused already.
+    pub fn model(&self) -> Result<Model, SceneError> {
+        let quick = self.placed().and_then(|set| self.of.base.model(&set));
+        quick.map_or_else(|| Ok(self.open()?.model), Ok)
     }
 
     /// All that its result depends on, in parts.
     pub fn identity(&self) -> impl Iterator<Item = &str> {
-        let settings = self.settings.iter();
+        let settings = self.of.paths.iter().zip(&self.set);
         let settings = settings.flat_map(|(path, value)| [path.as_str(), value.as_str()]);
-        std::iter::once(&*self.text).chain(settings)
+        std::iter::once(&*self.of.text).chain(settings)
     }
 
     /// What was set last at a path from outside, if anything.
     pub fn value(&self, path: &str) -> Option<&str> {
-        let set = self.settings.iter().rev().find(|(own, _)| own == path);
-        set.map(|(_, value)| value.as_str())
+        let set = self.of.paths.iter().rposition(|own| own == path)?;
+        self.set.get(set).map(String::as_str)
+    }
+
+    /// What is set, by where it stands.
+    fn placed(&self) -> Option<Vec<(&Place, &str)>> {
+        let places = self.of.places.as_ref()?;
+        let values = self.set.iter().map(String::as_str);
+        Some(places.iter().zip(values).collect())
+    }
+
+    /// Finds out the increments of its history, and that the scene is sound with its settings. Some monitors hang on these:
+    /// their names where they are not those of the base.
+    fn check(&mut self) -> Result<Option<Vec<String>>, SceneError> {
+        let quick = self.placed().and_then(|set| self.of.base.increments(&set));
+        if let Some(count) = quick {
+            self.increments = count as u64;
+            return Ok(None);
+        }
+        let model = self.model()?;
+        self.increments = increments(&model.path, model.increment) as u64;
+        Ok(Some(model.monitors.into_iter().map(|m| m.name).collect()))
     }
 }
 
@@ -119,37 +163,58 @@ impl Plan {
 
     /// Adds the cases of one scene.
     fn lay_out(&mut self, name: &str) -> Result<(), SceneError> {
-        let base = Scene::open(name, &[])?;
-        let set = expanded(&base, &self.study.set);
-        let text: Arc<str> = base.text.as_str().into();
+        let base = Base::new(Scene::open(name, &[])?);
+        let scene = base.scene();
         if self.title.is_empty() {
-            self.title.clone_from(&base.spec.title);
+            self.title.clone_from(&scene.spec.title);
         }
+        let known = paths::list(&scene.spec);
+        let patterns = self.study.set.iter().map(|(path, _)| path);
+        let patterns = patterns.chain(self.study.vary.iter().map(|vary| &vary.path));
+        let mut set: Vec<(String, usize)> = Vec::new();
+        for (k, pattern) in patterns.enumerate() {
+            set.extend(expanded(&known, pattern).into_iter().map(|path| (path, k)));
+        }
+        let own: Vec<String> = scene
+            .model
+            .monitors
+            .iter()
+            .map(|m| m.name.clone())
+            .collect();
+        let places = set.iter().map(|(path, _)| base.find(path)).collect();
+        let posed = Arc::new(Posed {
+            text: scene.text.as_str().into(),
+            places,
+            paths: set.iter().map(|(path, _)| path.clone()).collect(),
+            base,
+        });
         for settings in product(&self.study.vary) {
             let mut values = Vec::with_capacity(self.columns.len());
             if self.study.scenes.len() > 1 {
                 values.push(name.to_owned());
             }
-            values.extend(settings.iter().map(|(_, value)| value.clone()));
-            let mut all = set.clone();
-            all.extend(expanded(&base, &settings));
-            for (path, value) in &mut all {
-                if let Some(times) = multiple(&base, path, value) {
-                    *value = times;
-                }
-            }
+            values.extend(settings.into_iter().map(|(_, value)| value));
+            let varied = &values[values.len() - self.study.vary.len()..];
+            let given: Vec<&String> = self
+                .study
+                .set
+                .iter()
+                .map(|(_, v)| v)
+                .chain(varied)
+                .collect();
+            let of_path = |(path, k): &(String, usize)| {
+                multiple(&known, path, given[*k]).unwrap_or_else(|| given[*k].clone())
+            };
+            let set = set.iter().map(of_path).collect();
             let mut case = Case {
                 values,
-                scene: base.name.clone(),
-                text: text.clone(),
-                settings: all,
+                of: posed.clone(),
+                set,
                 increments: 0,
             };
-            let model = case.open()?.model;
-            case.increments = increments(&model.path, model.increment) as u64;
-            for monitor in model.monitors {
-                if !self.monitors.contains(&monitor.name) {
-                    self.monitors.push(monitor.name);
+            for name in case.check()?.as_ref().unwrap_or(&own) {
+                if !self.monitors.contains(name) {
+                    self.monitors.push(name.clone());
                 }
             }
             self.cases.push(case);
@@ -229,32 +294,25 @@ pub fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
 }
 
 /// What `2x` means: twice what the scene has; `None` if it is no multiple, or there is no number to be multiplied.
-fn multiple(scene: &Scene, path: &str, value: &str) -> Option<String> {
+fn multiple(known: &[Listed], path: &str, value: &str) -> Option<String> {
     let factor: f64 = value.strip_suffix('x')?.parse().ok()?;
-    let all = paths::list(&scene.spec);
-    let own = all.into_iter().find(|listed| listed.path == path)?;
+    let own = known.iter().find(|listed| listed.path == path)?;
     let product = factor * own.value.parse::<f64>().ok()?;
     // As a person would have typed it, without the round-off of the product.
     let short: f64 = format!("{product:.12e}").parse().ok()?;
     Some(short.to_string())
 }
 
-/// Settings with each `*` replaced by all steps that fit. A pattern that nothing fits stays, for the scene to refuse.
-fn expanded(scene: &Scene, settings: &[(String, String)]) -> Vec<(String, String)> {
-    let mut all = Vec::new();
-    for (pattern, value) in settings {
-        let before = all.len();
-        if pattern.contains('*') {
-            let fitting = paths::list(&scene.spec).into_iter().map(|l| l.path);
-            all.extend(
-                fitting
-                    .filter(|path| fits(pattern, path))
-                    .map(|path| (path, value.clone())),
-            );
-        }
-        if all.len() == before {
-            all.push((pattern.clone(), value.clone()));
-        }
+/// The paths of a scene that fit a pattern, in which `*` stands for any step. A pattern that nothing fits stays, for the
+/// scene to refuse.
+fn expanded(known: &[Listed], pattern: &str) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    if pattern.contains('*') {
+        let paths = known.iter().map(|listed| &listed.path);
+        all.extend(paths.filter(|path| fits(pattern, path)).cloned());
+    }
+    if all.is_empty() {
+        all.push(pattern.to_owned());
     }
     all
 }

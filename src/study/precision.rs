@@ -16,11 +16,12 @@ use super::plan::{Case, Plan};
 use super::read::Study;
 use super::reference::{self, Reference};
 use super::result::{CaseEnd, Run};
-use super::run::{Watch, one};
+use super::run::{Spare, Watch, one};
 use crate::format::SceneError;
 use crate::model::Model;
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Errors below this are round-off: a few thousand operations with the numbers' own.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
@@ -251,7 +252,7 @@ fn measured(
     repeats: usize,
     watch: &Watch,
 ) -> Result<Option<Measured>, PrecisionError> {
-    let model = case.open()?.model;
+    let model = Arc::new(case.model()?);
     let quiet = Watch {
         stop: watch.stop,
         done: &|_| {},
@@ -259,7 +260,7 @@ fn measured(
     let (mut times, mut last) = (Vec::new(), None);
     while times.len() < repeats.max(1) {
         let start = thread_seconds();
-        let run = one(case, &quiet)?;
+        let run = one(case, model.clone(), &Spare::default(), &quiet);
         times.push(thread_seconds() - start);
         if matches!(run.end, CaseEnd::Interrupted | CaseEnd::NotRun) {
             return Ok(None);
@@ -296,7 +297,7 @@ fn measured(
     Ok(Some(Measured {
         point,
         kinds: kinds(&model),
-        path: model.path,
+        path: model.path.clone(),
         run,
     }))
 }
@@ -339,7 +340,7 @@ fn truth(
                 .cases
                 .first()
                 .ok_or_else(|| wrong("nothing was run".to_owned()))?;
-            let run = one(case, watch)?;
+            let run = one(case, Arc::new(case.model()?), &Spare::default(), watch);
             let names: Vec<String> = settings
                 .iter()
                 .map(|(path, value)| format!("{path}={value}"))

@@ -6,6 +6,7 @@ use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
 use super::verdict::RunVerdict;
 use crate::format::SceneError;
+use crate::model::Model;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::Outcome;
 use crate::step::stepper::Stepper;
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// A scene is read by recursion; as much stack as a program starts with is enough for all that it accepts.
 const STACK: usize = 8 << 20;
@@ -24,6 +25,26 @@ pub struct Watch<'a> {
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// An increment was accepted, or that many will never be, because their run has ended.
     pub done: &'a (dyn Fn(u64) + Sync),
+}
+
+/// Solvers whose runs have ended. The next run goes on with the workspace of one where its scene is laid out alike.
+#[derive(Default)]
+pub struct Spare(Mutex<Vec<Stepper>>);
+
+impl Spare {
+    /// A solver at the start of a model's history.
+    fn take(&self, model: Arc<Model>) -> Stepper {
+        let spare = self.0.lock().unwrap_or_else(|e| e.into_inner()).pop();
+        let renewed = spare.and_then(|mut stepper| stepper.renew(&model).then_some(stepper));
+        renewed.unwrap_or_else(|| Stepper::new(model))
+    }
+
+    fn give(&self, stepper: Stepper) {
+        self.0
+            .lock()
+            .unwrap_or_else(|e| e.into_inner())
+            .push(stepper);
+    }
 }
 
 /// Why a study could not be run.
@@ -46,10 +67,13 @@ pub enum RunError {
 /// If there are no threads to be had. What fails in a run is its result.
 pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, RunError> {
     let pool = pool(jobs, plan.cases.len())?;
+    let spare = Spare::default();
     let runs: Result<Vec<Run>, SceneError> = pool.install(|| {
         // One by one: cases differ much in what they cost, and the first ones are to be done first.
         let cases = plan.cases.par_iter().with_max_len(1);
-        cases.map(|case| one(case, watch)).collect()
+        cases
+            .map(|case| Ok(one(case, Arc::new(case.model()?), &spare, watch)))
+            .collect()
     });
     Ok(runs?)
 }
@@ -65,14 +89,10 @@ pub(super) fn pool(
         .build()
 }
 
-/// Runs one case to the end of its history, to its first failure, or to where it is stopped.
-///
-/// # Errors
-/// If the scene will not open, which the plan has tried.
-pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
-    let model = Arc::new(case.open()?.model);
+/// Runs one case, whose model this is, to the end of its history, to its first failure, or to where it is stopped.
+pub fn one(case: &Case, model: Arc<Model>, spare: &Spare, watch: &Watch) -> Run {
     let monitors = model.monitors.iter().map(|m| m.name.clone()).collect();
-    let mut stepper = Stepper::new(model);
+    let mut stepper = spare.take(model);
     let mut run = Run {
         monitors,
         start: row(&mut stepper, 0, 0, 0),
@@ -120,7 +140,8 @@ pub fn one(case: &Case, watch: &Watch) -> Result<Run, SceneError> {
         RunEnd::Stopped(never) => match never {},
     };
     (watch.done)(case.increments.saturating_sub(run.rows.len() as u64));
-    Ok(run)
+    spare.give(stepper);
+    run
 }
 
 /// What the stepper stands at: the start of an increment.

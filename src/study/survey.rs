@@ -4,7 +4,7 @@ use super::log::{Found, Log, key};
 use super::origin;
 use super::random::Population;
 use super::run::{RunError, Watch, pool};
-use super::trial::{Judged, Trial, Variant, try_variants};
+use super::trial::{Judged, Trial, Variant, prepared, try_variants};
 use super::verdict::RunVerdict;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -65,6 +65,7 @@ impl Survey {
             let settings = settings.flat_map(|(path, value)| [path.as_str(), value]);
             key([name.as_str(), &number].into_iter().chain(settings))
         };
+        let prepared = prepared(&variants);
         let one = |k: usize| -> Result<Option<Judged>, RunError> {
             if let Some((log, found)) = &opened
                 && let Some(Found { line, value }) = found.get(&key(k))
@@ -80,7 +81,7 @@ impl Survey {
             if (watch.stop)() {
                 return Ok(None);
             }
-            let judged = try_variants(&population, k, &variants, watch.stop)?;
+            let judged = try_variants(&population, k, &prepared, watch.stop)?;
             if let (Some((log, _)), Some(judged)) = (&opened, &judged) {
                 log.keep(&key(k), judged)?;
             }

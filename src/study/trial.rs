@@ -13,9 +13,11 @@
 use super::random::{Drawn, Population};
 use super::reason::Reason;
 use super::verdict::RunVerdict;
-use crate::format::condensed::{Matrix, Problem};
+use crate::format::condensed::{Matrix, Problem, at_once};
 use crate::format::{SceneError, paths};
 use crate::interface::census::census;
+use crate::model::{Model, Settings};
+use crate::scene::base::{Base, Method};
 use crate::scene::{Scene, increments};
 use crate::step::drive::{RunEnd, Until};
 use crate::step::stepper::Stepper;
@@ -75,6 +77,46 @@ impl Judged {
     }
 }
 
+/// A variant, and the way of solving that its settings come to on all problems of a population.
+#[derive(Debug, Clone)]
+pub struct Prepared<'a> {
+    variant: &'a Variant,
+    /// `None` where the settings are not for a method alone, or will not do.
+    method: Option<Method>,
+}
+
+/// Variants to try on many problems.
+pub fn prepared(variants: &[Variant]) -> Vec<Prepared<'_>> {
+    // All problems have this history and these settings; of what else they have nothing is read.
+    let common = Problem {
+        title: String::new(),
+        about: String::new(),
+        contacts: Vec::new(),
+        matrix: Matrix::Stiffness(Vec::new()),
+        free: Vec::new(),
+        spacing: None,
+        history: at_once(),
+        settings: Settings::default(),
+    };
+    let spec = common.spec();
+    let prepared = |variant| {
+        let settings = settings(variant);
+        Prepared {
+            variant,
+            method: Method::of(&spec, &settings).filter(|method| method.increments() == 1.0),
+        }
+    };
+    variants.iter().map(prepared).collect()
+}
+
+/// What is set for a variant: an increment is not cut.
+fn settings(variant: &Variant) -> Vec<(String, String)> {
+    let least = ("history.least".to_owned(), "1".to_owned());
+    std::iter::once(least)
+        .chain(variant.settings.iter().cloned())
+        .collect()
+}
+
 /// Tries one problem of a population with all variants; `None` if `stop` says so in between.
 ///
 /// # Errors
@@ -82,7 +124,7 @@ impl Judged {
 pub fn try_variants(
     population: &Population,
     k: usize,
-    variants: &[Variant],
+    variants: &[Prepared<'_>],
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Judged>, SceneError> {
     let Drawn {
@@ -90,41 +132,52 @@ pub fn try_variants(
         form,
         cohesive,
     } = population.draw(k);
-    let scene = Scene::from_spec(&problem.title, problem.spec())?;
+    let base = Base::new(Scene::from_spec(&problem.title, problem.spec())?);
+    let mut stepper = Stepper::new(Arc::new(base.scene().model.clone()));
     let mut judged = Judged {
         nodes: problem.contacts.len(),
         form: form.name().to_owned(),
         cohesive,
-        answers: answers(&scene),
+        answers: answers(&mut stepper),
         trials: Vec::with_capacity(variants.len()),
     };
-    for variant in variants {
+    for Prepared { variant, method } in variants {
         if stop() {
             return Ok(None);
         }
-        let mut own = scene.with("history.least", "1")?;
-        for (path, value) in &variant.settings {
-            own = own.with(&paths::whole(&own.spec, path), value)?;
+        let quick = method.as_ref().and_then(|method| base.solved_by(method));
+        let model = quick.map_or_else(|| changed(base.scene(), variant), Ok)?;
+        let model = Arc::new(model);
+        if !stepper.renew(&model) {
+            stepper = Stepper::new(model);
         }
-        if increments(&own.model.path, own.model.increment) != 1.0 {
-            let message = "random problems are solved in one increment, since their answers are known for that alone";
-            return Err(SceneError::whole(&scene.name, message));
-        }
-        judged.trials.push(one(&problem, own));
+        judged.trials.push(one(&problem, &mut stepper));
     }
     Ok(Some(judged))
 }
 
+/// The model of a scene with the settings of a variant, one after the other.
+fn changed(scene: &Scene, variant: &Variant) -> Result<Model, SceneError> {
+    let mut own = scene.clone();
+    for (path, value) in settings(variant) {
+        own = own.with(&paths::whole(&own.spec, &path), &value)?;
+    }
+    if increments(&own.model.path, own.model.increment) != 1.0 {
+        let message = "random problems are solved in one increment, since their answers are known for that alone";
+        return Err(SceneError::whole(&scene.name, message));
+    }
+    Ok(own.model)
+}
+
 /// Number of answers by census; 0 where the problem cannot be condensed.
-fn answers(scene: &Scene) -> usize {
-    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+fn answers(stepper: &mut Stepper) -> usize {
     let frozen = stepper.interface_problem();
     let found = frozen.and_then(|frozen| census(&frozen).ok());
     found.map_or(0, |census| census.answers.len())
 }
 
-fn one(problem: &Problem, scene: Scene) -> Trial {
-    let mut stepper = Stepper::new(Arc::new(scene.model));
+/// The run of a stepper that stands at the start.
+fn one(problem: &Problem, stepper: &mut Stepper) -> Trial {
     let mut trial = Trial {
         verdict: RunVerdict::Failed(Reason::MinorLimit),
         majors: 0,
@@ -140,7 +193,7 @@ fn one(problem: &Problem, scene: Scene) -> Trial {
     });
     match end {
         RunEnd::Finished => {
-            trial.violation = violation(problem, &stepper);
+            trial.violation = violation(problem, stepper);
             trial.verdict = match trial.violation <= TOLERANCE {
                 true => RunVerdict::Right,
                 false => RunVerdict::Wrong,
@@ -224,7 +277,7 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::condensed::{Contact, at_once};
+    use crate::format::condensed::Contact;
     use crate::model::Friction;
 
     /// A node on two unit springs, a load (−1, 1) along n and t, friction μ = 0.5: it slides, u_t = 0.5.
@@ -265,6 +318,73 @@ mod tests {
             ([0.0, f64::NAN], [1.0, -0.5]),
         ] {
             assert!(broken(&problem, &u, &f) > 1e-2, "{u:?} {f:?}");
+        }
+    }
+
+    #[test]
+    fn a_prepared_variant_has_the_model_that_setting_after_setting_makes() {
+        let settings = [
+            &[][..],
+            &[
+                "settings.strategy=lemke",
+                "t_max=consistent",
+                "solver=condensed",
+            ],
+            &["touch=ratio", "minors=7", "history.jumps=accept"],
+            &["history.least=0.25", "increment=0.5", "history.path[1]=0.5"],
+        ];
+        let others = [&["friction=20"][..], &["nodes.n1.at.y=0.125"]];
+        let variant = |settings: &&[&str]| Variant {
+            name: settings.join(" "),
+            settings: settings
+                .iter()
+                .map(|text| text.split_once('=').unwrap())
+                .map(|(path, value)| (path.to_owned(), value.to_owned()))
+                .collect(),
+        };
+        let ours: Vec<Variant> = settings.iter().map(variant).collect();
+        let ours = prepared(&ours);
+        let population = Population {
+            seed: 7,
+            count: 30,
+            nodes: 1..=4,
+        };
+        for k in 0..population.count {
+            let problem = population.draw(k).problem;
+            let base = Base::new(Scene::from_spec("x", problem.spec()).unwrap());
+            for Prepared { variant, method } in &ours {
+                let quick = base.solved_by(method.as_ref().unwrap()).unwrap();
+                let slow = changed(base.scene(), variant);
+                assert_eq!(format!("{quick:?}"), format!("{:?}", slow.unwrap()), "{k}");
+            }
+        }
+        let others: Vec<Variant> = others.iter().map(variant).collect();
+        assert!(prepared(&others).iter().all(|other| other.method.is_none()));
+    }
+
+    #[test]
+    fn what_is_refused_is_refused_by_setting_after_setting() {
+        let refused = [
+            "settings.minors=0",
+            "increment=0.5",
+            "tolerance=1",
+            "t_max=none",
+        ];
+        let all = refused.map(|text| {
+            let (path, value) = text.split_once('=').unwrap();
+            let first = (path.to_owned(), value.to_owned());
+            // What comes later and would do does not help.
+            let later = ("settings.minors".to_owned(), "9".to_owned());
+            Variant {
+                name: text.to_owned(),
+                settings: vec![first, later],
+            }
+        });
+        let problem = slider();
+        let scene = Scene::from_spec("x", problem.spec()).unwrap();
+        for Prepared { variant, method } in prepared(&all) {
+            assert!(method.is_none(), "{}", variant.name);
+            assert!(changed(&scene, variant).is_err(), "{}", variant.name);
         }
     }
 }

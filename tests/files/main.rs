@@ -15,6 +15,8 @@ mod built_in;
 mod meshes;
 // Loads, supports, regions, monitors and settings mean what they say.
 mod meaning;
+// A scene that is read once has every bit of one that is read with its settings.
+mod bases;
 // Each fault has one message with its place.
 mod faults;
 // Whatever is in a file, there is an answer and no panic.

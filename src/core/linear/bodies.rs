@@ -15,11 +15,12 @@ use crate::linear::drag::add_drag;
 use crate::linear::executor::{Executor, InTurn};
 use crate::linear::norms::Norms;
 use crate::linear::singular::{self, Singular};
+use crate::linear::sizes::Sizes;
 use crate::linear::source::{At, Solved, Source, Work};
 use crate::linear::stability::Stability;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Axis, Friction, Mode, Model, Settings, Watched};
+use crate::model::{Axis, Contact, Friction, Mode, Model, Settings, Watched};
 use std::sync::Arc;
 
 /// What a relative amount against a law may be at least; more where the settings' tolerance or round-off is larger.
@@ -114,6 +115,22 @@ fn stresses_tell(model: &Model, contact: usize) -> bool {
     !held && !master && at_node.count() == 1
 }
 
+/// Whether models differ in nothing that is laid out once: in friction, loads, history and settings alone.
+fn is_laid_out_alike(one: &Model, other: &Model) -> bool {
+    let memory = |model: &Model| (model.settings.memory, model.budget, model.length);
+    let mut contacts = one.contacts.iter().zip(&other.contacts);
+    let stands_alike = |(a, b): (&Contact, &Contact)| {
+        (a.node, &a.surfaces, a.overlap) == (b.node, &b.surfaces, b.overlap)
+    };
+    one.contacts.len() == other.contacts.len()
+        && contacts.all(stands_alike)
+        && memory(one) == memory(other)
+        && one.dofs == other.dofs
+        && one.nodes == other.nodes
+        && one.surfaces == other.surfaces
+        && one.bodies == other.bodies
+}
+
 impl Source for Bodies {
     fn start(&self) -> Vec<f64> {
         vec![0.0; self.model.dofs.len()]
@@ -157,6 +174,17 @@ impl Source for Bodies {
         for (state, contact) in contacts.iter_mut().zip(&self.model.contacts) {
             ground.place_anchor(state, contact);
         }
+    }
+
+    fn renew(&mut self, model: &Arc<Model>) -> bool {
+        let same = is_laid_out_alike(&self.model, model);
+        if same {
+            self.system.sizes = Sizes::new(model);
+            self.system.done = Work::default();
+            self.tangent = None;
+            self.model = model.clone();
+        }
+        same
     }
 
     fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError> {

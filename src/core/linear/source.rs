@@ -15,7 +15,8 @@ use crate::linalg::SolveError;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::stability::Stability;
-use crate::model::{Friction, Settings, Watched};
+use crate::model::{Friction, Model, Settings, Watched};
+use std::sync::Arc;
 
 /// The state about which a source linearises.
 #[derive(Debug, Clone, Copy)]
@@ -173,6 +174,12 @@ pub trait Source: Send {
     /// still stands, where it was about such a state; where it does not, [`Source::linearise`] follows.
     fn restore(&mut self, _at: &At<'_>) -> bool {
         true
+    }
+
+    /// Goes over to a model that differs from its own in friction, loads, history and settings alone, with what it has laid
+    /// out; what follows has the same bits as that of a new one. False, and nothing is changed, where it cannot.
+    fn renew(&mut self, _model: &Arc<Model>) -> bool {
+        false
     }
 
     /// Freezes geometry, stiffness and out-of-balance forces about a state (eqn 5).

@@ -68,15 +68,7 @@ impl Stepper {
         let mut stepper = Stepper {
             state: State::at_start(&model, source.start(), source.history()),
             source,
-            event: Event {
-                position: Position::default(),
-                load_factor: 0.0,
-                arc: None,
-                drag: 0.0,
-                nodes: Vec::with_capacity(model.contacts.len()),
-                before: Norms::default(),
-                outcome: Outcome::Minor,
-            },
+            event: nothing_yet(&model),
             linearised: false,
             measured: false,
             norms: Norms::default(),
@@ -86,14 +78,37 @@ impl Stepper {
             before: Vec::new(),
             model,
         };
-        stepper.follow();
-        stepper.source.place_stick_points(&mut stepper.state.nodes);
-        let start = IncrementStart {
-            nodes: stepper.state.nodes.clone(),
-            ..(*stepper.state.start).clone()
-        };
-        stepper.state.start = Arc::new(start);
+        stepper.begin();
         stepper
+    }
+
+    /// Goes to the start of the history of a model that differs from its own in friction, loads, history and settings alone,
+    /// with the workspace that it has; what follows has the same bits as with a new solver. False, and nothing is changed,
+    /// for any other model, and with a source that cannot ([`Source::renew`]).
+    pub fn renew(&mut self, model: &Arc<Model>) -> bool {
+        if !self.source.renew(model) {
+            return false;
+        }
+        self.state = State::at_start(model, self.source.start(), self.source.history());
+        self.event = nothing_yet(model);
+        self.norms = Norms::default();
+        self.before.clear();
+        self.borrowed = None;
+        self.model = model.clone();
+        self.forget_workspace();
+        self.begin();
+        true
+    }
+
+    /// Finds where the contacts stand at the start.
+    fn begin(&mut self) {
+        self.follow();
+        self.source.place_stick_points(&mut self.state.nodes);
+        let start = IncrementStart {
+            nodes: self.state.nodes.clone(),
+            ..(*self.state.start).clone()
+        };
+        self.state.start = Arc::new(start);
     }
 
     /// One minor iteration. `None` when the history is done.
@@ -310,5 +325,18 @@ impl Stepper {
     /// What the last minor iteration found at a contact.
     pub(super) fn record(&self, contact: usize) -> &ContactRecord {
         &self.event.nodes[contact]
+    }
+}
+
+/// The event before the first one.
+fn nothing_yet(model: &Model) -> Event {
+    Event {
+        position: Position::default(),
+        load_factor: 0.0,
+        arc: None,
+        drag: 0.0,
+        nodes: Vec::with_capacity(model.contacts.len()),
+        before: Norms::default(),
+        outcome: Outcome::Minor,
     }
 }

@@ -59,7 +59,7 @@ macro_rules! described {
         impl $crate::format::described::Described for $name {
             fn walk(
                 &mut self,
-                place: &$crate::format::described::ScalarPlace,
+                place: &$crate::format::described::ScalarPlace<'_>,
                 visit: &mut $crate::format::described::Visit<'_>,
             ) {
                 let $name { $($part),* } = self;
@@ -124,7 +124,7 @@ macro_rules! described {
         impl $crate::format::described::Described for $name {
             fn walk(
                 &mut self,
-                place: &$crate::format::described::ScalarPlace,
+                place: &$crate::format::described::ScalarPlace<'_>,
                 visit: &mut $crate::format::described::Visit<'_>,
             ) {
                 match self {

@@ -19,46 +19,107 @@ use crate::model::documented::{Lines, text};
 pub use types::{Field, Form, Type};
 pub(crate) use types::{OWN_DEFAULTS, blank_form, known, link, read_blank};
 
-/// A place that a walk has come to, by both its names.
-#[derive(Clone)]
-pub(crate) struct ScalarPlace {
-    /// As a person types it.
-    pub(crate) name: String,
-    /// As the file has it.
-    pub(crate) at: Path,
+/// A place that a walk has come to: the way there, which is made a name or a path of only where somebody asks.
+#[derive(Clone, Copy)]
+pub(crate) struct ScalarPlace<'a> {
+    /// Where the last step was taken from; nothing at the scene itself.
+    last: Option<(&'a ScalarPlace<'a>, PlaceStep<'a>)>,
 }
 
-impl ScalarPlace {
+/// A step from one place to the next.
+#[derive(Clone, Copy)]
+enum PlaceStep<'a> {
+    Field(&'a str),
+    /// An entry of a list by its name, which not all have, and by its position from 0.
+    Entry(Option<&'a str>, usize),
+}
+
+impl<'a> ScalarPlace<'a> {
     /// The scene itself.
-    pub(crate) fn root() -> ScalarPlace {
-        ScalarPlace {
-            name: String::new(),
-            at: Path::default(),
-        }
+    pub(crate) fn root() -> ScalarPlace<'static> {
+        ScalarPlace { last: None }
     }
 
-    pub(crate) fn field(&self, key: &str) -> ScalarPlace {
-        let name = match self.name.as_str() {
-            "" => key.to_owned(),
-            name => format!("{name}.{key}"),
-        };
-        let at = self.at.then(key);
-        ScalarPlace { name, at }
+    pub(crate) fn field(&'a self, key: &'a str) -> ScalarPlace<'a> {
+        self.then(PlaceStep::Field(key))
     }
 
     /// An entry of a list: by its name if it has one, else by its position from 0.
-    fn entry(&self, called: Option<&str>, index: usize) -> ScalarPlace {
-        let name = match called {
-            Some(id) => format!("{}.{id}", self.name),
-            None => format!("{}[{index}]", self.name),
-        };
-        let at = self.at.then(index);
-        ScalarPlace { name, at }
+    fn entry(&'a self, called: Option<&'a str>, index: usize) -> ScalarPlace<'a> {
+        self.then(PlaceStep::Entry(called, index))
     }
 
     /// A part of a tuple, which has a name only here.
-    fn part(&self, name: &str, index: usize) -> ScalarPlace {
+    fn part(&'a self, name: &'a str, index: usize) -> ScalarPlace<'a> {
         self.entry(Some(name), index)
+    }
+
+    fn then(&'a self, step: PlaceStep<'a>) -> ScalarPlace<'a> {
+        ScalarPlace {
+            last: Some((self, step)),
+        }
+    }
+
+    /// As a person types it.
+    pub(crate) fn name(&self) -> String {
+        let mut name = String::new();
+        self.write(&mut name);
+        name
+    }
+
+    fn write(&self, name: &mut String) {
+        let Some((above, step)) = self.last else {
+            return;
+        };
+        above.write(name);
+        match step {
+            PlaceStep::Field(word) | PlaceStep::Entry(Some(word), _) => {
+                if above.last.is_some() {
+                    name.push('.');
+                }
+                name.push_str(word);
+            }
+            PlaceStep::Entry(None, index) => *name += &format!("[{index}]"),
+        }
+    }
+
+    /// Whether a person who types this means it.
+    pub(crate) fn is(&self, name: &str) -> bool {
+        self.rest(name).is_some_and(str::is_empty)
+    }
+
+    /// What follows in a text after the name of this place; `None` where it does not begin with that.
+    fn rest<'n>(&self, name: &'n str) -> Option<&'n str> {
+        let Some((above, step)) = self.last else {
+            return Some(name);
+        };
+        let name = above.rest(name)?;
+        match step {
+            PlaceStep::Field(word) | PlaceStep::Entry(Some(word), _) => {
+                let name = match above.last {
+                    Some(_) => name.strip_prefix('.')?,
+                    None => name,
+                };
+                name.strip_prefix(word)
+            }
+            PlaceStep::Entry(None, index) => {
+                let (digits, rest) = name.strip_prefix('[')?.split_once(']')?;
+                (digits == index.to_string()).then_some(rest)
+            }
+        }
+    }
+
+    /// As the file has it.
+    pub(crate) fn at(&self) -> Path {
+        let Some((above, step)) = self.last else {
+            return Path::default();
+        };
+        let mut path = above.at();
+        path.0.push(match step {
+            PlaceStep::Field(key) => key.into(),
+            PlaceStep::Entry(_, index) => index.into(),
+        });
+        path
     }
 }
 
@@ -99,30 +160,27 @@ impl Scalar<'_> {
     }
 
     pub(crate) fn set(self, text: &str) -> Result<(), NotSet> {
-        let kind = self.kind();
-        let wrong = || NotSet::NoValue {
+        let mut own = self;
+        own.take(text).ok_or_else(|| NotSet::NoValue {
             value: quoted(text),
-            kind: kind.clone(),
-        };
-        let number = || {
-            let finite = text.parse::<f64>().ok().filter(|x| x.is_finite());
-            finite.ok_or_else(wrong)
-        };
+            kind: own.kind(),
+        })
+    }
+
+    /// Takes what a text says, if it says anything of the kind.
+    fn take(&mut self, text: &str) -> Option<()> {
+        let number = || text.parse::<f64>().ok().filter(|x| x.is_finite());
         match self {
-            Scalar::Number(x) => *x = number()?,
-            Scalar::Optional(x) if text == "none" => *x = None,
-            Scalar::Optional(x) => *x = Some(number()?),
-            Scalar::Count(n) => *n = text.parse().map_err(|_| wrong())?,
-            Scalar::Limit(n) => *n = text.parse().map_err(|_| wrong())?,
-            Scalar::Flag(flag) => *flag = text.parse().map_err(|_| wrong())?,
+            Scalar::Number(x) => **x = number()?,
+            Scalar::Optional(x) if text == "none" => **x = None,
+            Scalar::Optional(x) => **x = Some(number()?),
+            Scalar::Count(n) => **n = text.parse().ok()?,
+            Scalar::Limit(n) => **n = text.parse().ok()?,
+            Scalar::Flag(flag) => **flag = text.parse().ok()?,
             Scalar::Text(old) => text.clone_into(old),
-            Scalar::Choice(choice) => {
-                if !choice.choose(text) {
-                    return Err(wrong());
-                }
-            }
+            Scalar::Choice(choice) => return choice.choose(text).then_some(()),
         }
-        Ok(())
+        Some(())
     }
 }
 
@@ -139,14 +197,14 @@ pub(crate) trait Choice {
 }
 
 /// What a walk does at every scalar.
-pub(crate) type Visit<'v> = dyn FnMut(&ScalarPlace, Scalar<'_>) + 'v;
+pub(crate) type Visit<'v> = dyn FnMut(&ScalarPlace<'_>, Scalar<'_>) + 'v;
 
 /// What can stand in a scene file.
 pub(crate) trait Described: Sized {
     /// Visits every scalar in it, in the order of the file.
-    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>);
+    fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>);
     /// Visits an optional one where there is one.
-    fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace, visit: &mut Visit<'_>) {
+    fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         if let Some(given) = this {
             given.walk(place, visit);
         }
@@ -191,7 +249,7 @@ fn types_of<T: Described>(_: &T, into: &mut Vec<Type>) -> Result<(), String> {
 macro_rules! scalars {
     ($($type:ty, $scalar:ident, $kind:literal, $blank:literal, $shown:literal;)*) => {
         $(impl Described for $type {
-            fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
+            fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
                 visit(place, Scalar::$scalar(self));
             }
             fn kind() -> String {
@@ -215,11 +273,11 @@ scalars! {
 }
 
 impl Described for f64 {
-    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
+    fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         visit(place, Scalar::Number(self));
     }
     /// An optional number can be set where there is none.
-    fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace, visit: &mut Visit<'_>) {
+    fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         visit(place, Scalar::Optional(this));
     }
     fn kind() -> String {
@@ -234,7 +292,7 @@ impl Described for f64 {
 }
 
 impl<T: Described> Described for Option<T> {
-    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
+    fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         T::walk_optional(self, place, visit);
     }
     fn kind() -> String {
@@ -252,10 +310,10 @@ impl<T: Described> Described for Option<T> {
 }
 
 impl<T: Described> Described for Vec<T> {
-    fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
+    fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         for (k, entry) in self.iter_mut().enumerate() {
-            let place = place.entry(entry.called(), k);
-            entry.walk(&place, visit);
+            let called = entry.called().map(str::to_owned);
+            entry.walk(&place.entry(called.as_deref(), k), visit);
         }
     }
     fn kind() -> String {
@@ -277,7 +335,7 @@ impl<T: Described> Described for Vec<T> {
 macro_rules! pairs {
     ($($part:ty, $first:literal, $second:literal, $kind:literal;)*) => {
         $(impl Described for ($part, $part) {
-            fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
+            fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
                 self.0.walk(&place.part($first, 0), visit);
                 self.1.walk(&place.part($second, 1), visit);
             }

@@ -14,7 +14,7 @@ use crate::model::{
 macro_rules! fields {
     ($name:ident { $($part:ident),* $(,)? }) => {
         impl Described for $name {
-            fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
+            fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
                 let $name { $($part),* } = self;
                 $($part.walk(&place.field(stringify!($part)), visit);)*
             }
@@ -58,7 +58,7 @@ macro_rules! words {
             }
 
             impl Described for $type {
-                fn walk(&mut self, place: &ScalarPlace, visit: &mut Visit<'_>) {
+                fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
                     visit(place, Scalar::Choice(self));
                 }
                 fn kind() -> String {

@@ -3,7 +3,7 @@
 use super::super::limits;
 use crate::format::error::{Fault, at};
 use crate::format::spec::History;
-use crate::model::Settings;
+use crate::model::{Body, BodyKind, Settings, Touch};
 
 /// Refuses a path that goes nowhere, or that has no end.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
@@ -115,4 +115,15 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
         here.then("tolerance"),
         format!("the tolerance is {tolerance:?}; it must be above 0 and at most 0.01"),
     ))
+}
+
+/// Settings as the solver takes them, in a scene of these bodies: a node that touches is held where `auto` stands for.
+pub(super) fn resolved(settings: &Settings, bodies: &[Body]) -> Settings {
+    let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
+    let touch = match settings.touch {
+        Touch::Auto if bodies.iter().any(is_mesh) => Touch::Ratio,
+        Touch::Auto => Touch::Start,
+        wanted => wanted,
+    };
+    Settings { touch, ..*settings }
 }

@@ -227,7 +227,7 @@ fn initial_state(here: &Path, state: &InitialState) -> Result<(), Fault> {
 }
 
 /// Refuses friction that no surface has.
-fn friction(here: &Path, friction: &Friction) -> Result<(), Fault> {
+pub(super) fn friction(here: &Path, friction: &Friction) -> Result<(), Fault> {
     let Friction { angle, cohesion } = *friction;
     if !(0.0..90.0).contains(&angle) {
         return Err(Fault::new(

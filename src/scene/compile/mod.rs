@@ -1,7 +1,7 @@
 //! From what the author wrote to what the solver uses: every reference resolved, every number checked.
 //!
 //! One file per part of the scene; each refuses what makes no sense with a [`Fault`] that has the path of the offending
-//! value.
+//! value. `renewed` puts other choices into a model that is there.
 
 mod arc;
 mod bodies;
@@ -10,6 +10,7 @@ mod interface;
 mod layout;
 mod linear;
 mod monitors;
+mod renewed;
 mod tractions;
 
 use super::gaps;
@@ -19,10 +20,10 @@ use super::nodes::Names;
 use crate::format::error::{Fault, at};
 use crate::format::spec::Spec;
 use crate::linear::estimate::Estimate;
-use crate::model::{Body, BodyKind, Model};
-use crate::model::{InitialGaps, Settings, Touch};
+use crate::model::{InitialGaps, Model};
 pub(crate) use history::increments;
 use layout::Layout;
+pub(crate) use renewed::{Choices, Compiled, Groups, Loads, renewed};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
@@ -73,10 +74,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     history::history(&spec.history)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
     let arc = arc::arc(spec, &names, &monitors, &slaves)?;
-    let settings = Settings {
-        touch: touch(spec.settings.touch, &bodies),
-        ..spec.settings
-    };
+    let settings = history::resolved(&spec.settings, &bodies);
     let model = Model {
         title: spec.title.clone(),
         about: spec.about.clone(),
@@ -101,16 +99,6 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     match Estimate::of(&model).too_large(model.settings.solver) {
         Some(message) => Err(Fault::new(at!["settings", "memory"], message.to_string())),
         None => Ok((model, names)),
-    }
-}
-
-/// Where a node is held that touches: what `auto` stands for in a scene of these bodies.
-fn touch(wanted: Touch, bodies: &[Body]) -> Touch {
-    let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
-    match wanted {
-        Touch::Auto if bodies.iter().any(is_mesh) => Touch::Ratio,
-        Touch::Auto => Touch::Start,
-        wanted => wanted,
     }
 }
 

@@ -1,0 +1,213 @@
+//! A model with other choices: what nothing else of the model hangs on is put in, and the rest stays as it was compiled.
+//!
+//! Where this says nothing the way through [`compile`](super::compile) is left, and what is wrong is said there.
+
+use super::super::nodes::Names;
+use super::layout::Layout;
+use super::linear::free_motions;
+use super::{history, interface};
+use crate::format::error::{Path, Step};
+use crate::format::paths::Found;
+use crate::format::spec::{History, SlaveSpec, Spec};
+use crate::linear::estimate::Estimate;
+use crate::model::{Control, Friction, Load, Model, Prescribed, Settings};
+
+/// Settings that more than the solver reads: nodes are moved for them, or the scene is refused.
+const DEEP: [&str; 3] = ["initial_gaps", "adjust_gap", "memory"];
+/// What of the history the model has as it is written.
+const OF_HISTORY: [&str; 4] = ["path", "increment", "least", "jumps"];
+/// What of a load says how large it is, and not what it acts on or holds.
+const OF_LOADS: [&str; 5] = ["x", "y", "normal", "value", "scale"];
+
+/// The choices of a scene, as its author writes them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Choices {
+    /// A scene that has nothing else, but what its loads lean on; its groups of slaves name no nodes.
+    spec: Spec,
+    /// Whether a load was set.
+    loaded: bool,
+}
+
+/// A model, and what it was compiled from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Compiled<'a> {
+    pub(crate) spec: &'a Spec,
+    pub(crate) names: &'a Names,
+    pub(crate) model: &'a Model,
+}
+
+/// The group of slaves of each contact.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Groups(Vec<usize>);
+
+/// What the loads of a scene make of a model's degrees of freedom.
+pub(crate) type Loads = (Vec<Load>, Vec<Prescribed>);
+
+impl Choices {
+    /// Those of a scene.
+    pub(crate) fn of(spec: &Spec) -> Choices {
+        let group = |own: &SlaveSpec| SlaveSpec {
+            nodes: Vec::new(),
+            on: Vec::new(),
+            ..own.clone()
+        };
+        Choices {
+            spec: Spec {
+                slaves: spec.slaves.iter().map(group).collect(),
+                supports: spec.supports.clone(),
+                loads: spec.loads.clone(),
+                ..bare(spec.friction, spec.history.clone(), spec.settings)
+            },
+            loaded: false,
+        }
+    }
+
+    /// The scene that has nothing else, to find scalars in.
+    pub(crate) fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
+    /// Sets one that was found there; `None` if the value is not of its kind.
+    pub(crate) fn set(&mut self, found: &Found, value: &str) -> Option<()> {
+        self.loaded |= key(&found.at, 0) == "loads";
+        found.set(&mut self.spec, value)
+    }
+
+    /// Whether what stands at a path of a scene is nothing but a choice.
+    pub(crate) fn has(path: &Path) -> bool {
+        match key(path, 0) {
+            "friction" => true,
+            "slaves" => key(path, 2) == "friction",
+            "loads" => OF_LOADS.contains(&key(path, 2)),
+            _ => Choices::has_of_method(path),
+        }
+    }
+
+    /// Whether it is one that says how a scene is solved.
+    pub(crate) fn has_of_method(path: &Path) -> bool {
+        match key(path, 0) {
+            "settings" => !DEEP.contains(&key(path, 1)),
+            "history" => OF_HISTORY.contains(&key(path, 1)),
+            _ => false,
+        }
+    }
+
+    /// These with the settings and the history of others.
+    pub(crate) fn with_method_of(&self, other: &Choices) -> Choices {
+        let mut own = self.clone();
+        own.spec.settings = other.spec.settings;
+        own.spec.history.clone_from(&other.spec.history);
+        own
+    }
+
+    /// The loads under these choices, in a model that is sound with other ones of its scene; `None` if they cannot be had
+    /// with it.
+    pub(crate) fn loads(&self, with: &Compiled<'_>) -> Option<Loads> {
+        let solver = self.spec.settings.solver;
+        let fits = || Estimate::of(with.model).too_large(solver).is_none();
+        let suit = self.are_sound() && (solver == with.model.settings.solver || fits());
+        match suit {
+            true if self.loaded => self.other_loads(with),
+            true => Some((with.model.loads.clone(), with.model.prescribed.clone())),
+            false => None,
+        }
+    }
+
+    /// The same where they are others.
+    fn other_loads(&self, with: &Compiled<'_>) -> Option<Loads> {
+        let (names, bodies) = (with.names, &with.model.bodies);
+        let mut on_body = vec![false; names.nodes.len()];
+        let nodes = bodies.iter().flat_map(|body| &body.nodes);
+        nodes.for_each(|&node| on_body[node] = true);
+        let mut layout = Layout::new(on_body, bodies);
+        layout.supports(&self.spec, names).ok()?;
+        let (mut loads, prescribed) = layout.loads(&self.spec, names).ok()?;
+        loads.extend(free_motions(with.spec, bodies, &with.model.dofs));
+        Some((loads, prescribed))
+    }
+
+    /// Whether they are sound by themselves.
+    pub(crate) fn are_sound(&self) -> bool {
+        let Spec {
+            history,
+            settings,
+            friction,
+            slaves,
+            ..
+        } = &self.spec;
+        // What is followed along the path is checked against the settings.
+        let load = history.control == Control::Load;
+        let own = slaves.iter().filter_map(|group| group.friction.as_ref());
+        let mut frictions = std::iter::once(friction).chain(own);
+        load && history::settings(settings).is_ok()
+            && history::history(history).is_ok()
+            && frictions.all(|own| interface::friction(&Path::default(), own).is_ok())
+    }
+
+    /// Number of increments of their history.
+    pub(crate) fn increments(&self) -> f64 {
+        history::increments(&self.spec.history.path, self.spec.history.increment)
+    }
+}
+
+/// A step of a path, where it has a name.
+fn key(path: &Path, step: usize) -> &str {
+    match path.0.get(step) {
+        Some(Step::Key(key)) => key,
+        _ => "",
+    }
+}
+
+/// A scene without bodies, nodes and all that stands on them.
+fn bare(friction: Friction, history: History, settings: Settings) -> Spec {
+    Spec {
+        title: String::new(),
+        about: String::new(),
+        refine: 1,
+        nodes: Vec::new(),
+        materials: Vec::new(),
+        bodies: Vec::new(),
+        surfaces: Vec::new(),
+        slaves: Vec::new(),
+        friction,
+        supports: Vec::new(),
+        loads: Vec::new(),
+        history,
+        settings,
+        monitors: Vec::new(),
+    }
+}
+
+impl Groups {
+    /// Those of a scene; `None` if a contact is of no group, which does not happen.
+    pub(crate) fn of(scene: &Compiled<'_>) -> Option<Groups> {
+        let mut of_node = vec![None; scene.model.nodes.len()];
+        for (k, group) in scene.spec.slaves.iter().enumerate() {
+            for name in &group.nodes {
+                for node in scene.names.nodes(name).ok()? {
+                    *of_node.get_mut(node)? = Some(k);
+                }
+            }
+        }
+        let contacts = scene.model.contacts.iter();
+        let all = contacts.map(|contact| of_node.get(contact.node).copied().flatten());
+        all.collect::<Option<Vec<usize>>>().map(Groups)
+    }
+}
+
+/// A model with choices of the same scene, and with what loads they make.
+pub(crate) fn renewed(model: &Model, groups: &Groups, choices: &Choices, loads: Loads) -> Model {
+    let spec = &choices.spec;
+    let mut model = model.clone();
+    (model.loads, model.prescribed) = loads;
+    model.path.clone_from(&spec.history.path);
+    model.increment = spec.history.increment;
+    model.least = spec.history.least;
+    model.jumps = spec.history.jumps;
+    model.settings = history::resolved(&spec.settings, &model.bodies);
+    for (contact, &group) in model.contacts.iter_mut().zip(&groups.0) {
+        let own = spec.slaves.get(group).and_then(|group| group.friction);
+        contact.friction = own.unwrap_or(spec.friction);
+    }
+    model
+}
