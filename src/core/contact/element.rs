@@ -7,6 +7,8 @@ use crate::model::{Piece, Surface};
 
 /// Samples of a piece of a smooth chain, as many as of a cubic Lagrange curve.
 const SAMPLES: usize = 7;
+/// Curves that do not swing leave the box around their nodes by less than this, relative to the sum of its sides.
+const BULGE: f64 = 0.5;
 
 /// An element of a master surface. Its curve is x(ξ) = Σ N_i(ξ) x_i over its nodes, −1 <= ξ <= 1.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +45,14 @@ impl<'a> Element<'a> {
         }
     }
 
+    /// dN_i/dξ alone.
+    pub fn slopes(&self, xi: f64) -> [f64; MAX_NODES] {
+        match self.piece {
+            Some(piece) => smooth::shape(piece, xi).d,
+            None => lagrange::slopes(self.nodes.len(), xi),
+        }
+    }
+
     /// The node where it begins.
     pub fn first(&self) -> Option<&'a usize> {
         self.nodes.get(self.piece.map_or(0, |piece| piece.first))
@@ -69,22 +79,30 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// At how many ξ a search for the closest point looks first.
-    pub fn samples(&self) -> usize {
+    /// Hands over each ξ at which a search for the closest point looks first, equally spaced from −1 to 1, with N_i there.
+    pub fn samples(&self, mut look: impl FnMut(f64, &[f64; MAX_NODES])) {
         match self.piece {
-            Some(_) => SAMPLES,
-            None => lagrange::samples(self.nodes.len()).len(),
+            Some(piece) => (0..SAMPLES).for_each(|k| {
+                let xi = lagrange::node(SAMPLES, k);
+                look(xi, &smooth::shape(piece, xi).n);
+            }),
+            None => {
+                let table = lagrange::samples(self.nodes.len());
+                table.iter().for_each(|(xi, n)| look(*xi, n));
+            }
         }
     }
 
-    /// One of these ξ, equally spaced from −1 to 1, and N_i there.
-    pub fn sample(&self, k: usize) -> (f64, [f64; MAX_NODES]) {
-        match self.piece {
-            Some(piece) => {
-                let xi = lagrange::node(SAMPLES, k);
-                (xi, smooth::shape(piece, xi).n)
-            }
-            None => lagrange::samples(self.nodes.len())[k],
+    /// How far its curve leaves the box around its nodes at most along an axis, where the sides of that box are `sides`. On m
+    /// equally spaced nodes that is the sum of the negative N_i, at its largest, times the side.
+    pub fn bulge(&self, sides: [f64; 2]) -> [f64; 2] {
+        let by = |share: f64| sides.map(|side| share * side);
+        match (self.piece, self.nodes.len()) {
+            (None, 2) => [0.0; 2],
+            (None, 3) => by(0.126),
+            (None, 4) => by(0.316),
+            (None, 5) => by(0.605),
+            _ => [BULGE * (sides[0] + sides[1]); 2],
         }
     }
 }

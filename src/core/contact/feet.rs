@@ -5,7 +5,7 @@
 //! squared distance, (x − p) · x', changes its sign from minus to plus at a closest point inside an element.
 
 use crate::contact::element::Element;
-use crate::contact::projection::SurfacePoint;
+use crate::contact::projection::{Bounds, SurfacePoint, blend};
 use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
 use std::sync::LazyLock;
@@ -14,8 +14,8 @@ use std::sync::LazyLock;
 const INTERVALS: usize = 2;
 /// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
 const STEPS: u32 = 60;
-/// Lagrange curves leave the bounding box of their nodes by less than this, relative to the size of the box.
-const BULGE: f64 = 0.5;
+/// The error of a Newton step is about its square: one of this size leaves none that a number can hold.
+const QUADRATIC: f64 = 1e-9;
 
 /// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
 static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
@@ -74,7 +74,8 @@ pub fn find(
         let chain = &surfaces[surface];
         for (element, curve) in Element::all(chain).enumerate() {
             let reach = reach.min(least + slack);
-            if !chain.endless && lies_beyond(curve.nodes, positions, point, reach) {
+            let bounds = Bounds::new(curve.nodes, positions);
+            if !chain.endless && bounds.lies_beyond(curve, point, reach) {
                 continue;
             }
             let mut found = |xi: f64| {
@@ -149,7 +150,8 @@ fn root(
         let s = element.shape(xi);
         let value = slope(nodes, positions, point, &s);
         let newton = xi - value / rise(nodes, positions, point, &s);
-        if (newton - xi).abs() <= f64::EPSILON {
+        let (step, inside) = ((newton - xi).abs(), newton >= low && newton <= high);
+        if step <= f64::EPSILON || inside && step <= QUADRATIC {
             return newton.clamp(low, high);
         }
         if value < 0.0 {
@@ -169,7 +171,7 @@ fn root(
 /// (x − p) · x' where the shape functions are these.
 fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
     let (mut to, mut d) = ([-point[0], -point[1]], [0.0; 2]);
-    for ((&node, n), slope) in nodes.iter().zip(s.n).zip(s.d) {
+    for ((&node, n), slope) in nodes.iter().zip(&s.n).zip(&s.d) {
         let [x, y] = positions[node];
         to = [to[0] + n * x, to[1] + n * y];
         d = [d[0] + slope * x, d[1] + slope * y];
@@ -202,28 +204,9 @@ pub fn place(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> [f64; 2] 
 
 /// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
 pub fn direction(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
-    let d = blend(element.nodes, positions, &element.shape(xi).d);
+    let d = blend(element.nodes, positions, &element.slopes(xi));
     let size = length(d);
     (size > 0.0).then(|| [d[0] / size, d[1] / size])
-}
-
-fn lies_beyond(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], reach: f64) -> bool {
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for &n in nodes {
-        for k in 0..2 {
-            low[k] = low[k].min(positions[n][k]);
-            high[k] = high[k].max(positions[n][k]);
-        }
-    }
-    let bulge = BULGE * (high[0] - low[0] + high[1] - low[1]);
-    let out = [0, 1].map(|k| ((low[k] - point[k]).max(point[k] - high[k]) - bulge).max(0.0));
-    length(out) > reach
-}
-
-fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
-    nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
-        [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
-    })
 }
 
 fn squared(v: [f64; 2]) -> f64 {

@@ -15,8 +15,8 @@ use crate::model::Surface;
 const END_TOLERANCE: f64 = 1e-9;
 /// By how much another element must be closer before a node leaves its own, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
-/// Lagrange curves leave the bounding box of their nodes by less than this, relative to the size of the box.
-const BULGE: f64 = 0.5;
+/// The error of a Newton step is about its square: one of this size leaves none that a number can hold.
+const QUADRATIC: f64 = 1e-9;
 
 /// A point of a chain of interface elements.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -126,7 +126,7 @@ fn consider(
     let own = Bounds::new(element.nodes, positions);
     if let Some(best) = best
         && !surface.endless
-        && own.lies_beyond(slave, best.distance)
+        && own.lies_beyond(element, slave, best.distance)
     {
         return;
     }
@@ -253,7 +253,7 @@ pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePo
 /// dx/dξ at ξ of an element.
 fn slope_at(surface: &Surface, element: usize, xi: f64, positions: &[[f64; 2]]) -> [f64; 2] {
     let element = Element::of(surface, element);
-    blend(element.nodes, positions, &element.shape(xi).d)
+    blend(element.nodes, positions, &element.slopes(xi))
 }
 
 /// The element that meets the spot's own there, and ξ on it. `None` inside an element, and at an end of the chain.
@@ -311,52 +311,60 @@ fn closest(
     slave: [f64; 2],
     guess: Option<f64>,
 ) -> (f64, f64) {
+    // Each node is looked up once, not for every ξ.
+    let mut places = [[0.0; 2]; MAX_NODES];
+    for (place, &n) in places.iter_mut().zip(element.nodes) {
+        *place = positions[n];
+    }
+    let places = &places[..element.nodes.len()];
     let squared = |n: &[f64; MAX_NODES]| {
-        let to = away(slave, blend(element.nodes, positions, n));
+        let to = away(slave, mean(places, n));
         to[0] * to[0] + to[1] * to[1]
     };
-    let guess = guess.map(|xi| xi.clamp(-1.0, 1.0));
-    let guess = guess.map(|xi| (squared(&element.shape(xi).n), xi));
-    let samples = (0..element.samples()).map(|k| element.sample(k));
-    let samples = samples.map(|(xi, n)| (squared(&n), xi));
-    let start = samples
-        .chain(guess)
-        .fold((f64::INFINITY, 0.0), |best, now| {
-            if now.0 < best.0 { now } else { best }
-        });
-    let refined = descend(element, positions, slave, start.1);
-    let ended = (squared(&element.shape(refined).n), refined);
-    let (squared, xi) = if ended.0 <= start.0 { ended } else { start };
+    let mut start = (f64::INFINITY, 0.0);
+    let mut look = |xi: f64, n: &[f64; MAX_NODES]| {
+        let squared = squared(n);
+        if squared < start.0 {
+            start = (squared, xi);
+        }
+    };
+    element.samples(&mut look);
+    if let Some(xi) = guess.map(|xi| xi.clamp(-1.0, 1.0)) {
+        look(xi, &element.shape(xi).n);
+    }
+    let refined = descend(element, places, slave, start.1);
+    let (squared, xi) = if refined == start.1 {
+        start
+    } else {
+        let ended = squared(&element.shape(refined).n);
+        if ended <= start.0 {
+            (ended, refined)
+        } else {
+            start
+        }
+    };
     (squared.sqrt(), xi)
 }
 
 /// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton where the second derivative of the squared
-/// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'.
-fn descend(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
-    let nodes = element.nodes;
+/// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'. The curve's nodes are at `places`.
+fn descend(element: Element<'_>, places: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
         let s = element.shape(xi);
-        let (x, d, dd) = (
-            blend(nodes, positions, &s.n),
-            blend(nodes, positions, &s.d),
-            blend(nodes, positions, &s.dd),
-        );
-        let to = [slave[0] - x[0], slave[1] - x[1]];
+        let (x, d, dd) = (mean(places, &s.n), mean(places, &s.d), mean(places, &s.dd));
+        let to = away(slave, x);
         let slope = d[0] * d[0] + d[1] * d[1];
         let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
-        let denominator = if curvature > 0.1 * slope {
-            curvature
-        } else {
-            slope
-        };
+        let is_newton = curvature > 0.1 * slope;
+        let denominator = if is_newton { curvature } else { slope };
         if denominator == 0.0 {
             break;
         }
         let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-1.0, 1.0);
         let step = (next - xi).abs();
         xi = next;
-        if step <= 2.0 * f64::EPSILON {
+        if step <= 2.0 * f64::EPSILON || is_newton && step <= QUADRATIC {
             break;
         }
     }
@@ -378,6 +386,13 @@ pub(super) fn blend(
     })
 }
 
+/// The same of places at hand.
+fn mean(places: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
+    places.iter().zip(weights).fold([0.0, 0.0], |sum, (at, w)| {
+        [sum[0] + w * at[0], sum[1] + w * at[1]]
+    })
+}
+
 fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
     [slave[0] - x[0], slave[1] - x[1]]
 }
@@ -393,13 +408,13 @@ pub(super) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// The box around the nodes of an element.
-struct Bounds {
+pub(super) struct Bounds {
     low: [f64; 2],
     high: [f64; 2],
 }
 
 impl Bounds {
-    fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
+    pub fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for &n in nodes {
             for k in 0..2 {
@@ -419,13 +434,11 @@ impl Bounds {
         length(self.sides())
     }
 
-    /// Whether the whole element is further from a point than `distance`.
-    fn lies_beyond(&self, point: [f64; 2], distance: f64) -> bool {
-        let [width, height] = self.sides();
-        // More than the diagonal, without a root.
-        let bulge = BULGE * (width + height);
+    /// Whether the whole element, whose nodes these bounds are around, is further from a point than `distance`.
+    pub fn lies_beyond(&self, element: Element<'_>, point: [f64; 2], distance: f64) -> bool {
+        let bulge = element.bulge(self.sides());
         let outside = |k: usize| {
-            let out = (self.low[k] - point[k]).max(point[k] - self.high[k]) - bulge;
+            let out = (self.low[k] - point[k]).max(point[k] - self.high[k]) - bulge[k];
             out.max(0.0)
         };
         let (x, y) = (outside(0), outside(1));

@@ -16,7 +16,7 @@
 
 use crate::contact::element::{Element, closed};
 use crate::contact::projection::{
-    Projection, STRAIGHT, SurfacePoint, half_angle, project, tangent,
+    Projection, STRAIGHT, SurfacePoint, blend, half_angle, length as span, project, tangent,
 };
 use crate::model::Surface;
 
@@ -108,19 +108,7 @@ fn length(element: Element<'_>, from: f64, to: f64, positions: &[[f64; 2]]) -> f
         return 0.0;
     }
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let speed = |xi: f64| {
-        let d = element.shape(xi).d;
-        let sum = |k: usize| -> f64 {
-            element
-                .nodes
-                .iter()
-                .zip(d)
-                .map(|(&n, d)| d * positions[n][k])
-                .sum()
-        };
-        let (x, y) = (sum(0), sum(1));
-        (x * x + y * y).sqrt()
-    };
+    let speed = |xi: f64| span(blend(element.nodes, positions, &element.slopes(xi)));
     let sum: f64 = POINTS
         .iter()
         .map(|(x, w)| w * speed(middle + half * x))
