@@ -38,7 +38,7 @@ impl System {
                 self.residual[*equation] = balance;
             }
         }
-        let [floor, length_floor] = self.round_off(model, at.u);
+        let [floor, length_floor] = self.floors;
         let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
         let wanted = self.sizes.wanted(model, at, |dof| self.nodal_force(dof));
         let noise = if floor > 0.0 { floor / wanted } else { 0.0 };
@@ -76,10 +76,12 @@ impl System {
         self.balance(model, at);
     }
 
-    /// Round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
-    fn round_off(&mut self, model: &Model, u: &[f64]) -> [f64; 2] {
+    /// Finds the round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
+    /// It is that of a linearisation, whatever forces and loads are balanced in it afterwards.
+    pub(super) fn round_off(&mut self, model: &Model, u: &[f64]) {
+        self.floors = [0.0; 2];
         let Some(pattern) = self.pattern().cloned() else {
-            return [0.0; 2];
+            return;
         };
         self.x.fill(0.0);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
@@ -97,7 +99,7 @@ impl System {
                 None => worst[1] = worst[1].max(self.work[e]),
             }
         }
-        worst.map(|worst| ROUND_OFF * f64::EPSILON * worst)
+        self.floors = worst.map(|worst| ROUND_OFF * f64::EPSILON * worst);
     }
 
     /// Largest relative violation of the interface conditions by a state's forces and gaps.

@@ -81,6 +81,8 @@ pub struct System {
     /// What the load factor as an unknown adds.
     pub(super) border: Border,
     pub(super) norms: Norms,
+    /// Round-off of forces and of lengths that are to vanish, in the last linearisation.
+    pub(super) floors: [f64; 2],
 }
 
 impl System {
@@ -122,6 +124,7 @@ impl System {
             block: Vec::new(),
             border: Border::default(),
             norms: Norms::default(),
+            floors: [0.0; 2],
         }
     }
 
@@ -190,6 +193,7 @@ impl System {
             bodies.turning.fill(0.0);
         }
         self.measure_interfaces(model, at);
+        self.round_off(model, at.u);
         self.balance(model, at);
         Ok(())
     }
