@@ -47,8 +47,14 @@ impl<'a> Element<'a> {
 
     /// dN_i/dξ alone.
     pub fn slopes(&self, xi: f64) -> [f64; MAX_NODES] {
+        let [slopes] = self.slopes_at([xi]);
+        slopes
+    }
+
+    /// The same at several ξ.
+    pub fn slopes_at<const COUNT: usize>(&self, xi: [f64; COUNT]) -> [[f64; MAX_NODES]; COUNT] {
         match self.piece {
-            Some(piece) => smooth::shape(piece, xi).d,
+            Some(piece) => xi.map(|xi| smooth::shape(piece, xi).d),
             None => lagrange::slopes(self.nodes.len(), xi),
         }
     }
@@ -104,6 +110,30 @@ impl<'a> Element<'a> {
             (None, 5) => by(0.605),
             _ => [BULGE * (sides[0] + sides[1]); 2],
         }
+    }
+}
+
+/// Where the nodes of an element are, looked up once for all ξ of a search. Past its nodes, N_i = 0 counts nothing: sums of
+/// one length have no loop.
+pub struct Places([[f64; 2]; MAX_NODES]);
+
+impl Places {
+    /// Those of these nodes.
+    pub fn of(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
+        let mut places = [[0.0; 2]; MAX_NODES];
+        for (place, &n) in places.iter_mut().zip(nodes) {
+            *place = positions[n];
+        }
+        Places(places)
+    }
+
+    /// Their sum with these weights.
+    pub fn sum(&self, weights: &[f64; MAX_NODES]) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for (at, w) in self.0.iter().zip(weights) {
+            sum = [sum[0] + w * at[0], sum[1] + w * at[1]];
+        }
+        sum
     }
 }
 

@@ -4,7 +4,7 @@
 //! depend on that, so here every element is searched. With x(ξ) the curve and p the point, the derivative of half the
 //! squared distance, (x − p) · x', changes its sign from minus to plus at a closest point inside an element.
 
-use crate::contact::element::Element;
+use crate::contact::element::{Element, Places};
 use crate::contact::projection::{Bounds, SurfacePoint, blend};
 use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
@@ -109,14 +109,17 @@ fn minima(
     point: [f64; 2],
     found: &mut impl FnMut(f64),
 ) {
-    let (nodes, count) = (element.nodes, intervals(element.degree()));
+    let (places, count) = (
+        Places::of(element.nodes, positions),
+        intervals(element.degree()),
+    );
     let at = |k: usize| {
         if element.is_smooth() {
             let xi = node(count + 1, k);
-            return (xi, slope(nodes, positions, point, &element.shape(xi)));
+            return (xi, slope(&places, point, &element.shape(xi)));
         }
-        let (xi, s) = &GRID[nodes.len()][k];
-        (*xi, slope(nodes, positions, point, s))
+        let (xi, s) = &GRID[element.nodes.len()][k];
+        (*xi, slope(&places, point, s))
     };
     let mut left = at(0);
     if left.1 >= 0.0 {
@@ -126,7 +129,7 @@ fn minima(
         let right = at(k);
         let at_end = k == count && right.1 == 0.0;
         if left.1 < 0.0 && right.1 >= 0.0 && !at_end {
-            found(root(element, positions, point, [left, right]));
+            found(root(element, &places, point, [left, right]));
         }
         left = right;
     }
@@ -139,17 +142,16 @@ fn minima(
 /// Newton's method, and halving where that leaves the interval.
 fn root(
     element: Element<'_>,
-    positions: &[[f64; 2]],
+    places: &Places,
     point: [f64; 2],
     [(mut low, below), (mut high, above)]: [(f64, f64); 2],
 ) -> f64 {
-    let nodes = element.nodes;
     // Both values come along: where a straight line between them vanishes is near.
     let mut xi = low - below * (high - low) / (above - below);
     for _ in 0..STEPS {
         let s = element.shape(xi);
-        let value = slope(nodes, positions, point, &s);
-        let newton = xi - value / rise(nodes, positions, point, &s);
+        let value = slope(places, point, &s);
+        let newton = xi - value / rise(places, point, &s);
         let (step, inside) = ((newton - xi).abs(), newton >= low && newton <= high);
         if step <= f64::EPSILON || inside && step <= QUADRATIC {
             return newton.clamp(low, high);
@@ -169,23 +171,14 @@ fn root(
 }
 
 /// (x − p) · x' where the shape functions are these.
-fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
-    let (mut to, mut d) = ([-point[0], -point[1]], [0.0; 2]);
-    for ((&node, n), slope) in nodes.iter().zip(&s.n).zip(&s.d) {
-        let [x, y] = positions[node];
-        to = [to[0] + n * x, to[1] + n * y];
-        d = [d[0] + slope * x, d[1] + slope * y];
-    }
-    to[0] * d[0] + to[1] * d[1]
+fn slope(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
+    let (x, d) = (places.sum(&s.n), places.sum(&s.d));
+    (x[0] - point[0]) * d[0] + (x[1] - point[1]) * d[1]
 }
 
 /// Its derivative by ξ.
-fn rise(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
-    let x = blend(nodes, positions, &s.n);
-    let (d, dd) = (
-        blend(nodes, positions, &s.d),
-        blend(nodes, positions, &s.dd),
-    );
+fn rise(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
+    let (x, d, dd) = (places.sum(&s.n), places.sum(&s.d), places.sum(&s.dd));
     squared(d) + (x[0] - point[0]) * dd[0] + (x[1] - point[1]) * dd[1]
 }
 

@@ -7,7 +7,7 @@
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
 use crate::contact::corner;
-use crate::contact::element::Element;
+use crate::contact::element::{Element, Places};
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
 
@@ -189,6 +189,22 @@ pub fn half_angle(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]
     })
 }
 
+/// Whether two elements meet at a border, and not straight ([`STRAIGHT`]).
+pub fn has_kink(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> bool {
+    if !surface.smooth.is_empty() {
+        return false;
+    }
+    let Some((other, xi)) = neighbour(surface, border) else {
+        return false;
+    };
+    let own = slope_at(surface, border.element, border.xi, positions);
+    let across = slope_at(surface, other, xi, positions);
+    let cross = own[0] * across[1] - own[1] * across[0];
+    let dot = own[0] * across[0] + own[1] * across[1];
+    // No arc tangent for what is as small as its argument.
+    cross.abs() > 2.0 * STRAIGHT * dot
+}
+
 /// Geometry at a spot, for a slave node at `slave`.
 pub fn projection_at(
     surfaces: &[Surface],
@@ -198,9 +214,8 @@ pub fn projection_at(
 ) -> Projection {
     let surface = &surfaces[spot.surface];
     let element = Element::of(surface, spot.element);
-    let (nodes, s) = (element.nodes, element.shape(spot.xi));
-    let foot = blend(nodes, positions, &s.n);
-    let slope = blend(nodes, positions, &s.d);
+    let (places, s) = (Places::of(element.nodes, positions), element.shape(spot.xi));
+    let (foot, slope) = (places.sum(&s.n), places.sum(&s.d));
     let normal = normal_at(surface, spot, positions, slope);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
     let passes = !surface.smooth.is_empty() && neighbour(surface, spot).is_some();
@@ -213,7 +228,7 @@ pub fn projection_at(
         shape_slope: s.d,
         curve: inside.then(|| Curve {
             slope,
-            bend: blend(nodes, positions, &s.dd),
+            bend: places.sum(&s.dd),
         }),
     }
 }
@@ -311,14 +326,9 @@ fn closest(
     slave: [f64; 2],
     guess: Option<f64>,
 ) -> (f64, f64) {
-    // Each node is looked up once, not for every ξ.
-    let mut places = [[0.0; 2]; MAX_NODES];
-    for (place, &n) in places.iter_mut().zip(element.nodes) {
-        *place = positions[n];
-    }
-    let places = &places[..element.nodes.len()];
+    let places = Places::of(element.nodes, positions);
     let squared = |n: &[f64; MAX_NODES]| {
-        let to = away(slave, mean(places, n));
+        let to = away(slave, places.sum(n));
         to[0] * to[0] + to[1] * to[1]
     };
     let mut start = (f64::INFINITY, 0.0);
@@ -332,7 +342,7 @@ fn closest(
     if let Some(xi) = guess.map(|xi| xi.clamp(-1.0, 1.0)) {
         look(xi, &element.shape(xi).n);
     }
-    let refined = descend(element, places, slave, start.1);
+    let refined = descend(element, &places, slave, start.1);
     let (squared, xi) = if refined == start.1 {
         start
     } else {
@@ -348,11 +358,11 @@ fn closest(
 
 /// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton where the second derivative of the squared
 /// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'. The curve's nodes are at `places`.
-fn descend(element: Element<'_>, places: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
+fn descend(element: Element<'_>, places: &Places, slave: [f64; 2], start: f64) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
         let s = element.shape(xi);
-        let (x, d, dd) = (mean(places, &s.n), mean(places, &s.d), mean(places, &s.dd));
+        let (x, d, dd) = (places.sum(&s.n), places.sum(&s.d), places.sum(&s.dd));
         let to = away(slave, x);
         let slope = d[0] * d[0] + d[1] * d[1];
         let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
@@ -386,13 +396,6 @@ pub(super) fn blend(
     })
 }
 
-/// The same of places at hand.
-fn mean(places: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
-    places.iter().zip(weights).fold([0.0, 0.0], |sum, (at, w)| {
-        [sum[0] + w * at[0], sum[1] + w * at[1]]
-    })
-}
-
 fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
     [slave[0] - x[0], slave[1] - x[1]]
 }
@@ -416,10 +419,12 @@ pub(super) struct Bounds {
 impl Bounds {
     pub fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        // Comparisons as the processor has them; min and max would look for what is no number.
         for &n in nodes {
+            let at = positions[n];
             for k in 0..2 {
-                low[k] = low[k].min(positions[n][k]);
-                high[k] = high[k].max(positions[n][k]);
+                low[k] = if at[k] < low[k] { at[k] } else { low[k] };
+                high[k] = if at[k] > high[k] { at[k] } else { high[k] };
             }
         }
         Bounds { low, high }

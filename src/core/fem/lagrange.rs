@@ -78,10 +78,10 @@ pub fn shape(m: usize, xi: f64) -> Shape {
     s
 }
 
-/// dN_i/dξ of the m shape functions alone, as lengths and angles of curves want them.
-pub fn slopes(m: usize, xi: f64) -> [f64; MAX_NODES] {
-    let mut slopes = [0.0; MAX_NODES];
-    for_count!(m, slopes_of(xi, &mut slopes));
+/// dN_i/dξ of the m shape functions alone, at some ξ, as lengths and angles of curves want them.
+pub fn slopes<const COUNT: usize>(m: usize, xi: [f64; COUNT]) -> [[f64; MAX_NODES]; COUNT] {
+    let mut slopes = [[0.0; MAX_NODES]; COUNT];
+    for_count!(m, slopes_of(&xi, &mut slopes));
     slopes
 }
 
@@ -106,19 +106,21 @@ fn shape_of<const M: usize>(xi: f64, s: &mut Shape) {
 }
 
 #[inline]
-fn slopes_of<const M: usize>(xi: f64, slopes: &mut [f64; MAX_NODES]) {
-    let (mut values, mut before) = ([0.0; MAX_NODES], (1.0, 0.0));
-    for i in 0..M {
-        (values[i], slopes[i]) = before;
-        let factor = xi - NODES[M][i].0;
-        before = (before.0 * factor, before.1 * factor + before.0);
-    }
-    let mut behind = (1.0, 0.0);
-    for i in (0..M).rev() {
-        let (at, weight) = NODES[M][i];
-        slopes[i] = weight * (slopes[i] * behind.0 + values[i] * behind.1);
-        let factor = xi - at;
-        behind = (behind.0 * factor, behind.1 * factor + behind.0);
+fn slopes_of<const M: usize>(xi: &[f64], all: &mut [[f64; MAX_NODES]]) {
+    for (xi, slopes) in xi.iter().zip(all) {
+        let (mut values, mut before) = ([0.0; MAX_NODES], (1.0, 0.0));
+        for i in 0..M {
+            (values[i], slopes[i]) = before;
+            let factor = xi - NODES[M][i].0;
+            before = (before.0 * factor, before.1 * factor + before.0);
+        }
+        let mut behind = (1.0, 0.0);
+        for i in (0..M).rev() {
+            let (at, weight) = NODES[M][i];
+            slopes[i] = weight * (slopes[i] * behind.0 + values[i] * behind.1);
+            let factor = xi - at;
+            behind = (behind.0 * factor, behind.1 * factor + behind.0);
+        }
     }
 }
 
@@ -186,7 +188,7 @@ mod tests {
         for m in 2..=MAX_NODES {
             for xi in [-1.0, -0.83, 0.0, 0.31, 1.0] {
                 let s = shape(m, xi);
-                assert_eq!(s.d, slopes(m, xi));
+                assert_eq!([s.d], slopes(m, [xi]));
                 for degree in 0..m as i32 {
                     let at = |x: f64| x.powi(degree);
                     let sum =
