@@ -142,3 +142,34 @@ pub fn closed(surface: &Surface) -> bool {
     let count = surface.elements.len();
     count > 1 && Element::of(surface, 0).first() == Element::of(surface, count - 1).last()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_curve_leaves_the_box_around_its_nodes_by_more_than_its_bulge() {
+        // The worst nodes lie at the low end of the box where N_i is positive, and at the high end where it is not.
+        for m in 2..=5 {
+            let nodes: Vec<usize> = (0..m).collect();
+            let [bulge, _] = Element::lagrange(&nodes).bulge([1.0; 2]);
+            let out = |k: u32| {
+                let n = lagrange::shape(m, -1.0 + f64::from(k) * 1e-3).n;
+                n.iter().map(|n| (-n).max(0.0)).sum::<f64>()
+            };
+            let worst = (0..=2000).map(out).fold(0.0, f64::max);
+            assert!(
+                worst <= bulge && bulge <= 1.01 * worst,
+                "{m}: {worst} {bulge}"
+            );
+        }
+    }
+
+    #[test]
+    fn places_sum_up_as_the_nodes_do() {
+        let (nodes, positions) = ([2, 0], [[1.0, 2.0], [9.0, 9.0], [3.0, -4.0]]);
+        let n = Element::lagrange(&nodes).shape(0.5).n;
+        let exact = [0.25 * 3.0 + 0.75 * 1.0, 0.25 * -4.0 + 0.75 * 2.0];
+        assert_eq!(Places::of(&nodes, &positions).sum(&n), exact);
+    }
+}
