@@ -88,14 +88,14 @@ pub fn slopes<const COUNT: usize>(m: usize, xi: [f64; COUNT]) -> [[f64; MAX_NODE
 /// With the number of nodes known to the compiler no loop is left: projections ask for millions of these.
 #[inline]
 fn shape_of<const M: usize>(xi: f64, s: &mut Shape) {
+    let nodes = &NODES[M][..M];
     let mut before = (1.0, 0.0, 0.0);
-    for i in 0..M {
+    for (i, &(at, _)) in nodes.iter().enumerate() {
         (s.n[i], s.d[i], s.dd[i]) = before;
-        before = times(before, xi - NODES[M][i].0);
+        before = times(before, xi - at);
     }
     let mut behind = (1.0, 0.0, 0.0);
-    for i in (0..M).rev() {
-        let (at, weight) = NODES[M][i];
+    for (i, &(at, weight)) in nodes.iter().enumerate().rev() {
         let (v, d, dd) = behind;
         let (n, n_d, n_dd) = (s.n[i], s.d[i], s.dd[i]);
         s.n[i] = weight * (n * v);
@@ -107,16 +107,16 @@ fn shape_of<const M: usize>(xi: f64, s: &mut Shape) {
 
 #[inline]
 fn slopes_of<const M: usize>(xi: &[f64], all: &mut [[f64; MAX_NODES]]) {
+    let nodes = &NODES[M][..M];
     for (xi, slopes) in xi.iter().zip(all) {
         let (mut values, mut before) = ([0.0; MAX_NODES], (1.0, 0.0));
-        for i in 0..M {
+        for (i, &(at, _)) in nodes.iter().enumerate() {
             (values[i], slopes[i]) = before;
-            let factor = xi - NODES[M][i].0;
+            let factor = xi - at;
             before = (before.0 * factor, before.1 * factor + before.0);
         }
         let mut behind = (1.0, 0.0);
-        for i in (0..M).rev() {
-            let (at, weight) = NODES[M][i];
+        for (i, &(at, weight)) in nodes.iter().enumerate().rev() {
             slopes[i] = weight * (slopes[i] * behind.0 + values[i] * behind.1);
             let factor = xi - at;
             behind = (behind.0 * factor, behind.1 * factor + behind.0);
