@@ -129,7 +129,11 @@ impl Places {
 
     /// Their sum with these weights.
     pub fn sum(&self, weights: &[f64; MAX_NODES]) -> [f64; 2] {
-        let mut sum = [0.0; 2];
+        self.sum_from([0.0; 2], weights)
+    }
+
+    /// The same, added to what there is.
+    pub fn sum_from(&self, mut sum: [f64; 2], weights: &[f64; MAX_NODES]) -> [f64; 2] {
         for (at, w) in self.0.iter().zip(weights) {
             sum = [sum[0] + w * at[0], sum[1] + w * at[1]];
         }

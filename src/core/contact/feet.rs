@@ -14,8 +14,6 @@ use std::sync::LazyLock;
 const INTERVALS: usize = 2;
 /// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
 const STEPS: u32 = 60;
-/// The error of a Newton step is about its square: one of this size leaves none that a number can hold.
-const QUADRATIC: f64 = 1e-9;
 
 /// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
 static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
@@ -152,8 +150,7 @@ fn root(
         let s = element.shape(xi);
         let value = slope(places, point, &s);
         let newton = xi - value / rise(places, point, &s);
-        let (step, inside) = ((newton - xi).abs(), newton >= low && newton <= high);
-        if step <= f64::EPSILON || inside && step <= QUADRATIC {
+        if (newton - xi).abs() <= f64::EPSILON {
             return newton.clamp(low, high);
         }
         if value < 0.0 {
@@ -172,8 +169,9 @@ fn root(
 
 /// (x − p) · x' where the shape functions are these.
 fn slope(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
-    let (x, d) = (places.sum(&s.n), places.sum(&s.d));
-    (x[0] - point[0]) * d[0] + (x[1] - point[1]) * d[1]
+    let to = places.sum_from([-point[0], -point[1]], &s.n);
+    let d = places.sum(&s.d);
+    to[0] * d[0] + to[1] * d[1]
 }
 
 /// Its derivative by ξ.

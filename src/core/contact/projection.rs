@@ -15,8 +15,6 @@ use crate::model::Surface;
 const END_TOLERANCE: f64 = 1e-9;
 /// By how much another element must be closer before a node leaves its own, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
-/// The error of a Newton step is about its square: one of this size leaves none that a number can hold.
-const QUADRATIC: f64 = 1e-9;
 
 /// A point of a chain of interface elements.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -366,15 +364,18 @@ fn descend(element: Element<'_>, places: &Places, slave: [f64; 2], start: f64) -
         let to = away(slave, x);
         let slope = d[0] * d[0] + d[1] * d[1];
         let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
-        let is_newton = curvature > 0.1 * slope;
-        let denominator = if is_newton { curvature } else { slope };
+        let denominator = if curvature > 0.1 * slope {
+            curvature
+        } else {
+            slope
+        };
         if denominator == 0.0 {
             break;
         }
         let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-1.0, 1.0);
         let step = (next - xi).abs();
         xi = next;
-        if step <= 2.0 * f64::EPSILON || is_newton && step <= QUADRATIC {
+        if step <= 2.0 * f64::EPSILON {
             break;
         }
     }

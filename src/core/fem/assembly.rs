@@ -31,6 +31,8 @@ pub struct Assembly {
     elements: Vec<Placed>,
     /// Bodies that are given by a matrix.
     matrices: Vec<matrix::Element>,
+    /// Whether only the upper half of the stiffness is wanted.
+    half: bool,
     /// Numbers that the elements placed so far remember.
     history_len: usize,
     /// Room for the largest element.
@@ -60,6 +62,7 @@ impl Assembly {
         let mut assembly = Assembly {
             elements: Vec::new(),
             matrices: Vec::new(),
+            half: false,
             history_len: 0,
             force: Vec::new(),
             tangent: Vec::new(),
@@ -144,6 +147,7 @@ impl Assembly {
 
     /// Finds the place of every entry in a pattern that has them all, or, of a symmetric stiffness, the upper `half`.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
+        self.half = half;
         for placed in &mut self.elements {
             placed.bind(dofs, pattern, half);
         }
@@ -174,9 +178,11 @@ impl Assembly {
                 placed.give_up(&mut out);
                 continue;
             }
+            if placed.held || !self.half {
+                placed.element.mirror(tangent);
+            }
             placed.scatter(force, tangent, &mut out);
             if placed.held {
-                placed.element.mirror(tangent);
                 placed.couple(dofs, tangent, moved.step, out.coupling);
             }
         }
@@ -239,8 +245,7 @@ impl Placed {
                 } else {
                     pattern.slot(row, column)
                 };
-                // The elements' tangents are symmetric: what lies below the diagonal need not be filled in.
-                let pair = u32::try_from(i.min(j) * n + i.max(j)).ok();
+                let pair = u32::try_from(i * n + j).ok();
                 let slot = slot.and_then(|slot| u32::try_from(slot).ok());
                 self.slots.extend(pair.zip(slot));
             }

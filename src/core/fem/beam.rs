@@ -45,16 +45,8 @@ struct GaussPoint {
     d: [f64; MAX_NODES],
     /// Weight times ds/dξ (length).
     weight: f64,
-    /// Direction of the reference axis (unit).
-    axis: [f64; 2],
-}
-
-/// Where a cross section is, before any section law.
-struct Pose {
-    /// ε, γ, κ.
-    strain: Vector3<f64>,
-    /// t, the normal of the section.
-    along: [f64; 2],
+    /// Angle of the reference axis.
+    angle: f64,
 }
 
 /// Strains and forces of a cross section.
@@ -81,7 +73,7 @@ impl Element {
                     n: s.n,
                     d: s.d.map(|d| d / stretch),
                     weight: weight * stretch,
-                    axis: [dx / stretch, dy / stretch],
+                    angle: dy.atan2(dx),
                 }
             })
             .collect();
@@ -99,50 +91,36 @@ impl Element {
 
     /// Strains and forces at Gauss point p, for displacements `u` of the element.
     pub fn section_state(&self, p: usize, u: &[f64]) -> SectionState {
-        self.loaded(p, &self.pose(&self.points[p], u), u)
+        let (state, _) = self.section(p, u);
+        state
     }
 
-    /// Where the section at a Gauss point is.
-    fn pose(&self, point: &GaussPoint, u: &[f64]) -> Pose {
+    /// The same, with t of the section.
+    fn section(&self, p: usize, u: &[f64]) -> (SectionState, [f64; 2]) {
+        let (point, m) = (&self.points[p], self.nodes);
         let (mut h, mut theta, mut kappa) = ([0.0, 0.0], 0.0, 0.0);
-        for (u, (n, d)) in u
-            .chunks_exact(3)
-            .zip(point.n.iter().zip(&point.d))
-            .take(self.nodes)
-        {
+        let shares = point.n.iter().zip(&point.d).take(m);
+        for (u, (n, d)) in u.chunks_exact(3).zip(shares) {
             h[0] += d * u[0];
             h[1] += d * u[1];
             theta += n * u[2];
             kappa += d * u[2];
         }
-        // All from half the rotation: one pair of sine and cosine a section.
-        let (half, rest) = (0.5 * theta).sin_cos();
-        let (sin, cos_less_one) = (2.0 * half * rest, -2.0 * half * half);
-        let ([x, y], cos) = (point.axis, 1.0 + cos_less_one);
-        let [c, s] = [x * cos - y * sin, y * cos + x * sin];
+        let (s, c) = (point.angle + theta).sin_cos();
+        let half = (0.5 * theta).sin();
         // With r' = axis + h, t · axis = cos θ and n · axis = −sin θ: so small strains of a stiff beam are not
         // differences of numbers near one.
-        Pose {
-            strain: Vector3::new(
-                c * h[0] + s * h[1] + cos_less_one,
-                c * h[1] - s * h[0] - sin,
-                kappa,
-            ),
-            along: [c, s],
-        }
-    }
-
-    /// The forces that go with a pose.
-    fn loaded(&self, p: usize, pose: &Pose, u: &[f64]) -> SectionState {
-        let strain = pose.strain;
+        let axial = c * h[0] + s * h[1] - 2.0 * half * half;
+        let shear = c * h[1] - s * h[0] - theta.sin();
         let q = match self.section.ga {
-            Some(ga) => ga * strain.y,
-            None => u[3 * self.nodes + p],
+            Some(ga) => ga * shear,
+            None => u[3 * m + p],
         };
-        SectionState {
-            strain,
-            force: Vector3::new(self.section.ea * strain.x, q, self.section.ei * strain.z),
-        }
+        let state = SectionState {
+            strain: Vector3::new(axial, shear, kappa),
+            force: Vector3::new(self.section.ea * axial, q, self.section.ei * kappa),
+        };
+        (state, [c, s])
     }
 
     /// What the nodes' rows and columns at a Gauss point have in common. The strains' derivatives by the motion of node i
@@ -193,6 +171,7 @@ impl Element {
             let row = [point.d[i] * x, point.d[i] * y, point.n[i] * turn];
             for (a, value) in row.into_iter().enumerate() {
                 tangent[(3 * i + a) * size + q] += value;
+                tangent[q * size + 3 * i + a] += value;
             }
         }
         force[q] += point.weight * shear;
@@ -212,9 +191,8 @@ impl element::Element for Element {
     fn add(&self, _past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let (m, size) = (self.nodes, self.dofs());
         for (p, point) in self.points.iter().enumerate() {
-            let pose = self.pose(point, u);
-            let state = self.loaded(p, &pose, u);
-            let moduli = self.moduli(point.weight, pose.along, &state);
+            let (state, along) = self.section(p, u);
+            let moduli = self.moduli(point.weight, along, &state);
             let (n, d) = (&point.n[..m], &point.d[..m]);
             for i in 0..m {
                 let (n_i, d_i) = (n[i], d[i]);
@@ -224,27 +202,14 @@ impl element::Element for Element {
                 *x += d_i * moduli.resultant[0];
                 *y += d_i * moduli.resultant[1];
                 *turn += d_i * moduli.moment + n_i * moduli.couple;
-                // From the diagonal on.
-                let [x, y, turn] = [0, 1, 2].map(|k| (3 * i + k) * size + 3 * i);
-                let (above, row_turn) = tangent[x..].split_at_mut(turn - x);
-                let (row_x, row_y) = above.split_at_mut(y - x);
-                moduli.add_rows((n_i, d_i), (&n[i..], &d[i..]), [row_x, row_y, row_turn]);
+                let rows = &mut tangent[3 * i * size..(3 * i + 3) * size];
+                moduli.add_rows(n_i, d_i, (n, d), rows);
             }
             if self.section.ga.is_none() {
                 self.add_constraint(p, &moduli, state.strain.y, force, tangent);
             }
         }
         true
-    }
-
-    fn mirror(&self, tangent: &mut [f64]) {
-        let size = self.dofs();
-        for i in 1..size {
-            let (above, row) = tangent.split_at_mut(i * size);
-            for (value, column) in row.iter_mut().zip(above.chunks_exact(size)) {
-                *value = column[i];
-            }
-        }
     }
 }
 
@@ -267,13 +232,11 @@ struct Moduli {
 }
 
 impl Moduli {
-    /// Adds the three rows of a node with n_i, d_i to those of the nodes with `n`, `d`.
-    fn add_rows(
-        &self,
-        (n_i, d_i): (f64, f64),
-        (n, d): (&[f64], &[f64]),
-        [row_x, row_y, row_turn]: [&mut [f64]; 3],
-    ) {
+    /// Adds the three rows of a node with n_i, d_i.
+    fn add_rows(&self, n_i: f64, d_i: f64, (n, d): (&[f64], &[f64]), rows: &mut [f64]) {
+        let size = rows.len() / 3;
+        let (row_x, rest) = rows.split_at_mut(size);
+        let (row_y, row_turn) = rest.split_at_mut(size);
         let [xx, xy, yy] = self.direct.map(|v| d_i * v);
         let [x_turn, y_turn] = self.mixed.map(|v| d_i * v);
         let [turn_x, turn_y] = self.mixed.map(|v| n_i * v);
