@@ -7,6 +7,8 @@ use crate::model::{Piece, Surface};
 
 /// Samples of a piece of a smooth chain, as many as of a cubic Lagrange curve.
 const SAMPLES: usize = 7;
+/// Curves that do not swing leave the box around their nodes by less than this, relative to the sum of its sides.
+const BULGE: f64 = 0.5;
 
 /// An element of a master surface. Its curve is x(ξ) = Σ N_i(ξ) x_i over its nodes, −1 <= ξ <= 1.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +45,20 @@ impl<'a> Element<'a> {
         }
     }
 
+    /// dN_i/dξ alone.
+    pub fn slopes(&self, xi: f64) -> [f64; MAX_NODES] {
+        let [slopes] = self.slopes_at([xi]);
+        slopes
+    }
+
+    /// The same at several ξ.
+    pub fn slopes_at<const COUNT: usize>(&self, xi: [f64; COUNT]) -> [[f64; MAX_NODES]; COUNT] {
+        match self.piece {
+            Some(piece) => xi.map(|xi| smooth::shape(piece, xi).d),
+            None => lagrange::slopes(self.nodes.len(), xi),
+        }
+    }
+
     /// The node where it begins.
     pub fn first(&self) -> Option<&'a usize> {
         self.nodes.get(self.piece.map_or(0, |piece| piece.first))
@@ -69,23 +85,59 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// At how many ξ a search for the closest point looks first.
-    pub fn samples(&self) -> usize {
+    /// Hands over each ξ at which a search for the closest point looks first, equally spaced from −1 to 1, with N_i there.
+    pub fn samples(&self, mut look: impl FnMut(f64, &[f64; MAX_NODES])) {
         match self.piece {
-            Some(_) => SAMPLES,
-            None => lagrange::samples(self.nodes.len()).len(),
+            Some(piece) => (0..SAMPLES).for_each(|k| {
+                let xi = lagrange::node(SAMPLES, k);
+                look(xi, &smooth::shape(piece, xi).n);
+            }),
+            None => {
+                let table = lagrange::samples(self.nodes.len());
+                table.iter().for_each(|(xi, n)| look(*xi, n));
+            }
         }
     }
 
-    /// One of these ξ, equally spaced from −1 to 1, and N_i there.
-    pub fn sample(&self, k: usize) -> (f64, [f64; MAX_NODES]) {
-        match self.piece {
-            Some(piece) => {
-                let xi = lagrange::node(SAMPLES, k);
-                (xi, smooth::shape(piece, xi).n)
-            }
-            None => lagrange::samples(self.nodes.len())[k],
+    /// How far its curve leaves the box around its nodes at most along an axis, where the sides of that box are `sides`. On m
+    /// equally spaced nodes that is the sum of the negative N_i, at its largest, times the side.
+    pub fn bulge(&self, sides: [f64; 2]) -> [f64; 2] {
+        let by = |share: f64| sides.map(|side| share * side);
+        match (self.piece, self.nodes.len()) {
+            (None, 2) => [0.0; 2],
+            (None, 3) => by(0.126),
+            (None, 4) => by(0.316),
+            (None, 5) => by(0.605),
+            _ => [BULGE * (sides[0] + sides[1]); 2],
         }
+    }
+}
+
+/// Where the nodes of an element are, looked up once for all ξ of a search. Past its nodes, N_i = 0 counts nothing: sums of
+/// one length have no loop.
+pub struct Places([[f64; 2]; MAX_NODES]);
+
+impl Places {
+    /// Those of these nodes.
+    pub fn of(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
+        let mut places = [[0.0; 2]; MAX_NODES];
+        for (place, &n) in places.iter_mut().zip(nodes) {
+            *place = positions[n];
+        }
+        Places(places)
+    }
+
+    /// Their sum with these weights.
+    pub fn sum(&self, weights: &[f64; MAX_NODES]) -> [f64; 2] {
+        self.sum_from([0.0; 2], weights)
+    }
+
+    /// The same, added to what there is.
+    pub fn sum_from(&self, mut sum: [f64; 2], weights: &[f64; MAX_NODES]) -> [f64; 2] {
+        for (at, w) in self.0.iter().zip(weights) {
+            sum = [sum[0] + w * at[0], sum[1] + w * at[1]];
+        }
+        sum
     }
 }
 
@@ -93,4 +145,35 @@ impl<'a> Element<'a> {
 pub fn closed(surface: &Surface) -> bool {
     let count = surface.elements.len();
     count > 1 && Element::of(surface, 0).first() == Element::of(surface, count - 1).last()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_curve_leaves_the_box_around_its_nodes_by_more_than_its_bulge() {
+        // The worst nodes lie at the low end of the box where N_i is positive, and at the high end where it is not.
+        for m in 2..=5 {
+            let nodes: Vec<usize> = (0..m).collect();
+            let [bulge, _] = Element::lagrange(&nodes).bulge([1.0; 2]);
+            let out = |k: u32| {
+                let n = lagrange::shape(m, -1.0 + f64::from(k) * 1e-3).n;
+                n.iter().map(|n| (-n).max(0.0)).sum::<f64>()
+            };
+            let worst = (0..=2000).map(out).fold(0.0, f64::max);
+            assert!(
+                worst <= bulge && bulge <= 1.01 * worst,
+                "{m}: {worst} {bulge}"
+            );
+        }
+    }
+
+    #[test]
+    fn places_sum_up_as_the_nodes_do() {
+        let (nodes, positions) = ([2, 0], [[1.0, 2.0], [9.0, 9.0], [3.0, -4.0]]);
+        let n = Element::lagrange(&nodes).shape(0.5).n;
+        let exact = [0.25 * 3.0 + 0.75 * 1.0, 0.25 * -4.0 + 0.75 * 2.0];
+        assert_eq!(Places::of(&nodes, &positions).sum(&n), exact);
+    }
 }

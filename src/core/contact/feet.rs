@@ -4,8 +4,8 @@
 //! depend on that, so here every element is searched. With x(ξ) the curve and p the point, the derivative of half the
 //! squared distance, (x − p) · x', changes its sign from minus to plus at a closest point inside an element.
 
-use crate::contact::element::Element;
-use crate::contact::projection::SurfacePoint;
+use crate::contact::element::{Element, Places};
+use crate::contact::projection::{Bounds, SurfacePoint, blend};
 use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
 use std::sync::LazyLock;
@@ -14,8 +14,6 @@ use std::sync::LazyLock;
 const INTERVALS: usize = 2;
 /// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
 const STEPS: u32 = 60;
-/// Lagrange curves leave the bounding box of their nodes by less than this, relative to the size of the box.
-const BULGE: f64 = 0.5;
 
 /// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
 static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
@@ -74,7 +72,8 @@ pub fn find(
         let chain = &surfaces[surface];
         for (element, curve) in Element::all(chain).enumerate() {
             let reach = reach.min(least + slack);
-            if !chain.endless && lies_beyond(curve.nodes, positions, point, reach) {
+            let bounds = Bounds::new(curve.nodes, positions);
+            if !chain.endless && bounds.lies_beyond(curve, point, reach) {
                 continue;
             }
             let mut found = |xi: f64| {
@@ -108,14 +107,17 @@ fn minima(
     point: [f64; 2],
     found: &mut impl FnMut(f64),
 ) {
-    let (nodes, count) = (element.nodes, intervals(element.degree()));
+    let (places, count) = (
+        Places::of(element.nodes, positions),
+        intervals(element.degree()),
+    );
     let at = |k: usize| {
         if element.is_smooth() {
             let xi = node(count + 1, k);
-            return (xi, slope(nodes, positions, point, &element.shape(xi)));
+            return (xi, slope(&places, point, &element.shape(xi)));
         }
-        let (xi, s) = &GRID[nodes.len()][k];
-        (*xi, slope(nodes, positions, point, s))
+        let (xi, s) = &GRID[element.nodes.len()][k];
+        (*xi, slope(&places, point, s))
     };
     let mut left = at(0);
     if left.1 >= 0.0 {
@@ -125,7 +127,7 @@ fn minima(
         let right = at(k);
         let at_end = k == count && right.1 == 0.0;
         if left.1 < 0.0 && right.1 >= 0.0 && !at_end {
-            found(root(element, positions, point, [left, right]));
+            found(root(element, &places, point, [left, right]));
         }
         left = right;
     }
@@ -138,17 +140,16 @@ fn minima(
 /// Newton's method, and halving where that leaves the interval.
 fn root(
     element: Element<'_>,
-    positions: &[[f64; 2]],
+    places: &Places,
     point: [f64; 2],
     [(mut low, below), (mut high, above)]: [(f64, f64); 2],
 ) -> f64 {
-    let nodes = element.nodes;
     // Both values come along: where a straight line between them vanishes is near.
     let mut xi = low - below * (high - low) / (above - below);
     for _ in 0..STEPS {
         let s = element.shape(xi);
-        let value = slope(nodes, positions, point, &s);
-        let newton = xi - value / rise(nodes, positions, point, &s);
+        let value = slope(places, point, &s);
+        let newton = xi - value / rise(places, point, &s);
         if (newton - xi).abs() <= f64::EPSILON {
             return newton.clamp(low, high);
         }
@@ -167,23 +168,15 @@ fn root(
 }
 
 /// (x − p) · x' where the shape functions are these.
-fn slope(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
-    let (mut to, mut d) = ([-point[0], -point[1]], [0.0; 2]);
-    for ((&node, n), slope) in nodes.iter().zip(s.n).zip(s.d) {
-        let [x, y] = positions[node];
-        to = [to[0] + n * x, to[1] + n * y];
-        d = [d[0] + slope * x, d[1] + slope * y];
-    }
+fn slope(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
+    let to = places.sum_from([-point[0], -point[1]], &s.n);
+    let d = places.sum(&s.d);
     to[0] * d[0] + to[1] * d[1]
 }
 
 /// Its derivative by ξ.
-fn rise(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], s: &Shape) -> f64 {
-    let x = blend(nodes, positions, &s.n);
-    let (d, dd) = (
-        blend(nodes, positions, &s.d),
-        blend(nodes, positions, &s.dd),
-    );
+fn rise(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
+    let (x, d, dd) = (places.sum(&s.n), places.sum(&s.d), places.sum(&s.dd));
     squared(d) + (x[0] - point[0]) * dd[0] + (x[1] - point[1]) * dd[1]
 }
 
@@ -202,28 +195,9 @@ pub fn place(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> [f64; 2] 
 
 /// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
 pub fn direction(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
-    let d = blend(element.nodes, positions, &element.shape(xi).d);
+    let d = blend(element.nodes, positions, &element.slopes(xi));
     let size = length(d);
     (size > 0.0).then(|| [d[0] / size, d[1] / size])
-}
-
-fn lies_beyond(nodes: &[usize], positions: &[[f64; 2]], point: [f64; 2], reach: f64) -> bool {
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for &n in nodes {
-        for k in 0..2 {
-            low[k] = low[k].min(positions[n][k]);
-            high[k] = high[k].max(positions[n][k]);
-        }
-    }
-    let bulge = BULGE * (high[0] - low[0] + high[1] - low[1]);
-    let out = [0, 1].map(|k| ((low[k] - point[k]).max(point[k] - high[k]) - bulge).max(0.0));
-    length(out) > reach
-}
-
-fn blend(nodes: &[usize], positions: &[[f64; 2]], weights: &[f64; MAX_NODES]) -> [f64; 2] {
-    nodes.iter().zip(weights).fold([0.0, 0.0], |sum, (&n, w)| {
-        [sum[0] + w * positions[n][0], sum[1] + w * positions[n][1]]
-    })
 }
 
 fn squared(v: [f64; 2]) -> f64 {

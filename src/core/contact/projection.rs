@@ -7,7 +7,7 @@
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
 use crate::contact::corner;
-use crate::contact::element::Element;
+use crate::contact::element::{Element, Places};
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
 
@@ -15,8 +15,6 @@ use crate::model::Surface;
 const END_TOLERANCE: f64 = 1e-9;
 /// By how much another element must be closer before a node leaves its own, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
-/// Lagrange curves leave the bounding box of their nodes by less than this, relative to the size of the box.
-const BULGE: f64 = 0.5;
 
 /// A point of a chain of interface elements.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -126,7 +124,7 @@ fn consider(
     let own = Bounds::new(element.nodes, positions);
     if let Some(best) = best
         && !surface.endless
-        && own.lies_beyond(slave, best.distance)
+        && own.lies_beyond(element, slave, best.distance)
     {
         return;
     }
@@ -189,6 +187,22 @@ pub fn half_angle(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]
     })
 }
 
+/// Whether two elements meet at a border, and not straight ([`STRAIGHT`]).
+pub fn has_kink(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> bool {
+    if !surface.smooth.is_empty() {
+        return false;
+    }
+    let Some((other, xi)) = neighbour(surface, border) else {
+        return false;
+    };
+    let own = slope_at(surface, border.element, border.xi, positions);
+    let across = slope_at(surface, other, xi, positions);
+    let cross = own[0] * across[1] - own[1] * across[0];
+    let dot = own[0] * across[0] + own[1] * across[1];
+    // No arc tangent for what is as small as its argument.
+    cross.abs() > 2.0 * STRAIGHT * dot
+}
+
 /// Geometry at a spot, for a slave node at `slave`.
 pub fn projection_at(
     surfaces: &[Surface],
@@ -198,9 +212,8 @@ pub fn projection_at(
 ) -> Projection {
     let surface = &surfaces[spot.surface];
     let element = Element::of(surface, spot.element);
-    let (nodes, s) = (element.nodes, element.shape(spot.xi));
-    let foot = blend(nodes, positions, &s.n);
-    let slope = blend(nodes, positions, &s.d);
+    let (places, s) = (Places::of(element.nodes, positions), element.shape(spot.xi));
+    let (foot, slope) = (places.sum(&s.n), places.sum(&s.d));
     let normal = normal_at(surface, spot, positions, slope);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
     let passes = !surface.smooth.is_empty() && neighbour(surface, spot).is_some();
@@ -213,7 +226,7 @@ pub fn projection_at(
         shape_slope: s.d,
         curve: inside.then(|| Curve {
             slope,
-            bend: blend(nodes, positions, &s.dd),
+            bend: places.sum(&s.dd),
         }),
     }
 }
@@ -253,7 +266,7 @@ pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePo
 /// dx/dξ at ξ of an element.
 fn slope_at(surface: &Surface, element: usize, xi: f64, positions: &[[f64; 2]]) -> [f64; 2] {
     let element = Element::of(surface, element);
-    blend(element.nodes, positions, &element.shape(xi).d)
+    blend(element.nodes, positions, &element.slopes(xi))
 }
 
 /// The element that meets the spot's own there, and ξ on it. `None` inside an element, and at an end of the chain.
@@ -311,38 +324,44 @@ fn closest(
     slave: [f64; 2],
     guess: Option<f64>,
 ) -> (f64, f64) {
+    let places = Places::of(element.nodes, positions);
     let squared = |n: &[f64; MAX_NODES]| {
-        let to = away(slave, blend(element.nodes, positions, n));
+        let to = away(slave, places.sum(n));
         to[0] * to[0] + to[1] * to[1]
     };
-    let guess = guess.map(|xi| xi.clamp(-1.0, 1.0));
-    let guess = guess.map(|xi| (squared(&element.shape(xi).n), xi));
-    let samples = (0..element.samples()).map(|k| element.sample(k));
-    let samples = samples.map(|(xi, n)| (squared(&n), xi));
-    let start = samples
-        .chain(guess)
-        .fold((f64::INFINITY, 0.0), |best, now| {
-            if now.0 < best.0 { now } else { best }
-        });
-    let refined = descend(element, positions, slave, start.1);
-    let ended = (squared(&element.shape(refined).n), refined);
-    let (squared, xi) = if ended.0 <= start.0 { ended } else { start };
+    let mut start = (f64::INFINITY, 0.0);
+    let mut look = |xi: f64, n: &[f64; MAX_NODES]| {
+        let squared = squared(n);
+        if squared < start.0 {
+            start = (squared, xi);
+        }
+    };
+    element.samples(&mut look);
+    if let Some(xi) = guess.map(|xi| xi.clamp(-1.0, 1.0)) {
+        look(xi, &element.shape(xi).n);
+    }
+    let refined = descend(element, &places, slave, start.1);
+    let (squared, xi) = if refined == start.1 {
+        start
+    } else {
+        let ended = squared(&element.shape(refined).n);
+        if ended <= start.0 {
+            (ended, refined)
+        } else {
+            start
+        }
+    };
     (squared.sqrt(), xi)
 }
 
 /// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton where the second derivative of the squared
-/// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'.
-fn descend(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2], start: f64) -> f64 {
-    let nodes = element.nodes;
+/// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'. The curve's nodes are at `places`.
+fn descend(element: Element<'_>, places: &Places, slave: [f64; 2], start: f64) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
         let s = element.shape(xi);
-        let (x, d, dd) = (
-            blend(nodes, positions, &s.n),
-            blend(nodes, positions, &s.d),
-            blend(nodes, positions, &s.dd),
-        );
-        let to = [slave[0] - x[0], slave[1] - x[1]];
+        let (x, d, dd) = (places.sum(&s.n), places.sum(&s.d), places.sum(&s.dd));
+        let to = away(slave, x);
         let slope = d[0] * d[0] + d[1] * d[1];
         let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
         let denominator = if curvature > 0.1 * slope {
@@ -393,18 +412,20 @@ pub(super) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// The box around the nodes of an element.
-struct Bounds {
+pub(super) struct Bounds {
     low: [f64; 2],
     high: [f64; 2],
 }
 
 impl Bounds {
-    fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
+    pub fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        // Comparisons as the processor has them; min and max would look for what is no number.
         for &n in nodes {
+            let at = positions[n];
             for k in 0..2 {
-                low[k] = low[k].min(positions[n][k]);
-                high[k] = high[k].max(positions[n][k]);
+                low[k] = if at[k] < low[k] { at[k] } else { low[k] };
+                high[k] = if at[k] > high[k] { at[k] } else { high[k] };
             }
         }
         Bounds { low, high }
@@ -419,13 +440,11 @@ impl Bounds {
         length(self.sides())
     }
 
-    /// Whether the whole element is further from a point than `distance`.
-    fn lies_beyond(&self, point: [f64; 2], distance: f64) -> bool {
-        let [width, height] = self.sides();
-        // More than the diagonal, without a root.
-        let bulge = BULGE * (width + height);
+    /// Whether the whole element, whose nodes these bounds are around, is further from a point than `distance`.
+    pub fn lies_beyond(&self, element: Element<'_>, point: [f64; 2], distance: f64) -> bool {
+        let bulge = element.bulge(self.sides());
         let outside = |k: usize| {
-            let out = (self.low[k] - point[k]).max(point[k] - self.high[k]) - bulge;
+            let out = (self.low[k] - point[k]).max(point[k] - self.high[k]) - bulge[k];
             out.max(0.0)
         };
         let (x, y) = (outside(0), outside(1));

@@ -14,9 +14,9 @@
 //!
 //! Drift has the sign of slip, u_tS* − u_tS: what sticking must take back (Table 1).
 
-use crate::contact::element::{Element, closed};
+use crate::contact::element::{Element, Places, closed};
 use crate::contact::projection::{
-    Projection, STRAIGHT, SurfacePoint, half_angle, project, tangent,
+    Projection, SurfacePoint, has_kink, length as span, project, tangent,
 };
 use crate::model::Surface;
 
@@ -54,9 +54,8 @@ pub fn pierced(
 pub fn room(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [Option<f64>; 2] {
     [-1.0, 1.0].map(|xi| {
         let end = SurfacePoint { xi, ..spot };
-        let half = half_angle(surface, end, positions)?;
         let way = || distance(surface, spot, end, positions).abs();
-        (half.abs() > STRAIGHT).then(way)
+        has_kink(surface, end, positions).then(way)
     })
 }
 
@@ -108,23 +107,10 @@ fn length(element: Element<'_>, from: f64, to: f64, positions: &[[f64; 2]]) -> f
         return 0.0;
     }
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let speed = |xi: f64| {
-        let d = element.shape(xi).d;
-        let sum = |k: usize| -> f64 {
-            element
-                .nodes
-                .iter()
-                .zip(d)
-                .map(|(&n, d)| d * positions[n][k])
-                .sum()
-        };
-        let (x, y) = (sum(0), sum(1));
-        (x * x + y * y).sqrt()
-    };
-    let sum: f64 = POINTS
-        .iter()
-        .map(|(x, w)| w * speed(middle + half * x))
-        .sum();
+    let places = Places::of(element.nodes, positions);
+    let slopes = element.slopes_at(POINTS.map(|(x, _)| middle + half * x));
+    let speeds = slopes.iter().map(|slopes| span(places.sum(slopes)));
+    let sum: f64 = speeds.zip(POINTS).map(|(speed, (_, w))| w * speed).sum();
     half * sum
 }
 

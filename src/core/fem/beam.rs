@@ -91,13 +91,20 @@ impl Element {
 
     /// Strains and forces at Gauss point p, for displacements `u` of the element.
     pub fn section_state(&self, p: usize, u: &[f64]) -> SectionState {
+        let (state, _) = self.section(p, u);
+        state
+    }
+
+    /// The same, with t of the section.
+    fn section(&self, p: usize, u: &[f64]) -> (SectionState, [f64; 2]) {
         let (point, m) = (&self.points[p], self.nodes);
         let (mut h, mut theta, mut kappa) = ([0.0, 0.0], 0.0, 0.0);
-        for i in 0..m {
-            h[0] += point.d[i] * u[3 * i];
-            h[1] += point.d[i] * u[3 * i + 1];
-            theta += point.n[i] * u[3 * i + 2];
-            kappa += point.d[i] * u[3 * i + 2];
+        let shares = point.n.iter().zip(&point.d).take(m);
+        for (u, (n, d)) in u.chunks_exact(3).zip(shares) {
+            h[0] += d * u[0];
+            h[1] += d * u[1];
+            theta += n * u[2];
+            kappa += d * u[2];
         }
         let (s, c) = (point.angle + theta).sin_cos();
         let half = (0.5 * theta).sin();
@@ -109,17 +116,17 @@ impl Element {
             Some(ga) => ga * shear,
             None => u[3 * m + p],
         };
-        SectionState {
+        let state = SectionState {
             strain: Vector3::new(axial, shear, kappa),
             force: Vector3::new(self.section.ea * axial, q, self.section.ei * kappa),
-        }
+        };
+        (state, [c, s])
     }
 
     /// What the nodes' rows and columns at a Gauss point have in common. The strains' derivatives by the motion of node i
     /// are d_i P + n_i Q with P = [t, n in the first two rows; κ in the third] and Q in its third column only.
-    fn moduli(&self, point: &GaussPoint, theta: f64, state: &SectionState) -> Moduli {
-        let (s, c) = (point.angle + theta).sin_cos();
-        let (w, stretch, shear) = (point.weight, 1.0 + state.strain.x, state.strain.y);
+    fn moduli(&self, weight: f64, [c, s]: [f64; 2], state: &SectionState) -> Moduli {
+        let (w, stretch, shear) = (weight, 1.0 + state.strain.x, state.strain.y);
         let (normal, transverse) = (state.force.x, state.force.y);
         let (ea, ei) = (self.section.ea, self.section.ei);
         let ga = self.section.ga.unwrap_or(0.0);
@@ -184,9 +191,8 @@ impl element::Element for Element {
     fn add(&self, _past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let (m, size) = (self.nodes, self.dofs());
         for (p, point) in self.points.iter().enumerate() {
-            let state = self.section_state(p, u);
-            let theta: f64 = (0..m).map(|i| point.n[i] * u[3 * i + 2]).sum();
-            let moduli = self.moduli(point, theta, &state);
+            let (state, along) = self.section(p, u);
+            let moduli = self.moduli(point.weight, along, &state);
             let (n, d) = (&point.n[..m], &point.d[..m]);
             for i in 0..m {
                 let (n_i, d_i) = (n[i], d[i]);

@@ -47,17 +47,48 @@ const fn nodes() -> [[(f64, f64); MAX_NODES]; MAX_NODES + 1] {
     table
 }
 
+/// Calls a function that is made for every number of nodes, 2 to [`MAX_NODES`]; a curve of fewer has no functions.
+macro_rules! for_count {
+    ($m:expr, $function:ident($($argument:expr),*)) => {
+        match $m {
+            2 => $function::<2>($($argument),*),
+            3 => $function::<3>($($argument),*),
+            4 => $function::<4>($($argument),*),
+            5 => $function::<5>($($argument),*),
+            6 => $function::<6>($($argument),*),
+            7 => $function::<7>($($argument),*),
+            8 => $function::<8>($($argument),*),
+            MAX_NODES => $function::<MAX_NODES>($($argument),*),
+            _ => {}
+        }
+    };
+}
+
 /// The m shape functions and their first two derivatives at ξ.
 ///
 /// N_i is the product of the factors ξ − ξ_j before i with that of the factors behind i, over its value at ξ_i; each
 /// product is carried along with its derivatives.
 pub fn shape(m: usize, xi: f64) -> Shape {
-    let nodes = &NODES[m][..m];
     let mut s = Shape {
         n: [0.0; MAX_NODES],
         d: [0.0; MAX_NODES],
         dd: [0.0; MAX_NODES],
     };
+    for_count!(m, shape_of(xi, &mut s));
+    s
+}
+
+/// dN_i/dξ of the m shape functions alone, at some ξ, as lengths and angles of curves want them.
+pub fn slopes<const COUNT: usize>(m: usize, xi: [f64; COUNT]) -> [[f64; MAX_NODES]; COUNT] {
+    let mut slopes = [[0.0; MAX_NODES]; COUNT];
+    for_count!(m, slopes_of(&xi, &mut slopes));
+    slopes
+}
+
+/// With the number of nodes known to the compiler no loop is left: projections ask for millions of these.
+#[inline]
+fn shape_of<const M: usize>(xi: f64, s: &mut Shape) {
+    let nodes = &NODES[M][..M];
     let mut before = (1.0, 0.0, 0.0);
     for (i, &(at, _)) in nodes.iter().enumerate() {
         (s.n[i], s.d[i], s.dd[i]) = before;
@@ -72,7 +103,25 @@ pub fn shape(m: usize, xi: f64) -> Shape {
         s.dd[i] = weight * (n_dd * v + 2.0 * n_d * d + n * dd);
         behind = times(behind, xi - at);
     }
-    s
+}
+
+#[inline]
+fn slopes_of<const M: usize>(xi: &[f64], all: &mut [[f64; MAX_NODES]]) {
+    let nodes = &NODES[M][..M];
+    for (xi, slopes) in xi.iter().zip(all) {
+        let (mut values, mut before) = ([0.0; MAX_NODES], (1.0, 0.0));
+        for (i, &(at, _)) in nodes.iter().enumerate() {
+            (values[i], slopes[i]) = before;
+            let factor = xi - at;
+            before = (before.0 * factor, before.1 * factor + before.0);
+        }
+        let mut behind = (1.0, 0.0);
+        for (i, &(at, weight)) in nodes.iter().enumerate().rev() {
+            slopes[i] = weight * (slopes[i] * behind.0 + values[i] * behind.1);
+            let factor = xi - at;
+            behind = (behind.0 * factor, behind.1 * factor + behind.0);
+        }
+    }
 }
 
 /// A product with its first two derivatives, times one more factor of slope 1.
@@ -139,6 +188,7 @@ mod tests {
         for m in 2..=MAX_NODES {
             for xi in [-1.0, -0.83, 0.0, 0.31, 1.0] {
                 let s = shape(m, xi);
+                assert_eq!([s.d], slopes(m, [xi]));
                 for degree in 0..m as i32 {
                     let at = |x: f64| x.powi(degree);
                     let sum =

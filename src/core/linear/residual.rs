@@ -82,10 +82,12 @@ impl System {
         self.balance(model, at);
     }
 
-    /// Round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
-    pub(super) fn round_off(&mut self, model: &Model, u: &[f64]) -> [f64; 2] {
+    /// Finds the round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
+    /// It is that of a linearisation, whatever forces and loads are balanced in it afterwards.
+    pub(super) fn round_off(&mut self, model: &Model, u: &[f64]) {
+        self.floors = [0.0; 2];
         let Some(pattern) = self.pattern().cloned() else {
-            return [0.0; 2];
+            return;
         };
         self.x.fill(0.0);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
@@ -103,7 +105,7 @@ impl System {
                 None => worst[1] = worst[1].max(self.work[e]),
             }
         }
-        worst.map(|worst| ROUND_OFF * f64::EPSILON * worst)
+        self.floors = worst.map(|worst| ROUND_OFF * f64::EPSILON * worst);
     }
 
     /// Largest relative violation of the interface conditions by a state's forces and gaps.

@@ -93,8 +93,6 @@ pub struct System {
     pub(super) interaction: Vec<f64>,
     pub(super) step: Vec<f64>,
     pub(super) residual: Vec<f64>,
-    /// Round-off of forces and of lengths.
-    pub(super) floors: [f64; 2],
     pub(super) coupling: Vec<f64>,
     pub(super) rhs: Vec<f64>,
     pub(super) x: Vec<f64>,
@@ -104,6 +102,8 @@ pub struct System {
     /// What the load factor as an unknown adds.
     pub(super) border: Border,
     pub(super) norms: Norms,
+    /// Round-off of forces and of lengths that are to vanish, in the last linearisation.
+    pub(super) floors: [f64; 2],
 }
 
 impl System {
@@ -144,7 +144,6 @@ impl System {
             interaction: vec![0.0; dofs],
             step: vec![0.0; dofs],
             residual: vec![0.0; equations],
-            floors: [0.0; 2],
             coupling: vec![0.0; equations],
             rhs: Vec::new(),
             x: Vec::new(),
@@ -152,6 +151,7 @@ impl System {
             block: Vec::new(),
             border: Border::default(),
             norms: Norms::default(),
+            floors: [0.0; 2],
         }
     }
 
@@ -216,7 +216,7 @@ impl System {
             bodies.turning.fill(0.0);
         }
         self.measure_interfaces(model, at);
-        self.floors = self.round_off(model, at.u);
+        self.round_off(model, at.u);
         self.balance(model, at);
         Ok(())
     }

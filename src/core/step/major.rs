@@ -52,6 +52,8 @@ impl Stepper {
         let most = self.most_majors(braked);
         let at_limit = self.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;
+        // What still moves by more than the scene's length is lost, however loud its round-off.
+        let still = after.correction < 1.0;
         if settled && balanced && !drowned && !self.is_carried(&after) {
             return self.finish(after);
         }
@@ -67,7 +69,7 @@ impl Stepper {
                 relative: after.relative,
             });
         }
-        if drowned && (at_limit || settled && balanced) {
+        if drowned && (at_limit && still || settled && balanced) {
             return self.fail(Failure::RoundOff { noise: after.noise });
         }
         if settings.at_major_limit == AtLimit::Stop
