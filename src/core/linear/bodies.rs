@@ -207,6 +207,10 @@ impl Source for Bodies {
         self.system.norms_of(&self.model, at)
     }
 
+    fn asked(&self) -> f64 {
+        self.system.asked(&self.model)
+    }
+
     fn kinematics(&self, contact: usize) -> Option<NodeKinematics> {
         self.system.kinematics(contact)
     }

@@ -56,6 +56,17 @@ impl System {
         self.norms.interface = self.violation(model, at);
     }
 
+    /// Largest force that a solve has to balance: out of balance now, and by what prescribed motions add; over the scale of forces.
+    pub fn asked(&self, model: &Model) -> f64 {
+        let mut largest = 0.0_f64;
+        for (d, equation) in model.dofs.equation.iter().enumerate() {
+            if let (Some(e), Some(lever)) = (*equation, self.sizes.lever(d)) {
+                largest = largest.max((self.residual[e] - self.coupling[e]).abs() / lever);
+            }
+        }
+        largest / self.norms.scale.max(f64::MIN_POSITIVE)
+    }
+
     /// Aims the last linearisation at another load, at the same displacements; but for what is prescribed, nothing else of it
     /// changes where no element remembers what was accepted.
     pub fn aim(&mut self, model: &Model, at: &At<'_>) {

@@ -200,6 +200,12 @@ pub trait Source: Send {
     /// How far the state of the last linearisation is from equilibrium, with its interface conditions.
     fn norms(&mut self, at: &At<'_>) -> Norms;
 
+    /// Largest force that the next solve has to balance, what prescribed motions add included, over the scale of
+    /// [`Norms::relative`].
+    fn asked(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.
     fn kinematics(&self, contact: usize) -> Option<NodeKinematics>;
 

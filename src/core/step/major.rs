@@ -17,6 +17,8 @@ const DIVERGED: f64 = 1e4;
 /// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
 /// the length instead.
 const STILL: f64 = 1e-8;
+/// With old factors, displacements are near enough within this part of the length, whatever the tolerance.
+const NEAR: f64 = 1e-10;
 /// Part of the out-of-balance force that a major iteration may leave with old factors before they are renewed.
 const ENOUGH: f64 = 0.1;
 /// Times the major iterations that keep its size after which an increment along the path is lost.
@@ -27,6 +29,7 @@ impl Stepper {
     /// where the limit of minor iterations was accepted.
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
         let held = self.hold();
+        let (asked, before) = (self.source.asked(), self.state.correction);
         if self.source.recover() == Solved::Not {
             let singular = self.explain();
             return self.fail(Failure::Singular(singular));
@@ -47,7 +50,7 @@ impl Stepper {
         let settings = self.state.controls.settings;
         let size = self.source.largest_motion(&self.state.u);
         let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
-        let balanced = self.is_balanced(&after);
+        let balanced = self.is_balanced(&after) && self.is_near(before);
         let braked = self.state.brake.is_some();
         let most = self.most_majors(braked);
         let at_limit = self.state.next.major.is_multiple_of(most);
@@ -62,7 +65,7 @@ impl Stepper {
             self.state.unsettled += 1;
             return self.finish(after);
         }
-        self.renew_factors(&after);
+        self.renew_factors(asked, before, &after);
         self.next_major();
         if !bounded {
             return self.fail(Failure::Diverged {
@@ -113,11 +116,27 @@ impl Stepper {
         }
     }
 
-    /// Has the stiffness taken anew where that in use has brought the out-of-balance force down too little. In the first major
-    /// iteration of an increment there is none before what is prescribed has moved.
-    fn renew_factors(&mut self, after: &Norms) {
-        let little = after.relative > ENOUGH * self.event.before.relative;
-        if self.state.next.major > 1 && little && !self.drop_factors() {
+    /// Whether the displacements have still to go no more than the tolerance of what the increment has moved. With old factors
+    /// they come nearer step by step, and in soft directions small forces do not tell how far they are; the ratio of the last
+    /// correction to that `before` does.
+    fn is_near(&self, before: f64) -> bool {
+        let (state, last) = (&self.state, self.state.correction);
+        if state.factored.is_none() || last == 0.0 {
+            return true;
+        }
+        // What goes slowly shows late in their ratio.
+        let ratio = (last / before).clamp(ENOUGH, 0.5);
+        let left = last * ratio / (1.0 - ratio);
+        let moved = self.source.moved(&state.u, &state.start.u) / self.model.length;
+        left <= (state.controls.settings.tolerance * moved).max(NEAR)
+    }
+
+    /// Has the stiffness taken anew where that in use has left more than [`ENOUGH`] of the force that there was to balance, or of
+    /// the last correction: the next major iteration would leave as much.
+    fn renew_factors(&mut self, asked: f64, before: f64, after: &Norms) {
+        let slow = before > 0.0 && after.correction > ENOUGH * before;
+        let little = slow || after.relative > ENOUGH * asked;
+        if little && !self.drop_factors() {
             (self.linearised, self.measured) = (false, false);
         }
     }
@@ -137,7 +156,10 @@ impl Stepper {
     fn is_balanced(&self, after: &Norms) -> bool {
         let tolerance = self.state.controls.settings.tolerance;
         let exact = after.relative <= tolerance;
-        self.state.last_target == self.state.load_factor
+        // Old factors come nearer step by step, so that small forces alone do not tell how far the displacements have still to go.
+        let near =
+            self.state.factored.is_none() || after.correction <= (tolerance / ENOUGH).max(STILL);
+        near && self.state.last_target == self.state.load_factor
             && (exact || (after.relative <= after.limit && after.correction <= STILL))
             && after.interface <= after.limit.max(tolerance)
     }
