@@ -15,7 +15,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 /// A pivot must be larger than this part of the largest entry below in its column.
 const THRESHOLD: f64 = 1e-6;
 /// So many columns are eliminated by plain loops.
-const NARROW: usize = 8;
+const NARROW: usize = 16;
 
 /// A front's matrix, column by column, and what its rows and columns stand for.
 #[derive(Default)]

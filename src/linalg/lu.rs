@@ -28,8 +28,8 @@ const BACKWARD_LIMIT: f64 = 1e-9;
 const REFINED: f64 = 1e-15;
 /// Smallest pivot from which on a matrix is regular, and the norm of its inverse not estimated any closer.
 const REGULAR: f64 = 1e-6;
-/// Stands for the exponent of zero.
-const ZERO: i32 = i32::MIN / 4;
+/// Exponent below which a value counts as none.
+const NOTHING: i32 = -600;
 
 /// Factors of a sparse matrix, with all that is needed to make them again without allocating.
 pub struct Factors {
@@ -298,24 +298,29 @@ impl Factors {
     /// two are told by their exponents alone.
     fn equilibrate(&mut self, values: &[f64], units: &[f64]) {
         for (to, &value) in self.exponents.iter_mut().zip(values) {
-            *to = exponent(value.abs()).unwrap_or(ZERO);
+            *to = (value.to_bits() >> 52 & 0x7ff) as i32 - 1023;
         }
         for (scale, &unit) in self.scale.iter_mut().zip(units) {
             *scale = exponent(unit).unwrap_or(0);
         }
         for _ in 0..SWEEPS {
             // The sizes of this sweep; a column's own scale changes only when all are known.
-            for (col, size) in self.largest.iter_mut().enumerate() {
-                let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
-                let rows = &self.pattern.row_idx[range.clone()];
-                let entries = self.exponents[range].iter().zip(rows);
+            for (range, size) in self.pattern.col_ptr.windows(2).zip(&mut self.largest) {
+                let rows = &self.pattern.row_idx[range[0]..range[1]];
+                let entries = self.exponents[range[0]..range[1]].iter().zip(rows);
                 let largest = entries.map(|(exponent, &row)| exponent + self.scale[row]);
-                *size = largest.fold(2 * ZERO, i32::max);
+                *size = largest.fold(i32::MIN, i32::max);
             }
+            let mut settled = true;
             for (scale, &size) in self.scale.iter_mut().zip(&self.largest) {
-                if size > ZERO / 2 {
-                    *scale -= (size + *scale).div_euclid(2);
+                if size > NOTHING {
+                    let too_large = (size + *scale).div_euclid(2);
+                    *scale -= too_large;
+                    settled &= too_large == 0;
                 }
+            }
+            if settled {
+                break;
             }
         }
         for (to, &scale) in self.col_scale.iter_mut().zip(&self.scale) {
