@@ -6,7 +6,7 @@
 //! degree. Of m parts a change then reaches one and log m cuts.
 
 use super::check::SolveError;
-use super::tree::Graph;
+use super::graph::Graph;
 
 /// A part smaller than this many unknowns, or so many times its cut, stays whole.
 const LEAST: usize = 48;

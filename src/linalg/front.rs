@@ -4,9 +4,10 @@
 //! F = [F_11 F_12; F_21 F_22],      P F_11 = L_11 U_11,      R = F_22 − (F_21 U_11⁻¹) (L_11⁻¹ P F_12).
 //! ```
 //!
-//! Pivots are sought in the rows of F_11 and must not be much smaller than what they eliminate below. First this is done by
-//! halves, columns in their order, with faer's kernels. If a column finds no pivot, it is done again by plain loops that
-//! take another column instead; those that find none to the end are left to the next front, with as many rows.
+//! Pivots are sought in the rows of F_11 and must not be much smaller than what they eliminate below. First this is done with
+//! the columns in their order: in a small front by plain loops, whose bits are the same on every processor, in a large one
+//! by halves, with faer's kernels. If a column finds no pivot, it is done again by plain loops that take another column
+//! instead; those that find none to the end are left to the next front, with as many rows.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
@@ -14,7 +15,8 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 /// A pivot must be larger than this part of the largest entry below in its column.
 const THRESHOLD: f64 = 1e-6;
-/// So many columns are eliminated by plain loops.
+/// Fronts up to this size are eliminated by plain loops, and so are so many columns of larger ones.
+const SMALL: usize = 64;
 const NARROW: usize = 16;
 
 /// A front's matrix, column by column, and what its rows and columns stand for.
@@ -35,7 +37,7 @@ impl Front {
         self.matrix.resize(size * size, 0.0);
     }
 
-    /// Eliminates the first `most` rows and columns, by halves. `None` if a column finds no pivot.
+    /// Eliminates the first `most` rows and columns. `None` if a column finds no pivot.
     pub fn eliminate_in_order(&mut self, most: usize) -> Option<()> {
         let size = self.rows.len();
         if most == 0 {
@@ -47,7 +49,11 @@ impl Front {
         halves(own, size, 0, most, &mut self.exchanged)?;
         if !rest.is_empty() {
             exchange(rest, size, 0, &self.exchanged);
-            update(own, rest, size, 0);
+            if size <= SMALL {
+                rest.chunks_exact_mut(size).for_each(|c| substitute(own, c));
+            } else {
+                update(own, rest, size, 0);
+            }
         }
         for (k, &row) in self.exchanged.iter().enumerate() {
             self.rows.swap(k, row);
@@ -97,6 +103,18 @@ fn step(own: &mut [f64], rest: &mut [f64], size: usize, k: usize) {
     }
 }
 
+/// Takes all steps of `own` off a column, one after the other.
+fn substitute(own: &[f64], column: &mut [f64]) {
+    for (k, lower) in own.chunks_exact(column.len()).enumerate() {
+        let factor = column[k];
+        if factor != 0.0 {
+            for (value, lower) in column[k + 1..].iter_mut().zip(&lower[k + 1..]) {
+                *value -= factor * lower;
+            }
+        }
+    }
+}
+
 /// The largest entry, by its size, and its place.
 fn largest(values: &[f64]) -> (usize, f64) {
     let mut best = (0, 0.0);
@@ -131,7 +149,7 @@ fn halves(
     exchanged: &mut [usize],
 ) -> Option<()> {
     let width = exchanged.len();
-    if width <= NARROW {
+    if width <= NARROW || size <= SMALL {
         for k in first..first + width {
             let (done, rest) = columns.split_at_mut((k + 1 - first) * size);
             let own = &mut done[(k - first) * size..];

@@ -13,11 +13,8 @@
 
 use super::check::SolveError;
 use super::dissection;
+use super::graph::{Graph, NONE, lists};
 use super::pattern::Pattern;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
-use std::collections::HashMap;
 
 /// A child is joined where the two eliminate at most so many unknowns, and not more than this part of their front is zero.
 const JOINED: [(usize, f64); 4] = [(8, 0.8), (24, 0.4), (64, 0.15), (usize::MAX, 0.03)];
@@ -27,9 +24,6 @@ const JOINED_STILL: usize = 4;
 /// Minor iterations of a typical major one, and places that change in one of them.
 const MINORS: f64 = 3.0;
 const CHANGES: f64 = 4.0;
-
-/// Marks what has no number yet.
-const NONE: usize = usize::MAX;
 
 /// What one front eliminates, and what it sees.
 pub(super) struct Node {
@@ -55,9 +49,9 @@ impl Tree {
     pub fn new(pattern: &Pattern, groups: &[usize], first: usize) -> Result<Self, SolveError> {
         let graph = Graph::new(pattern, groups, first);
         let (mut order, mut joined) =
-            graph.tried(graph.part_in_order((0..graph.count()).collect())?);
+            tried(&graph, graph.part_in_order((0..graph.count()).collect())?);
         if graph.changing.contains(&true) {
-            let other = graph.tried(dissection::order(&graph)?);
+            let other = tried(&graph, dissection::order(&graph)?);
             if operations(&other.1) < operations(&joined) {
                 (order, joined) = other;
             }
@@ -120,162 +114,33 @@ impl Tree {
     }
 }
 
-/// The groups, numbered without gaps, and which of them see each other.
-pub(super) struct Graph {
-    starts: Vec<usize>,
-    members: Vec<usize>,
-    edges: Vec<usize>,
-    neighbours: Vec<usize>,
-    /// Whether a row that changes has an entry in a group's columns.
-    changing: Vec<bool>,
+/// What an order leads to; what is eliminated for a later group comes right before it then.
+fn tried(graph: &Graph, groups: Vec<usize>) -> (Order, Vec<Joined>) {
+    let order = Order::new(groups);
+    let parents = parents(graph, &order);
+    let order = order.in_postorder(&parents);
+    let joined = join(graph, &order);
+    (order, joined)
 }
 
-impl Graph {
-    fn new(pattern: &Pattern, groups: &[usize], first: usize) -> Self {
-        let mut number = vec![NONE; groups.iter().max().map_or(0, |most| most + 1)];
-        let mut count = 0;
-        let mut group = Vec::with_capacity(groups.len());
-        for &g in groups {
-            if number[g] == NONE {
-                number[g] = count;
-                count += 1;
-            }
-            group.push(number[g]);
-        }
-        let (starts, members) = lists(count, || group.iter().copied().zip(0..));
-        let mut changing = vec![false; count];
-        let mut seen_by = vec![NONE; count];
-        let mut pairs = Vec::new();
-        for own in 0..count {
-            for &column in &members[starts[own]..starts[own + 1]] {
-                for &row in &pattern.row_idx[pattern.col_ptr[column]..pattern.col_ptr[column + 1]] {
-                    let other = group[row];
-                    changing[own] |= row >= first;
-                    if other != own && seen_by[other] != own {
-                        seen_by[other] = own;
-                        pairs.push((own, other));
-                    }
+/// The elimination tree: the first later group that each one fills in, by place in the order.
+fn parents(graph: &Graph, order: &Order) -> Vec<usize> {
+    let mut parents = vec![NONE; graph.count()];
+    // Highest known ancestor of each place: paths are shortened as they are walked.
+    let mut top = vec![NONE; graph.count()];
+    for (k, &group) in order.groups.iter().enumerate() {
+        for &neighbour in graph.neighbours(group) {
+            let mut at = order.place[neighbour];
+            while at < k {
+                let next = std::mem::replace(&mut top[at], k);
+                if next == NONE {
+                    parents[at] = k;
                 }
+                at = next.min(k);
             }
         }
-        // Symmetric, even where the pattern is not.
-        let both = || pairs.iter().flat_map(|&(a, b)| [(a, b), (b, a)]);
-        let (edges, neighbours) = lists(count, both);
-        let mut graph = Graph {
-            starts,
-            members,
-            edges,
-            neighbours,
-            changing,
-        };
-        graph.tidy();
-        graph
     }
-
-    /// Sorts the neighbours, and drops those listed twice.
-    fn tidy(&mut self) {
-        let (mut kept, mut from) = (0, 0);
-        for group in 0..self.edges.len() - 1 {
-            let to = self.edges[group + 1];
-            self.neighbours[from..to].sort_unstable();
-            let start = kept;
-            for k in from..to {
-                let neighbour = self.neighbours[k];
-                if kept == start || self.neighbours[kept - 1] != neighbour {
-                    self.neighbours[kept] = neighbour;
-                    kept += 1;
-                }
-            }
-            (from, self.edges[group + 1]) = (to, kept);
-        }
-        self.neighbours.truncate(kept);
-    }
-
-    pub fn count(&self) -> usize {
-        self.edges.len() - 1
-    }
-
-    pub fn members(&self, group: usize) -> &[usize] {
-        &self.members[self.starts[group]..self.starts[group + 1]]
-    }
-
-    pub fn neighbours(&self, group: usize) -> &[usize] {
-        &self.neighbours[self.edges[group]..self.edges[group + 1]]
-    }
-
-    /// Some of the groups in an order with little fill.
-    pub fn part_in_order(&self, groups: Vec<usize>) -> Result<Vec<usize>, SolveError> {
-        let mut number = HashMap::with_capacity(groups.len());
-        number.extend(groups.iter().enumerate().map(|(k, &group)| (group, k)));
-        let (mut starts, mut seen) = (vec![0], Vec::new());
-        for &group in &groups {
-            seen.extend(
-                self.neighbours(group)
-                    .iter()
-                    .filter_map(|other| number.get(other)),
-            );
-            let start = starts[starts.len() - 1];
-            seen[start..].sort_unstable();
-            starts.push(seen.len());
-        }
-        let count = groups.len();
-        let view = SymbolicSparseColMatRef::new_checked(count, count, &starts, None, &seen);
-        let (mut order, mut place) = (vec![0; count], vec![0; count]);
-        let request = amd::order_scratch::<usize>(count, seen.len());
-        let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
-        let stack = MemStack::new(&mut memory);
-        amd::order(&mut order, &mut place, view, Default::default(), stack)
-            .map_err(|_| SolveError::OutOfMemory)?;
-        Ok(order.iter().map(|&k| groups[k]).collect())
-    }
-
-    /// What an order leads to; what is eliminated for a later group comes right before it then.
-    fn tried(&self, groups: Vec<usize>) -> (Order, Vec<Joined>) {
-        let order = Order::new(groups);
-        let parents = self.parents(&order);
-        let order = order.in_postorder(&parents);
-        let joined = join(self, &order);
-        (order, joined)
-    }
-
-    /// The elimination tree: the first later group that each one fills in, by place in the order.
-    fn parents(&self, order: &Order) -> Vec<usize> {
-        let mut parents = vec![NONE; self.count()];
-        // Highest known ancestor of each place: paths are shortened as they are walked.
-        let mut top = vec![NONE; self.count()];
-        for (k, &group) in order.groups.iter().enumerate() {
-            for &neighbour in self.neighbours(group) {
-                let mut at = order.place[neighbour];
-                while at < k {
-                    let next = std::mem::replace(&mut top[at], k);
-                    if next == NONE {
-                        parents[at] = k;
-                    }
-                    at = next.min(k);
-                }
-            }
-        }
-        parents
-    }
-}
-
-/// Lists of values by number, one after the other, each in the order in which they come; and where each list starts.
-fn lists<P: Iterator<Item = (usize, usize)>>(
-    count: usize,
-    pairs: impl Fn() -> P,
-) -> (Vec<usize>, Vec<usize>) {
-    let mut starts = vec![0; count + 1];
-    pairs().for_each(|(number, _)| starts[number + 1] += 1);
-    for number in 0..count {
-        starts[number + 1] += starts[number];
-    }
-    let mut next = starts.clone();
-    let mut values = vec![0; starts[count]];
-    for (number, value) in pairs() {
-        values[next[number]] = value;
-        next[number] += 1;
-    }
-    (starts, values)
+    parents
 }
 
 /// Groups by place, and places by group.
