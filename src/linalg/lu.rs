@@ -194,7 +194,7 @@ impl Factors {
         x.copy_from_slice(b);
         self.apply_inverse(x);
         let mut error = self.backward_error(b, x);
-        if !(error <= REFINED) {
+        if error > REFINED || error.is_nan() {
             let mut correction = std::mem::take(&mut self.correction);
             for (c, (r, b)) in correction.iter_mut().zip(self.residual.iter().zip(b)) {
                 *c = b - r;
