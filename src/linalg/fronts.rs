@@ -1,193 +1,303 @@
-//! Multifrontal LU for small systems: an order found once, dense fronts, and no work repeated where nothing changed.
+//! Multifrontal LU: an order found once, dense fronts, and no work repeated where nothing changed.
 //!
-//! Unknowns come in groups (a node's displacements with the interface forces on it); groups that see the same others are
-//! one. Groups are eliminated by least degree. A front holds the rows and columns of a group's unknowns and of the later
-//! ones that they see, assembled from the matrix' own entries and what earlier fronts leave of theirs:
+//! Unknowns come in groups (a node's displacements with the interface forces on it), which [`super::tree`] puts in order. A
+//! front holds the rows and columns of the unknowns that it eliminates and of the later ones that they see, assembled from
+//! the matrix' own entries and what earlier fronts leave of theirs:
 //!
 //! ```text
-//! F = [F_11 F_12; F_21 F_22],      P F_11 Q = L_11 U_11,      F_22 − F_21 F_11⁻¹ F_12  goes to the parent.
+//! F = [F_11 F_12; F_21 F_22],      P F_11 Q = L_11 U_11,      R = F_22 − F_21 F_11⁻¹ F_12  goes to the parent.
 //! ```
 //!
-//! Pivots are sought inside F_11 only; a saddle point whose unknowns are in one group finds its pivots there. A pivot must
-//! not be much smaller than what it eliminates; if there is none, the general method of [`super::Factors`] takes over.
+//! Pivots are sought inside F_11 only ([`super::front`]); a saddle point whose unknowns are in one group finds its pivots
+//! there. Where one does not, its rows and columns are delayed: they go to the parent with R, which has more to choose from.
+//! So only a singular matrix is refused.
 //!
 //! A front is factored again only if its own entries, or a child's remainder, have changed since the last time. So the
 //! minor iterations of a major one repeat only what depends on the modes that changed, with the same bits as a full
-//! factorization.
+//! factorization. Remainders are kept where rows that change may ask for them again, else only until the parent has them.
 
 use super::check::SolveError;
+use super::front::Front;
 use super::pattern::Pattern;
-use std::collections::{BTreeMap, BTreeSet};
+use super::tree::{Node, Tree};
 
-/// A pivot must be larger than this part of the largest entry below in its column.
-const THRESHOLD: f64 = 1e-6;
-/// Largest size of a front for which these plain loops are fast enough.
-const LARGEST: usize = 160;
-/// Largest number of unknowns for which this plain way of finding an order is fast enough.
-const MOST: usize = 4000;
-
-/// A front; its matrix is stored column by column.
-struct Front {
-    /// The unknowns eliminated here, then those that come later.
-    unknowns: Vec<usize>,
-    /// How many are eliminated here.
-    pivots: usize,
-    /// Entries of the matrix that are assembled here: place among its values, and in the front.
-    entries: Vec<(usize, usize)>,
-    children: Vec<Child>,
-    /// Where its matrix begins.
-    start: usize,
-    /// Row and column that each step eliminated, as steps of exchange.
+/// A node of the tree, with its factors.
+struct Factored {
+    node: Node,
+    /// Where its entries of the matrix are in [`Fronts::entries`].
+    entries: std::ops::Range<usize>,
+    children: Vec<usize>,
+    /// Equation and unknown of each pivot, then of those that are delayed and of the later ones.
     rows: Vec<usize>,
     columns: Vec<usize>,
+    done: usize,
+    /// L with the diagonal of U, and right of it the rest of U; column by column.
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    /// What goes to the parent, where it is kept.
+    remainder: Vec<f64>,
+    kept: bool,
     changed: bool,
-}
-
-/// An earlier front whose remainder is assembled in a later one.
-struct Child {
-    front: usize,
-    /// Place of its later unknowns in the parent.
-    places: Vec<usize>,
+    /// Size of its smallest pivot.
+    smallest: f64,
 }
 
 /// The fronts of a pattern, with their factors.
 pub struct Fronts {
     /// Children before parents.
-    fronts: Vec<Front>,
-    store: Vec<f64>,
+    fronts: Vec<Factored>,
+    /// Entries of the matrix by front: place among its values, and in the front without delayed unknowns.
+    entries: Vec<(u32, u32)>,
+    /// The front that each of the values is assembled in.
+    owners: Vec<u32>,
     /// The values that were factored last; only meaningful if `ready`.
     values: Vec<f64>,
     ready: bool,
-    work: Vec<f64>,
+    front: Front,
+    /// Remainders that are not kept, the last one on top.
+    stack: Vec<f64>,
+    /// By equation, while solving.
+    forward: Vec<f64>,
+    own: Vec<f64>,
 }
 
 impl Fronts {
-    /// Finds an order for a pattern with a symmetric structure; `groups` is the number of each unknown's group.
-    /// `None` if the fronts would be too large for this method.
-    pub fn new(pattern: &Pattern, groups: &[usize]) -> Option<Self> {
-        if groups.len() > MOST {
-            return None;
+    /// Finds an order for a pattern; `groups` is the number of each unknown's group, and the rows from `first` on are those
+    /// that change from one factorization to the next.
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`].
+    pub fn new(pattern: &Pattern, groups: &[usize], first: usize) -> Result<Self, SolveError> {
+        let tree = Tree::new(pattern, groups, first)?;
+        let count = tree.nodes.len();
+        let mut children = vec![Vec::new(); count];
+        for (k, node) in tree.nodes.iter().enumerate() {
+            if let Some(parent) = node.parent {
+                children[parent].push(k);
+            }
         }
-        let clusters = clusters(pattern, groups);
-        let order = order(&clusters)?;
-        let mut fronts = lay_out(&clusters, &order)?;
-        assign(pattern, &mut fronts);
-        let mut length = 0;
-        for front in &mut fronts {
-            front.start = length;
-            length += front.unknowns.len().pow(2);
-        }
-        let largest = fronts.iter().map(|f| f.unknowns.len()).max().unwrap_or(0);
-        Some(Fronts {
-            fronts,
-            store: vec![0.0; length],
+        let changing: Vec<bool> = tree.nodes.iter().map(|node| node.changing).collect();
+        let is_kept = |node: &Node| node.parent.is_some_and(|parent| changing[parent]);
+        let assigned = assign(pattern, &tree)?;
+        let fronts = tree.nodes.into_iter().zip(children).zip(assigned.ranges);
+        let fronts = fronts.map(|((node, children), entries)| Factored {
+            kept: is_kept(&node),
+            node,
+            entries,
+            children,
+            rows: Vec::new(),
+            columns: Vec::new(),
+            done: 0,
+            lower: Vec::new(),
+            upper: Vec::new(),
+            remainder: Vec::new(),
+            changed: true,
+            smallest: 0.0,
+        });
+        Ok(Fronts {
+            fronts: fronts.collect(),
+            entries: assigned.entries,
+            owners: assigned.owners,
             values: vec![0.0; pattern.entries()],
             ready: false,
-            work: vec![0.0; largest],
+            front: Front::default(),
+            stack: Vec::new(),
+            forward: vec![0.0; pattern.size()],
+            own: Vec::new(),
         })
     }
 
     /// Factors the matrix with these values, in the order of the pattern.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] where a front has no pivot that is large enough.
+    /// [`SolveError::Singular`] where no pivot is left.
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
-        let all = !std::mem::replace(&mut self.ready, false);
+        self.find_changes(values);
+        self.ready = false;
+        self.stack.clear();
         for k in 0..self.fronts.len() {
             let (done, rest) = self.fronts.split_at_mut(k);
-            let Some(front) = rest.first_mut() else { break };
-            let old = &self.values;
-            front.changed = all
-                || front.children.iter().any(|c| done[c.front].changed)
-                || front.entries.iter().any(|&(e, _)| values[e] != old[e]);
-            if !front.changed {
+            let Some(own) = rest.first_mut() else { break };
+            own.changed |= own.children.iter().any(|&c| done[c].changed);
+            if !own.changed {
                 continue;
             }
-            let size = front.unknowns.len();
-            let (before, own) = self.store.split_at_mut(front.start);
-            let matrix = &mut own[..size * size];
-            matrix.fill(0.0);
-            for &(entry, place) in &front.entries {
-                matrix[place] += values[entry];
+            let entries = &self.entries[own.entries.clone()];
+            let assemble = |front: &mut Front, stack: &[f64]| {
+                let delayed = own.assemble(done, stack, front);
+                own.add_entries(entries, &self.values, delayed, front);
+                delayed + own.node.pivots
+            };
+            let most = assemble(&mut self.front, &self.stack);
+            let eliminated = match self.front.eliminate_in_order(most) {
+                Some(()) => most,
+                None => {
+                    assemble(&mut self.front, &self.stack);
+                    self.front.eliminate_in_any_order(most)
+                }
+            };
+            if eliminated < most && own.node.parent.is_none() {
+                return Err(SolveError::Singular);
             }
-            for child in &front.children {
-                add_remainder(&done[child.front], before, &child.places, size, matrix);
-            }
-            front.eliminate(matrix)?;
+            let left: usize = own.children.iter().map(|&c| done[c].on_stack()).sum();
+            self.stack.truncate(self.stack.len() - left);
+            own.keep(&self.front, eliminated, &mut self.stack);
         }
-        self.values.copy_from_slice(values);
         self.ready = true;
         Ok(())
     }
 
+    /// Finds the fronts whose own entries have changed. Where one has changed whose children's remainders were not kept,
+    /// all are factored anew.
+    fn find_changes(&mut self, values: &[f64]) {
+        let mut all = !self.ready;
+        self.fronts
+            .iter_mut()
+            .for_each(|front| front.changed = false);
+        let old = self.values.iter_mut().zip(values);
+        for ((old, &new), &owner) in old.zip(&self.owners) {
+            if *old != new {
+                *old = new;
+                let front = &mut self.fronts[owner as usize];
+                front.changed = true;
+                all |= !front.node.changing;
+            }
+        }
+        if all {
+            self.fronts
+                .iter_mut()
+                .for_each(|front| front.changed = true);
+        }
+    }
+
+    /// Size of the smallest pivot.
+    pub fn smallest_pivot(&self) -> f64 {
+        let pivots = self.fronts.iter().map(|front| front.smallest);
+        pivots.fold(f64::INFINITY, f64::min)
+    }
+
     /// Solves A x = b, b given in `x`.
     pub fn solve(&mut self, x: &mut [f64]) {
+        self.forward.copy_from_slice(x);
         for front in &self.fronts {
-            front.forward(&self.store[front.start..], &mut self.work, x);
+            front.forward(&mut self.own, &mut self.forward);
         }
         for front in self.fronts.iter().rev() {
-            front.backward(&self.store[front.start..], &mut self.work, x);
+            front.backward(&mut self.own, &self.forward, x);
         }
     }
 }
 
-/// Adds what a front left of its later unknowns.
-fn add_remainder(child: &Front, store: &[f64], places: &[usize], size: usize, matrix: &mut [f64]) {
-    let (own, pivots) = (child.unknowns.len(), child.pivots);
-    let remainder = &store[child.start + pivots * own..child.start + own * own];
-    for (column, &to) in remainder.chunks_exact(own).zip(places) {
-        let to = &mut matrix[to * size..(to + 1) * size];
-        for (value, &row) in column[pivots..].iter().zip(places) {
-            to[row] += value;
-        }
-    }
-}
-
-impl Front {
-    fn eliminate(&mut self, matrix: &mut [f64]) -> Result<(), SolveError> {
-        let size = self.unknowns.len();
-        for k in 0..self.pivots {
-            let (row, column) = pivot(matrix, size, k, self.pivots).ok_or(SolveError::Singular)?;
-            (self.rows[k], self.columns[k]) = (row, column);
-            if column != k {
-                let (first, second) = matrix.split_at_mut(column * size);
-                first[k * size..(k + 1) * size].swap_with_slice(&mut second[..size]);
-            }
-            if row != k {
-                for column in matrix.chunks_exact_mut(size) {
-                    column.swap(k, row);
-                }
-            }
-            let (done, rest) = matrix.split_at_mut((k + 1) * size);
-            let factors = &mut done[k * size + k..];
-            let (head, lower) = factors.split_at_mut(1);
-            let inverse = 1.0 / head[0];
-            for value in lower.iter_mut() {
-                *value *= inverse;
-            }
-            for column in rest.chunks_exact_mut(size) {
-                let factor = column[k];
-                if factor != 0.0 {
-                    for (value, lower) in column[k + 1..].iter_mut().zip(lower.iter()) {
-                        *value -= factor * lower;
-                    }
-                }
-            }
-        }
-        Ok(())
+impl Factored {
+    /// How many rows, and how many columns, it leaves to its parent.
+    fn left(&self) -> usize {
+        self.rows.len() - self.done
     }
 
-    fn forward(&self, matrix: &[f64], work: &mut [f64], x: &mut [f64]) {
-        let (size, pivots) = (self.unknowns.len(), self.pivots);
-        let own = &mut work[..size];
-        for (own, &unknown) in own.iter_mut().zip(&self.unknowns) {
-            *own = x[unknown];
+    fn delayed(&self) -> usize {
+        self.left() - self.node.places.len()
+    }
+
+    /// Length of its remainder on the stack.
+    fn on_stack(&self) -> usize {
+        if self.kept { 0 } else { self.left().pow(2) }
+    }
+
+    /// Assembles what its children leave; returns how many of their unknowns are delayed, which come first.
+    fn assemble(&self, done: &[Factored], stack: &[f64], front: &mut Front) -> usize {
+        front.rows.clear();
+        front.columns.clear();
+        for child in self.children.iter().map(|&c| &done[c]) {
+            let delayed = child.done..child.done + child.delayed();
+            front.rows.extend(&child.rows[delayed.clone()]);
+            front.columns.extend(&child.columns[delayed]);
         }
-        // The rows below were exchanged after their part of L was made.
-        for (k, &row) in self.rows.iter().enumerate() {
-            own.swap(k, row);
+        let delayed = front.rows.len();
+        front.rows.extend(&self.node.unknowns);
+        front.columns.extend(&self.node.unknowns);
+        front.clear();
+        let (mut top, mut first) = (stack.len(), delayed);
+        for child in self.children.iter().rev().map(|&c| &done[c]) {
+            top -= child.on_stack();
+            first -= child.delayed();
+            let remainder = match child.kept {
+                true => &child.remainder[..],
+                false => &stack[top..top + child.on_stack()],
+            };
+            child.add_remainder(remainder, first, delayed, front);
         }
-        for (k, column) in matrix.chunks_exact(size).take(pivots).enumerate() {
+        delayed
+    }
+
+    /// Adds what it left to its parent's front, where its own delayed unknowns begin at `first` and those that are not
+    /// delayed at `start`.
+    fn add_remainder(&self, remainder: &[f64], first: usize, start: usize, front: &mut Front) {
+        let (size, left, delayed) = (front.rows.len(), self.left(), self.delayed());
+        let later = &self.node.places;
+        for (k, column) in remainder.chunks_exact(left.max(1)).enumerate() {
+            let to = match k.checked_sub(delayed) {
+                Some(k) => start + later[k],
+                None => first + k,
+            };
+            let to = &mut front.matrix[to * size..(to + 1) * size];
+            let (head, column) = column.split_at(delayed);
+            for (to, value) in to[first..].iter_mut().zip(head) {
+                *to += value;
+            }
+            let to = &mut to[start..];
+            for (value, &row) in column.iter().zip(later) {
+                to[row] += value;
+            }
+        }
+    }
+
+    fn add_entries(
+        &self,
+        entries: &[(u32, u32)],
+        values: &[f64],
+        delayed: usize,
+        front: &mut Front,
+    ) {
+        let (size, plain) = (front.rows.len(), self.node.unknowns.len());
+        for &(entry, place) in entries {
+            let place = match delayed {
+                0 => place as usize,
+                _ => (place as usize / plain + delayed) * size + place as usize % plain + delayed,
+            };
+            front.matrix[place] += values[entry as usize];
+        }
+    }
+
+    /// Takes its factors from a front of which so many are eliminated, and hands on the remainder.
+    fn keep(&mut self, front: &Front, done: usize, stack: &mut Vec<f64>) {
+        let size = front.rows.len();
+        self.done = done;
+        self.rows.clone_from(&front.rows);
+        self.columns.clone_from(&front.columns);
+        let (own, rest) = front.matrix.split_at(done * size);
+        self.lower.clear();
+        self.lower.extend_from_slice(own);
+        self.upper.clear();
+        self.remainder.clear();
+        let to = if self.kept {
+            &mut self.remainder
+        } else {
+            stack
+        };
+        for column in rest.chunks_exact(size.max(1)) {
+            let (upper, remainder) = column.split_at(done);
+            self.upper.extend_from_slice(upper);
+            to.extend_from_slice(remainder);
+        }
+        let pivots = self.lower.iter().step_by(size + 1);
+        self.smallest = pivots.fold(f64::INFINITY, |least, pivot| least.min(pivot.abs()));
+    }
+
+    fn forward(&self, own: &mut Vec<f64>, b: &mut [f64]) {
+        let size = self.rows.len();
+        own.clear();
+        own.extend(self.rows.iter().map(|&row| b[row]));
+        for (k, column) in self.lower.chunks_exact(size.max(1)).enumerate() {
             let value = own[k];
             if value != 0.0 {
                 for (own, lower) in own[k + 1..].iter_mut().zip(&column[k + 1..]) {
@@ -195,268 +305,305 @@ impl Front {
                 }
             }
         }
-        for (own, &unknown) in own.iter().zip(&self.unknowns) {
-            x[unknown] = *own;
+        for (own, &row) in own.iter().zip(&self.rows) {
+            b[row] = *own;
         }
     }
 
-    fn backward(&self, matrix: &[f64], work: &mut [f64], x: &mut [f64]) {
-        let (size, pivots) = (self.unknowns.len(), self.pivots);
-        let own = &mut work[..size];
-        for (own, &unknown) in own.iter_mut().zip(&self.unknowns) {
-            *own = x[unknown];
-        }
-        for k in (0..size).rev() {
-            let column = &matrix[k * size..(k + 1) * size];
-            let above = k.min(pivots);
-            if k < pivots {
-                own[k] /= column[k];
-            }
-            let value = own[k];
+    fn backward(&self, own: &mut Vec<f64>, b: &[f64], x: &mut [f64]) {
+        let (size, done) = (self.rows.len(), self.done);
+        own.clear();
+        own.extend(self.rows[..done].iter().map(|&row| b[row]));
+        for (column, &later) in self
+            .upper
+            .chunks_exact(done.max(1))
+            .zip(&self.columns[done..])
+        {
+            let value = x[later];
             if value != 0.0 {
-                for (own, upper) in own[..above].iter_mut().zip(column) {
+                for (own, upper) in own.iter_mut().zip(column) {
                     *own -= value * upper;
                 }
             }
         }
-        for (k, &column) in self.columns.iter().enumerate().rev() {
-            own.swap(k, column);
-        }
-        for (own, &unknown) in own.iter().zip(&self.unknowns).take(pivots) {
-            x[unknown] = *own;
-        }
-    }
-}
-
-/// The pivot of step k: in the first column that has one, the largest entry of the rows that may be taken.
-fn pivot(matrix: &[f64], size: usize, k: usize, pivots: usize) -> Option<(usize, usize)> {
-    (k..pivots).find_map(|c| {
-        let column = &matrix[c * size..(c + 1) * size];
-        let largest = |mut best: (usize, f64), (row, value): (usize, &f64)| {
-            if value.abs() > best.1 {
-                best = (row, value.abs());
-            }
-            best
-        };
-        let own = column[k..pivots].iter().enumerate().fold((0, 0.0), largest);
-        let rest = column[pivots..].iter().enumerate().fold((0, 0.0), largest);
-        (own.1 > THRESHOLD * rest.1 && own.1.is_finite()).then_some((k + own.0, c))
-    })
-}
-
-/// Groups of unknowns that are eliminated together, and what they see.
-struct Clusters {
-    members: Vec<Vec<usize>>,
-    /// Other clusters.
-    neighbours: Vec<BTreeSet<usize>>,
-}
-
-/// The groups, those that see the same being one.
-fn clusters(pattern: &Pattern, groups: &[usize]) -> Clusters {
-    let count = groups.iter().max().map_or(0, |most| most + 1);
-    let mut sees = vec![BTreeSet::new(); count];
-    for (row, column) in pattern.iter() {
-        sees[groups[row]].insert(groups[column]);
-        sees[groups[column]].insert(groups[row]);
-    }
-    let mut alike: BTreeMap<&BTreeSet<usize>, usize> = BTreeMap::new();
-    let mut cluster = vec![0; count];
-    for (group, seen) in sees.iter().enumerate().filter(|(_, seen)| !seen.is_empty()) {
-        let next = alike.len();
-        cluster[group] = *alike.entry(seen).or_insert(next);
-    }
-    let mut members = vec![Vec::new(); alike.len()];
-    for (unknown, &group) in groups.iter().enumerate() {
-        members[cluster[group]].push(unknown);
-    }
-    let mut neighbours = vec![BTreeSet::new(); alike.len()];
-    for (seen, &own) in &alike {
-        neighbours[own].extend(seen.iter().map(|&g| cluster[g]).filter(|&c| c != own));
-    }
-    Clusters {
-        members,
-        neighbours,
-    }
-}
-
-/// Clusters in the order of their elimination, each with those that it sees then.
-fn order(clusters: &Clusters) -> Option<Vec<(usize, Vec<usize>)>> {
-    let mut graph = clusters.neighbours.clone();
-    let weight = |c: usize| clusters.members[c].len();
-    let degree = |seen: &BTreeSet<usize>| seen.iter().map(|&c| weight(c)).sum::<usize>();
-    let mut queue: BTreeSet<(usize, usize)> =
-        (0..graph.len()).map(|c| (degree(&graph[c]), c)).collect();
-    let mut order = Vec::with_capacity(graph.len());
-    while let Some((seen_by, cluster)) = queue.pop_first() {
-        if seen_by + weight(cluster) > LARGEST {
-            return None;
-        }
-        let seen: Vec<usize> = std::mem::take(&mut graph[cluster]).into_iter().collect();
-        for &other in &seen {
-            queue.remove(&(degree(&graph[other]), other));
-            graph[other].remove(&cluster);
-            graph[other].extend(seen.iter().filter(|&&c| c != other));
-            queue.insert((degree(&graph[other]), other));
-        }
-        order.push((cluster, seen));
-    }
-    Some(order)
-}
-
-/// Fronts of the clusters; one that only hands on what its one child leaves is joined with it.
-fn lay_out(clusters: &Clusters, order: &[(usize, Vec<usize>)]) -> Option<Vec<Front>> {
-    let mut step = vec![0; order.len()];
-    for (k, (cluster, _)) in order.iter().enumerate() {
-        step[*cluster] = k;
-    }
-    let mut fronts: Vec<Front> = Vec::new();
-    // The fronts whose remainder each step takes.
-    let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); order.len()];
-    for (k, (cluster, seen)) in order.iter().enumerate() {
-        let mut later = seen.clone();
-        later.sort_unstable_by_key(|&c| step[c]);
-        let own = &clusters.members[*cluster];
-        let width = own.len()
-            + later
-                .iter()
-                .map(|&c| clusters.members[c].len())
-                .sum::<usize>();
-        let children = std::mem::take(&mut waiting[k]);
-        let next = later.first().map(|&c| step[c]);
-        if let [only] = children[..] {
-            let child = &mut fronts[only];
-            if child.unknowns.len() - child.pivots == width {
-                child.pivots += own.len();
-                next.into_iter().for_each(|next| waiting[next].push(only));
-                continue;
+        for (k, column) in self.lower.chunks_exact(size.max(1)).enumerate().rev() {
+            own[k] /= column[k];
+            let value = own[k];
+            for (own, upper) in own[..k].iter_mut().zip(column) {
+                *own -= value * upper;
             }
         }
-        next.into_iter()
-            .for_each(|next| waiting[next].push(fronts.len()));
-        let unknowns = own
-            .iter()
-            .chain(later.iter().flat_map(|&c| &clusters.members[c]));
-        fronts.push(Front {
-            unknowns: unknowns.copied().collect(),
-            pivots: own.len(),
-            entries: Vec::new(),
-            children: children
-                .into_iter()
-                .map(|front| Child {
-                    front,
-                    places: Vec::new(),
-                })
-                .collect(),
-            start: 0,
-            rows: Vec::new(),
-            columns: Vec::new(),
-            changed: true,
-        });
-    }
-    for k in 0..fronts.len() {
-        let mut children = std::mem::take(&mut fronts[k].children);
-        for child in &mut children {
-            let from = &fronts[child.front];
-            let later = &from.unknowns[from.pivots..];
-            let place = |unknown| fronts[k].unknowns.iter().position(|u| u == unknown);
-            child.places = later.iter().map(place).collect::<Option<_>>()?;
+        for (own, &column) in own.iter().zip(&self.columns) {
+            x[column] = *own;
         }
-        let front = &mut fronts[k];
-        front.children = children;
-        (front.rows, front.columns) = (vec![0; front.pivots], vec![0; front.pivots]);
     }
-    Some(fronts)
+}
+
+/// Which front has which entries of the matrix.
+struct Assigned {
+    entries: Vec<(u32, u32)>,
+    ranges: Vec<std::ops::Range<usize>>,
+    owners: Vec<u32>,
 }
 
 /// Gives every entry of the matrix to the front that eliminates the first of its two unknowns.
-fn assign(pattern: &Pattern, fronts: &mut [Front]) {
-    let mut eliminated = vec![(0, 0); pattern.size()];
-    for (f, front) in fronts.iter().enumerate() {
-        for (place, &unknown) in front.unknowns[..front.pivots].iter().enumerate() {
-            eliminated[unknown] = (f, place);
-        }
+fn assign(pattern: &Pattern, tree: &Tree) -> Result<Assigned, SolveError> {
+    let narrow = |number: usize| u32::try_from(number).map_err(|_| SolveError::OutOfMemory);
+    let mut eliminated = vec![0; pattern.size()];
+    for (k, node) in tree.nodes.iter().enumerate() {
+        node.unknowns[..node.pivots]
+            .iter()
+            .for_each(|&unknown| eliminated[unknown] = k);
     }
+    let owner = |row: usize, column: usize| eliminated[row].min(eliminated[column]);
+    // Entries by front, so that places are found with one list of them.
+    let mut starts = vec![0; tree.nodes.len() + 1];
+    let mut owners = Vec::with_capacity(pattern.entries());
+    for (row, column) in pattern.iter() {
+        starts[owner(row, column) + 1] += 1;
+        owners.push(narrow(owner(row, column))?);
+    }
+    for k in 0..tree.nodes.len() {
+        starts[k + 1] += starts[k];
+    }
+    let mut next = starts.clone();
+    let mut entries = vec![(0, 0, 0); pattern.entries()];
     for (entry, (row, column)) in pattern.iter().enumerate() {
-        let front = &mut fronts[eliminated[row].0.min(eliminated[column].0)];
-        let place = |unknown| front.unknowns.iter().position(|&u| u == unknown);
-        if let (Some(i), Some(j)) = (place(row), place(column)) {
-            front.entries.push((entry, j * front.unknowns.len() + i));
-        }
+        let next = &mut next[owner(row, column)];
+        entries[*next] = (narrow(entry)?, row, column);
+        *next += 1;
     }
+    let mut place = vec![0; pattern.size()];
+    let mut placed = Vec::with_capacity(entries.len());
+    let mut ranges = Vec::with_capacity(tree.nodes.len());
+    for (k, node) in tree.nodes.iter().enumerate() {
+        for (at, &unknown) in node.unknowns.iter().enumerate() {
+            place[unknown] = at;
+        }
+        let range = starts[k]..starts[k + 1];
+        for &(entry, row, column) in &entries[range.clone()] {
+            placed.push((
+                entry,
+                narrow(place[column] * node.unknowns.len() + place[row])?,
+            ));
+        }
+        ranges.push(range);
+    }
+    Ok(Assigned {
+        entries: placed,
+        ranges,
+        owners,
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::{DMatrix, DVector};
 
-    /// A chain of saddle points: two stiff displacements and a constraint force a group.
-    fn chain(count: usize) -> (Pattern, Vec<usize>, Vec<f64>) {
-        let n = 3 * count;
-        let mut entries = Vec::new();
-        for i in 0..n {
-            for j in 0..n {
-                let (a, b) = (i / 3, j / 3);
-                let force = i % 3 == 2 || j % 3 == 2;
-                if a == b || (a.abs_diff(b) <= 1 && !force) {
-                    entries.push((i, j));
+    /// A matrix in groups; the rows from `first` on are those of the constraints.
+    struct Case {
+        pattern: Pattern,
+        groups: Vec<usize>,
+        first: usize,
+        values: Vec<f64>,
+    }
+
+    impl Case {
+        /// A grid of `across` by `up` nodes with two displacements each, held at one side, and a constraint on both of each
+        /// lower node; `lean` makes it unsymmetric. Constraints have groups of their own where they are `apart`.
+        fn grid(across: usize, up: usize, lean: f64, apart: bool) -> Case {
+            let (nodes, first) = (across * up, 2 * across * up);
+            let n = first + 2 * across;
+            let mut a = std::collections::BTreeMap::new();
+            let mut add = |i: usize, j: usize, value: f64| *a.entry((i, j)).or_insert(0.0) += value;
+            let near = |i: usize, j: usize| {
+                i != j
+                    && (i % across).abs_diff(j % across) <= 1
+                    && (i / across).abs_diff(j / across) <= 1
+            };
+            for i in 0..nodes {
+                for j in (0..nodes).filter(|&j| near(i, j)) {
+                    for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        let part = 0.1 * ((3 * (i + j) + p + q) % 7) as f64 - 0.4;
+                        add(2 * i + p, 2 * j + q, part);
+                        add(2 * i + p, 2 * i + p, 0.5);
+                    }
+                }
+                add(2 * i, 2 * i, if i % across == 0 { 1.0 } else { 1e-3 });
+            }
+            for s in 0..across {
+                for (k, rows) in [[0.6, -0.8], [0.8, 0.6]].iter().enumerate() {
+                    for (axis, &share) in rows.iter().enumerate() {
+                        let force = first + 2 * s + k;
+                        add(force, 2 * s + axis, share);
+                        add(2 * s + axis, force, share * (1.0 + lean * k as f64));
+                        add(force, first + 2 * s + axis, 0.0);
+                    }
+                }
+            }
+            let pattern = Pattern::new(n, a.keys().copied().collect());
+            let group = |i: usize| match i.checked_sub(first) {
+                Some(force) if apart => nodes + force,
+                Some(force) => force / 2,
+                None => i / 2,
+            };
+            Case {
+                values: pattern.iter().map(|place| a[&place]).collect(),
+                groups: (0..n).map(group).collect(),
+                pattern,
+                first,
+            }
+        }
+
+        fn fronts(&self) -> Fronts {
+            Fronts::new(&self.pattern, &self.groups, self.first).unwrap()
+        }
+
+        /// A constraint gives way: its force vanishes instead.
+        fn release(&mut self, constraint: usize) {
+            let own = self.first + constraint;
+            for (value, (i, j)) in self.values.iter_mut().zip(self.pattern.iter()) {
+                if i == own {
+                    *value = if i == j { 1.0 } else { 0.0 };
                 }
             }
         }
-        let pattern = Pattern::new(n, entries);
-        let value = |i: usize, j: usize| match (i % 3, j % 3) {
-            (2, 2) => 0.0,
-            (2, k) | (k, 2) => [0.6, -0.8][k],
-            _ if i == j => 3.0,
-            _ => -0.5 + 0.01 * ((7 * i + 3 * j) % 11) as f64,
-        };
-        let values = pattern.iter().map(|(i, j)| value(i, j)).collect();
-        (pattern, (0..n).map(|i| i / 3).collect(), values)
-    }
 
-    fn solve(fronts: &mut Fronts, pattern: &Pattern, values: &[f64]) -> (Vec<f64>, f64) {
-        fronts.factor(values).unwrap();
-        let exact: Vec<f64> = (0..pattern.size()).map(|i| (i as f64).cos()).collect();
-        let mut x = vec![0.0; exact.len()];
-        pattern.multiply(values, &exact, &mut x);
-        fronts.solve(&mut x);
-        let apart = x.iter().zip(&exact).map(|(x, e)| (x - e).abs());
-        let worst = apart.fold(0.0, f64::max);
-        (x, worst)
-    }
-
-    #[test]
-    fn saddle_points_are_solved_and_what_did_not_change_keeps_its_bits() {
-        let (pattern, groups, mut values) = chain(40);
-        let mut fronts = Fronts::new(&pattern, &groups).unwrap();
-        assert!(solve(&mut fronts, &pattern, &values).1 < 1e-12);
-        // One constraint gives way: its force vanishes instead.
-        for (value, (i, j)) in values.iter_mut().zip(pattern.iter()) {
-            if i == 62 {
-                *value = if j == 62 { 1.0 } else { 0.0 };
-            }
+        /// The solution for a fixed right-hand side.
+        fn solution(&self, fronts: &mut Fronts) -> Vec<f64> {
+            fronts.factor(&self.values).unwrap();
+            let mut x: Vec<f64> = (0..self.pattern.size()).map(|i| (i as f64).cos()).collect();
+            fronts.solve(&mut x);
+            x
         }
-        let (again, worst) = solve(&mut fronts, &pattern, &values);
-        assert!(worst < 1e-12);
-        assert!(
-            fronts.fronts.iter().any(|f| !f.changed) && fronts.fronts.iter().any(|f| f.changed)
-        );
-        let (anew, _) = solve(
-            &mut Fronts::new(&pattern, &groups).unwrap(),
-            &pattern,
-            &values,
-        );
-        assert_eq!(again, anew);
+
+        /// How far it is from that of a dense LU.
+        fn error(&self, fronts: &mut Fronts) -> f64 {
+            let x = DVector::from_vec(self.solution(fronts));
+            let n = self.pattern.size();
+            let mut dense = DMatrix::zeros(n, n);
+            for (value, place) in self.values.iter().zip(self.pattern.iter()) {
+                dense[place] = *value;
+            }
+            let b = DVector::from_fn(n, |i, _| (i as f64).cos());
+            let exact = dense.lu().solve(&b).unwrap();
+            (x - &exact).amax() / exact.amax()
+        }
+
+        /// How many unknowns are delayed.
+        fn delayed(fronts: &Fronts) -> usize {
+            fronts.fronts.iter().map(Factored::delayed).sum()
+        }
     }
 
     #[test]
-    fn a_matrix_without_pivots_in_its_groups_is_refused() {
-        let (pattern, groups, mut values) = chain(3);
-        for (value, (i, j)) in values.iter_mut().zip(pattern.iter()) {
+    fn saddle_points_small_and_large_are_solved_as_a_dense_lu_solves_them() {
+        for (across, up, lean) in [(1, 1, 0.0), (4, 2, 0.3), (30, 4, 0.0), (25, 12, -0.7)] {
+            let case = Case::grid(across, up, lean, false);
+            let mut fronts = case.fronts();
+            let apart = case.error(&mut fronts);
+            assert!(apart < 1e-10, "{across} by {up}: {apart}");
+            assert_eq!(Case::delayed(&fronts), 0, "a group has its own pivots");
+        }
+    }
+
+    #[test]
+    fn constraints_without_a_pivot_in_their_group_wait_for_one() {
+        let case = Case::grid(20, 4, 0.2, true);
+        let mut fronts = case.fronts();
+        let apart = case.error(&mut fronts);
+        assert!(apart < 1e-10, "{apart}");
+        // A front whose every group is a constraint alone.
+        let pattern = Pattern::new(4, (0..16).map(|k| (k / 4, k % 4)).collect());
+        let a = [
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 2.0, 1.0],
+            [1.0, 0.0, 3.0, 1.0],
+            [0.0, 1.0, 1.0, 2.0],
+        ];
+        let case = Case {
+            values: pattern.iter().map(|(i, j)| a[i][j]).collect(),
+            pattern,
+            groups: vec![0, 1, 2, 3],
+            first: 4,
+        };
+        assert!(case.error(&mut case.fronts()) < 1e-14);
+    }
+
+    #[test]
+    fn delayed_unknowns_are_eliminated_where_there_is_a_pivot() {
+        // A dense body, 30 of whose 100 displacements are held by forces that make a group of their own, without a pivot.
+        let (first, n) = (100, 130);
+        let value = |i: usize, j: usize| match (i.checked_sub(first), j.checked_sub(first)) {
+            (None, None) if i == j => 60.0,
+            (None, None) => 0.1 * ((7 * i + 3 * j) % 10) as f64,
+            (Some(force), None) => f64::from(u8::from(force == j)),
+            (None, Some(force)) => 0.5 * f64::from(u8::from(force == i)),
+            _ => 0.0,
+        };
+        let places = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+        let pairs = |i: usize, j: usize| i >= first && i - first == j;
+        let has =
+            |&(i, j): &(usize, usize)| (i < first) == (j < first) || pairs(i, j) || pairs(j, i);
+        let pattern = Pattern::new(n, places.filter(has).collect());
+        let mut case = Case {
+            values: pattern.iter().map(|(i, j)| value(i, j)).collect(),
+            pattern,
+            groups: (0..n).map(|i| i.min(first)).collect(),
+            first,
+        };
+        let mut fronts = case.fronts();
+        let apart = case.error(&mut fronts);
+        assert!(apart < 1e-12, "{apart}");
+        assert_eq!(Case::delayed(&fronts), 30);
+        // One that is released has its pivot, and the others wait as before.
+        case.release(7);
+        let apart = case.error(&mut fronts);
+        assert!(apart < 1e-12, "{apart}");
+        assert_eq!(Case::delayed(&fronts), 29);
+        assert_eq!(
+            case.solution(&mut fronts),
+            case.solution(&mut case.fronts())
+        );
+    }
+
+    #[test]
+    fn what_did_not_change_keeps_its_bits() {
+        for apart in [false, true] {
+            let mut case = Case::grid(300, 6, 0.1, apart);
+            let mut fronts = case.fronts();
+            case.solution(&mut fronts);
+            for released in [[17, 90], [18, 33], [0, 599]] {
+                released.into_iter().for_each(|k| case.release(k));
+                let again = case.solution(&mut fronts);
+                let few = fronts.fronts.iter().filter(|front| front.changed).count();
+                assert!(few > 0 && 3 * few < fronts.fronts.len(), "{few}");
+                let mut anew = case.fronts();
+                assert_eq!(again, case.solution(&mut anew));
+                for (one, other) in fronts.fronts.iter().zip(&anew.fronts) {
+                    assert_eq!((&one.lower, &one.upper), (&other.lower, &other.upper));
+                }
+            }
+            // What no constraint's row touches.
+            let place = case.pattern.slot(case.first - 1, case.first - 1).unwrap();
+            case.values[place] *= 1.5;
+            let again = case.solution(&mut fronts);
+            assert_eq!(again, case.solution(&mut case.fronts()));
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_is_refused() {
+        let mut case = Case::grid(3, 2, 0.0, false);
+        for (value, (i, j)) in case.values.iter_mut().zip(case.pattern.iter()) {
             if i == 5 || j == 5 {
                 *value = 0.0;
             }
         }
-        let mut fronts = Fronts::new(&pattern, &groups).unwrap();
-        assert_eq!(fronts.factor(&values), Err(SolveError::Singular));
+        let mut fronts = case.fronts();
+        assert_eq!(fronts.factor(&case.values), Err(SolveError::Singular));
+        let case = Case::grid(3, 2, 0.0, false);
+        assert!(case.error(&mut fronts) < 1e-10, "and the next one is not");
     }
 }

@@ -3,9 +3,12 @@
 //! The augmented system of eqn (9) mixes stiffnesses of very different size with constraint rows of size one and,
 //! where friction stands in the matrix, is unsymmetric. So it is scaled, rows and columns, by powers of two, which cost no
 //! digits. The matrices of a major iteration differ only in their last rows, the equations of the interface; one scale
-//! serves them all, except for these rows. Small systems whose groups of unknowns are known are factored front by
-//! front ([`super::fronts`]); others, and those that find no pivots there, by faer with partial pivoting. The symbolic
+//! serves them all, except for these rows. Systems whose groups of unknowns are known are factored front by front
+//! ([`super::fronts`]); others, and those whose solution there leaves too much, by faer with partial pivoting. The symbolic
 //! part is kept as long as the pattern stands.
+//!
+//! What is cheap to see is looked at first: a solution is refined where its residual is above round-off, and the norm of the
+//! inverse is estimated by a solve where a pivot is small. Both depend on nothing but the matrix and the right-hand side.
 
 use super::check::{SolveError, fill_probe, largest};
 use super::fronts::Fronts;
@@ -21,6 +24,12 @@ const SWEEPS: usize = 3;
 
 /// Backward error above which a solution is not believed.
 const BACKWARD_LIMIT: f64 = 1e-9;
+/// Backward error above which a solution is refined: some units of round-off.
+const REFINED: f64 = 1e-15;
+/// Smallest pivot from which on a matrix is regular, and the norm of its inverse not estimated any closer.
+const REGULAR: f64 = 1e-6;
+/// Exponent below which a value counts as none.
+const NOTHING: i32 = -600;
 
 /// Factors of a sparse matrix, with all that is needed to make them again without allocating.
 pub struct Factors {
@@ -31,6 +40,12 @@ pub struct Factors {
     used: Used,
     row_scale: Vec<f64>,
     col_scale: Vec<f64>,
+    /// Exponents of the values, of the scale, and of the largest of each column.
+    exponents: Vec<i32>,
+    scale: Vec<i32>,
+    largest: Vec<i32>,
+    /// Whether `scaled` has the whole of `values` in it.
+    applied: bool,
     values: Vec<f64>,
     scaled: Vec<f64>,
     residual: Vec<f64>,
@@ -68,16 +83,19 @@ impl Factors {
         Ok(Factors::with(pattern, None, Some(general)))
     }
 
-    /// Analyses a pattern of symmetric structure; `groups` is the number of each unknown's group, and no saddle point is
-    /// spread over several groups.
+    /// Analyses a pattern of symmetric structure; `groups` is the number of each unknown's group, and the rows from `first`
+    /// on are those in which the matrices of one scale differ. It is cheapest where no saddle point is spread over several
+    /// groups.
     ///
     /// # Errors
     /// As [`Factors::new`].
-    pub fn in_groups(pattern: Arc<Pattern>, groups: &[usize]) -> Result<Self, SolveError> {
-        match Fronts::new(&pattern, groups) {
-            Some(fronts) => Ok(Factors::with(pattern, Some(fronts), None)),
-            None => Factors::new(pattern),
-        }
+    pub fn in_groups(
+        pattern: Arc<Pattern>,
+        groups: &[usize],
+        first: usize,
+    ) -> Result<Self, SolveError> {
+        let fronts = Fronts::new(&pattern, groups, first)?;
+        Ok(Factors::with(pattern, Some(fronts), None))
     }
 
     fn with(pattern: Arc<Pattern>, fronts: Option<Fronts>, general: Option<General>) -> Self {
@@ -89,6 +107,10 @@ impl Factors {
             used: Used::Neither,
             row_scale: vec![1.0; n],
             col_scale: vec![1.0; n],
+            exponents: vec![0; entries],
+            scale: vec![0; n],
+            largest: vec![0; n],
+            applied: false,
             values: vec![0.0; entries],
             scaled: vec![0.0; entries],
             residual: vec![0.0; n],
@@ -112,8 +134,8 @@ impl Factors {
     /// singular.
     pub fn scale(&mut self, values: &[f64], first: usize, units: &[f64]) {
         self.used = Used::Neither;
-        self.values.copy_from_slice(values);
-        self.equilibrate(units);
+        self.applied = false;
+        self.equilibrate(values, units);
         if self.first_own != first {
             self.first_own = first;
             let entries = self.pattern.iter().enumerate();
@@ -131,9 +153,7 @@ impl Factors {
     /// [`Factors::inverse_norm`].
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.used = Used::Neither;
-        self.values.copy_from_slice(values);
-        self.scale_own_rows();
-        self.apply_scale();
+        self.take(values);
         if let Some(fronts) = &mut self.fronts
             && fronts.factor(&self.scaled).is_ok()
         {
@@ -174,7 +194,7 @@ impl Factors {
         x.copy_from_slice(b);
         self.apply_inverse(x);
         let mut error = self.backward_error(b, x);
-        if error > 0.0 {
+        if error > REFINED || error.is_nan() {
             let mut correction = std::mem::take(&mut self.correction);
             for (c, (r, b)) in correction.iter_mut().zip(self.residual.iter().zip(b)) {
                 *c = b - r;
@@ -211,10 +231,17 @@ impl Factors {
     }
 
     /// A lower bound of the norm of the inverse of the scaled matrix (whose entries are at most one), from one solve with a
-    /// fixed vector of all frequencies; near 1e16 if the matrix is singular, and infinite without factors.
+    /// fixed vector of all frequencies, or from the pivots where none is small; near 1e16 if the matrix is singular, and
+    /// infinite without factors.
     pub fn inverse_norm(&mut self) -> f64 {
         if self.used == Used::Neither {
             return f64::INFINITY;
+        }
+        if let (Used::Fronts, Some(fronts)) = (self.used, &self.fronts) {
+            let smallest = fronts.smallest_pivot();
+            if smallest > REGULAR {
+                return 1.0 / smallest;
+            }
         }
         let mut probe = std::mem::take(&mut self.correction);
         fill_probe(&mut probe);
@@ -267,22 +294,57 @@ impl Factors {
         }
     }
 
-    /// Ruiz equilibration: row and column i are divided by about the square root of the largest entry, some times.
-    fn equilibrate(&mut self, units: &[f64]) {
-        self.col_scale.copy_from_slice(units);
+    /// Ruiz equilibration: row and column i are divided by about the square root of the largest entry, some times. Powers of
+    /// two are told by their exponents alone.
+    fn equilibrate(&mut self, values: &[f64], units: &[f64]) {
+        for (to, &value) in self.exponents.iter_mut().zip(values) {
+            *to = (value.to_bits() >> 52 & 0x7ff) as i32 - 1023;
+        }
+        for (scale, &unit) in self.scale.iter_mut().zip(units) {
+            *scale = exponent(unit).unwrap_or(0);
+        }
         for _ in 0..SWEEPS {
-            for (col, size) in self.sizes.iter_mut().enumerate() {
-                let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
-                let rows = &self.pattern.row_idx[range.clone()];
-                let entries = self.values[range].iter().zip(rows);
-                let sizes = entries.map(|(value, &row)| (value * self.col_scale[row]).abs());
-                *size = sizes.fold(0.0, f64::max) * self.col_scale[col];
+            // The sizes of this sweep; a column's own scale changes only when all are known.
+            for (range, size) in self.pattern.col_ptr.windows(2).zip(&mut self.largest) {
+                let rows = &self.pattern.row_idx[range[0]..range[1]];
+                let entries = self.exponents[range[0]..range[1]].iter().zip(rows);
+                let largest = entries.map(|(exponent, &row)| exponent + self.scale[row]);
+                *size = largest.fold(i32::MIN, i32::max);
             }
-            for (scale, &size) in self.col_scale.iter_mut().zip(&self.sizes) {
-                *scale *= inverse_root(size);
+            let mut settled = true;
+            for (scale, &size) in self.scale.iter_mut().zip(&self.largest) {
+                if size > NOTHING {
+                    let too_large = (size + *scale).div_euclid(2);
+                    *scale -= too_large;
+                    settled &= too_large == 0;
+                }
+            }
+            if settled {
+                break;
             }
         }
+        for (to, &scale) in self.col_scale.iter_mut().zip(&self.scale) {
+            *to = power_of_two(scale);
+        }
         self.row_scale.copy_from_slice(&self.col_scale);
+    }
+
+    /// Takes the values and scales them; where only the own rows differ from those of before, only these.
+    fn take(&mut self, values: &[f64]) {
+        for &(place, ..) in &self.own {
+            self.values[place] = values[place];
+        }
+        if self.applied && self.values == values {
+            self.scale_own_rows();
+            for &(place, row, col) in &self.own {
+                self.scaled[place] = self.values[place] * self.col_scale[col] * self.row_scale[row];
+            }
+            return;
+        }
+        self.values.copy_from_slice(values);
+        self.scale_own_rows();
+        self.apply_scale();
+        self.applied = true;
     }
 
     /// Divides each row from `first_own` on by about its largest entry.
@@ -351,23 +413,18 @@ impl General {
     }
 }
 
-/// A power of two near the inverse of the square root.
-fn inverse_root(size: f64) -> f64 {
-    exponent(size).map_or(1.0, |exponent| power_of_two(-exponent.div_euclid(2)))
-}
-
 /// The power of two by which a size comes to lie between one and two.
 fn inverse(size: f64) -> f64 {
     exponent(size).map_or(1.0, |exponent| power_of_two(-exponent))
 }
 
 /// Exponent of a size. `None` for zero and for what is not a number.
-fn exponent(size: f64) -> Option<i64> {
-    let exponent = || i64::try_from(size.to_bits() >> 52).unwrap_or(1023) - 1023;
+fn exponent(size: f64) -> Option<i32> {
+    let exponent = || (size.to_bits() >> 52) as i32 - 1023;
     (size > 0.0 && size.is_finite()).then(exponent)
 }
 
-fn power_of_two(exponent: i64) -> f64 {
+fn power_of_two(exponent: i32) -> f64 {
     let biased = u64::try_from(exponent.clamp(-1000, 1000) + 1023).unwrap_or(1023);
     f64::from_bits(biased << 52)
 }

@@ -1,6 +1,7 @@
 //! Linear systems: patterns, factors, checked solves. The only files that name faer.
 //!
-//! - [`Factors`]: sparse LU of anything square, the augmented system of eqn (9) above all; `fronts`, small ones of it;
+//! - [`Factors`]: sparse LU of anything square, the augmented system of eqn (9) above all; `fronts`, `front`,
+//!   `tree`, `graph` and `dissection`: the way in which that is factored;
 //! - [`SymmetricFactors`]: sparse LDLᵀ of the bodies alone, condensed to their interface (eqn 6) on the way;
 //! - [`DenseFactors`]: LU of the interface's own small systems.
 //!
@@ -10,11 +11,15 @@
 
 mod check;
 mod dense;
+mod dissection;
+mod front;
 mod fronts;
+mod graph;
 mod lu;
 mod order;
 mod pattern;
 mod symmetric;
+mod tree;
 
 pub use check::SolveError;
 pub use dense::{DenseFactors, subtract_product};

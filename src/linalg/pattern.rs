@@ -101,8 +101,9 @@ impl Pattern {
     pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         for (col, &xc) in x.iter().enumerate() {
-            for k in self.col_ptr[col]..self.col_ptr[col + 1] {
-                y[self.row_idx[k]] += values[k] * xc;
+            let range = self.col_ptr[col]..self.col_ptr[col + 1];
+            for (&value, &row) in values[range.clone()].iter().zip(&self.row_idx[range]) {
+                y[row] += value * xc;
             }
         }
     }

@@ -307,7 +307,7 @@ fn a_long_master_is_not_condensed_to_a_dense_matrix() {
     assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
 }
 
-/// The measured times of the README's table, and what was chosen by the plain ratio of unknowns.
+/// What is faster by the measured times of the manual's page on speed. Problem 05 takes 0.035 s augmented, 0.055 s condensed.
 #[test]
 fn scenes_whose_interface_is_small_are_condensed_and_the_others_are_not() {
     for (name, set, condensed) in [
@@ -315,7 +315,7 @@ fn scenes_whose_interface_is_small_are_condensed_and_the_others_are_not() {
         ("02-two-cantilevers-rough", None, true),
         ("03-distant-cantilevers", None, false),
         ("04-cantilever-rigid-circle", None, false),
-        ("05-cantilever-elastic-block", None, true),
+        ("05-cantilever-elastic-block", None, false),
         ("05-cantilever-elastic-block-swapped", None, false),
         ("hertz-cylinder-on-block", None, true),
         (

@@ -15,6 +15,8 @@ use crate::model::Surface;
 const END_TOLERANCE: f64 = 1e-9;
 /// By how much another element must be closer before a node leaves its own, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
+/// Part of a distance by which another may be larger and still be the same but for round-off.
+const NEARLY: f64 = 1e-9;
 
 /// A point of a chain of interface elements.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -87,8 +89,19 @@ pub fn project(
     if let Some(spot) = previous {
         consider(slave, surfaces, positions, spot, true, &mut best);
     }
+    let reach = match previous {
+        Some(_) => f64::INFINITY,
+        None => nearest_node(slave, surfaces, candidates, positions) * (1.0 + NEARLY),
+    };
     for &surface in candidates {
-        for element in 0..surfaces[surface].elements.len() {
+        for (element, curve) in Element::all(&surfaces[surface]).enumerate() {
+            // Before the first element is found, each would be closer than the one before, all the way to the slave node.
+            if best.is_none()
+                && !surfaces[surface].endless
+                && Bounds::new(curve.nodes, positions).lies_beyond(curve, slave, reach)
+            {
+                continue;
+            }
             let spot = SurfacePoint {
                 surface,
                 element,
@@ -101,6 +114,24 @@ pub fn project(
     }
     let Best { spot, .. } = best?;
     (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
+}
+
+/// Distance to the closest node of surfaces whose elements go through their nodes.
+fn nearest_node(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    candidates: &[usize],
+    positions: &[[f64; 2]],
+) -> f64 {
+    let through = candidates.iter().map(|&surface| &surfaces[surface]);
+    let nodes = through
+        .filter(|surface| surface.smooth.is_empty())
+        .flat_map(|surface| surface.elements.iter().flatten());
+    let squared = nodes.map(|&node| {
+        let [x, y] = away(slave, positions[node]);
+        x * x + y * y
+    });
+    squared.fold(f64::INFINITY, f64::min).sqrt()
 }
 
 /// The closest point so far.

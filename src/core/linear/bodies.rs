@@ -79,7 +79,7 @@ impl Bodies {
                 load: vec![0.0; model.dofs.len()],
             },
             tangent: None,
-            told: (0..contacts).map(|k| stresses_tell(&model, k)).collect(),
+            told: stresses_tell(&model),
             overlaps: model.contacts.iter().any(|contact| contact.overlap > 0.0),
             model,
         }
@@ -103,16 +103,22 @@ impl Bodies {
     }
 }
 
-/// Whether the stresses tell the force of a contact: not where a support or a second contact shares its node's force, nor
+/// Whether the stresses tell the force of each contact: not where a support or a second contact shares its node's force, nor
 /// where the node is itself part of a master surface.
-fn stresses_tell(model: &Model, contact: usize) -> bool {
-    let node = model.contacts[contact].node;
-    let first = model.dofs.first[node];
-    let held = (0..2).any(|k| model.dofs.equation[first + k].is_none());
-    let mut masters = model.surfaces.iter().filter(|s| !s.rigid);
-    let master = masters.any(|s| s.elements.iter().flatten().any(|&n| n == node));
-    let at_node = model.contacts.iter().filter(|c| c.node == node);
-    !held && !master && at_node.count() == 1
+fn stresses_tell(model: &Model) -> Vec<bool> {
+    let mut master = vec![false; model.nodes.len()];
+    for surface in model.surfaces.iter().filter(|surface| !surface.rigid) {
+        let nodes = surface.elements.iter().flatten();
+        nodes.for_each(|&node| master[node] = true);
+    }
+    let mut contacts = vec![0; model.nodes.len()];
+    model.contacts.iter().for_each(|c| contacts[c.node] += 1);
+    let tell = |node: usize| {
+        let first = model.dofs.first[node];
+        let held = (0..2).any(|k| model.dofs.equation[first + k].is_none());
+        !held && !master[node] && contacts[node] == 1
+    };
+    model.contacts.iter().map(|c| tell(c.node)).collect()
 }
 
 /// Whether models differ in nothing that is laid out once: in friction, loads, history and settings alone.

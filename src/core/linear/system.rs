@@ -423,7 +423,7 @@ impl System {
         }
         let size = equations + 2 * self.interfaces.len();
         let pattern = Arc::new(Pattern::new(size, entries));
-        self.whole = Some(Factors::in_groups(pattern, &self.groups(model))?);
+        self.whole = Some(Factors::in_groups(pattern, &self.groups(model), equations)?);
         Ok(())
     }
 

@@ -1,0 +1,199 @@
+//! One front: a dense matrix some of whose unknowns are eliminated.
+//!
+//! ```text
+//! F = [F_11 F_12; F_21 F_22],      P F_11 = L_11 U_11,      R = F_22 − (F_21 U_11⁻¹) (L_11⁻¹ P F_12).
+//! ```
+//!
+//! Pivots are sought in the rows of F_11 and must not be much smaller than what they eliminate below. First this is done with
+//! the columns in their order: in a small front by plain loops, whose bits are the same on every processor, in a large one
+//! by halves, with faer's kernels. If a column finds no pivot, it is done again by plain loops that take another column
+//! instead; those that find none to the end are left to the next front, with as many rows.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
+use faer::{Accum, MatMut, MatRef, Par};
+
+/// A pivot must be larger than this part of the largest entry below in its column.
+const THRESHOLD: f64 = 1e-6;
+/// Fronts up to this size are eliminated by plain loops, and so are so many columns of larger ones.
+const SMALL: usize = 64;
+const NARROW: usize = 16;
+
+/// A front's matrix, column by column, and what its rows and columns stand for.
+#[derive(Default)]
+pub(super) struct Front {
+    pub matrix: Vec<f64>,
+    pub rows: Vec<usize>,
+    pub columns: Vec<usize>,
+    /// The row that each step exchanged its own with.
+    exchanged: Vec<usize>,
+}
+
+impl Front {
+    /// Makes room for the rows and columns that are listed; all entries are zero then.
+    pub fn clear(&mut self) {
+        let size = self.rows.len();
+        self.matrix.clear();
+        self.matrix.resize(size * size, 0.0);
+    }
+
+    /// Eliminates the first `most` rows and columns. `None` if a column finds no pivot.
+    pub fn eliminate_in_order(&mut self, most: usize) -> Option<()> {
+        let size = self.rows.len();
+        if most == 0 {
+            return Some(());
+        }
+        self.exchanged.clear();
+        self.exchanged.resize(most, 0);
+        let (own, rest) = self.matrix.split_at_mut(most * size);
+        halves(own, size, 0, most, &mut self.exchanged)?;
+        if !rest.is_empty() {
+            exchange(rest, size, 0, &self.exchanged);
+            if size <= SMALL {
+                rest.chunks_exact_mut(size).for_each(|c| substitute(own, c));
+            } else {
+                update(own, rest, size, 0);
+            }
+        }
+        for (k, &row) in self.exchanged.iter().enumerate() {
+            self.rows.swap(k, row);
+        }
+        Some(())
+    }
+
+    /// Eliminates as many as possible of the first `most` rows and columns, one by one, and says how many.
+    pub fn eliminate_in_any_order(&mut self, most: usize) -> usize {
+        let size = self.rows.len();
+        for k in 0..most {
+            let Some((row, column)) = pivot(&self.matrix, size, k, most) else {
+                return k;
+            };
+            if column != k {
+                let (first, second) = self.matrix.split_at_mut(column * size);
+                first[k * size..(k + 1) * size].swap_with_slice(&mut second[..size]);
+                self.columns.swap(k, column);
+            }
+            if row != k {
+                for column in self.matrix.chunks_exact_mut(size) {
+                    column.swap(k, row);
+                }
+                self.rows.swap(k, row);
+            }
+            let (done, rest) = self.matrix.split_at_mut((k + 1) * size);
+            step(&mut done[k * size..], rest, size, k);
+        }
+        most
+    }
+}
+
+/// Divides the column of step k by its pivot, and takes it off the columns that come later.
+fn step(own: &mut [f64], rest: &mut [f64], size: usize, k: usize) {
+    let (head, lower) = own[k..].split_at_mut(1);
+    let inverse = 1.0 / head[0];
+    for value in lower.iter_mut() {
+        *value *= inverse;
+    }
+    for column in rest.chunks_exact_mut(size) {
+        let (factor, column) = (column[k], &mut column[k + 1..]);
+        if factor != 0.0 {
+            for (value, lower) in column.iter_mut().zip(lower.iter()) {
+                *value -= factor * lower;
+            }
+        }
+    }
+}
+
+/// Takes all steps of `own` off a column, one after the other.
+fn substitute(own: &[f64], column: &mut [f64]) {
+    for (k, lower) in own.chunks_exact(column.len()).enumerate() {
+        let factor = column[k];
+        if factor != 0.0 {
+            for (value, lower) in column[k + 1..].iter_mut().zip(&lower[k + 1..]) {
+                *value -= factor * lower;
+            }
+        }
+    }
+}
+
+/// The largest entry, by its size, and its place.
+fn largest(values: &[f64]) -> (usize, f64) {
+    let mut best = (0, 0.0);
+    for (k, value) in values.iter().enumerate() {
+        if value.abs() > best.1 {
+            best = (k, value.abs());
+        }
+    }
+    best
+}
+
+/// The pivot row of a column from row `k` on, among the first `most`.
+fn pivot_row(column: &[f64], k: usize, most: usize) -> Option<usize> {
+    let (own, rest) = (largest(&column[k..most]), largest(&column[most..]));
+    (own.1 > THRESHOLD * rest.1 && own.1.is_finite()).then_some(k + own.0)
+}
+
+/// The pivot of step k, in the first column that has one.
+fn pivot(matrix: &[f64], size: usize, k: usize, most: usize) -> Option<(usize, usize)> {
+    (k..most).find_map(|c| {
+        let row = pivot_row(&matrix[c * size..(c + 1) * size], k, most)?;
+        Some((row, c))
+    })
+}
+
+/// Factors columns whose first step is `first`, up to date with all steps before.
+fn halves(
+    columns: &mut [f64],
+    size: usize,
+    first: usize,
+    most: usize,
+    exchanged: &mut [usize],
+) -> Option<()> {
+    let width = exchanged.len();
+    if width <= NARROW || size <= SMALL {
+        for k in first..first + width {
+            let (done, rest) = columns.split_at_mut((k + 1 - first) * size);
+            let own = &mut done[(k - first) * size..];
+            let row = pivot_row(own, k, most)?;
+            exchanged[k - first] = row;
+            if row != k {
+                done.chunks_exact_mut(size).for_each(|c| c.swap(k, row));
+                rest.chunks_exact_mut(size).for_each(|c| c.swap(k, row));
+            }
+            step(&mut done[(k - first) * size..], rest, size, k);
+        }
+        return Some(());
+    }
+    let half = width / 2;
+    let (left, right) = columns.split_at_mut(half * size);
+    let (early, late) = exchanged.split_at_mut(half);
+    halves(left, size, first, most, early)?;
+    exchange(right, size, first, early);
+    update(left, right, size, first);
+    halves(right, size, first + half, most, late)?;
+    exchange(left, size, first + half, late);
+    Some(())
+}
+
+/// Exchanges rows as the steps from `first` on did.
+fn exchange(columns: &mut [f64], size: usize, first: usize, exchanged: &[usize]) {
+    for column in columns.chunks_exact_mut(size) {
+        for (k, &row) in exchanged.iter().enumerate() {
+            column.swap(first + k, row);
+        }
+    }
+}
+
+/// Takes the steps of `left`, the first of which is `first`, off the columns of `right`.
+fn update(left: &[f64], right: &mut [f64], size: usize, first: usize) {
+    let steps = left.len() / size;
+    let columns = right.len() / size;
+    let left = MatRef::from_column_major_slice(left, size, steps)
+        .split_at_row(first)
+        .1;
+    let right = MatMut::from_column_major_slice_mut(right, size, columns);
+    let (_, right) = right.split_at_row_mut(first);
+    let (own, below) = left.split_at_row(steps);
+    let (mut upper, lower) = right.split_at_row_mut(steps);
+    solve_unit_lower_triangular_in_place(own, upper.as_mut(), Par::Seq);
+    matmul(lower, Accum::Add, below, upper.as_ref(), -1.0, Par::Seq);
+}

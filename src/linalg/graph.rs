@@ -1,0 +1,140 @@
+//! Groups of unknowns, and which of them see each other: the graph that an order of elimination is found in.
+
+use super::check::SolveError;
+use super::pattern::Pattern;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
+use std::collections::HashMap;
+
+/// Marks what has no number yet.
+pub(super) const NONE: usize = usize::MAX;
+
+/// The groups, numbered without gaps, and which of them see each other.
+pub(super) struct Graph {
+    starts: Vec<usize>,
+    members: Vec<usize>,
+    edges: Vec<usize>,
+    neighbours: Vec<usize>,
+    /// Whether a row that changes has an entry in a group's columns.
+    pub changing: Vec<bool>,
+}
+
+impl Graph {
+    pub fn new(pattern: &Pattern, groups: &[usize], first: usize) -> Self {
+        let mut number = vec![NONE; groups.iter().max().map_or(0, |most| most + 1)];
+        let mut count = 0;
+        let mut group = Vec::with_capacity(groups.len());
+        for &g in groups {
+            if number[g] == NONE {
+                number[g] = count;
+                count += 1;
+            }
+            group.push(number[g]);
+        }
+        let (starts, members) = lists(count, || group.iter().copied().zip(0..));
+        let mut changing = vec![false; count];
+        let mut seen_by = vec![NONE; count];
+        let mut pairs = Vec::new();
+        for own in 0..count {
+            for &column in &members[starts[own]..starts[own + 1]] {
+                for &row in &pattern.row_idx[pattern.col_ptr[column]..pattern.col_ptr[column + 1]] {
+                    let other = group[row];
+                    changing[own] |= row >= first;
+                    if other != own && seen_by[other] != own {
+                        seen_by[other] = own;
+                        pairs.push((own, other));
+                    }
+                }
+            }
+        }
+        // Symmetric, even where the pattern is not.
+        let both = || pairs.iter().flat_map(|&(a, b)| [(a, b), (b, a)]);
+        let (edges, neighbours) = lists(count, both);
+        let mut graph = Graph {
+            starts,
+            members,
+            edges,
+            neighbours,
+            changing,
+        };
+        graph.tidy();
+        graph
+    }
+
+    /// Sorts the neighbours, and drops those listed twice.
+    fn tidy(&mut self) {
+        let (mut kept, mut from) = (0, 0);
+        for group in 0..self.edges.len() - 1 {
+            let to = self.edges[group + 1];
+            self.neighbours[from..to].sort_unstable();
+            let start = kept;
+            for k in from..to {
+                let neighbour = self.neighbours[k];
+                if kept == start || self.neighbours[kept - 1] != neighbour {
+                    self.neighbours[kept] = neighbour;
+                    kept += 1;
+                }
+            }
+            (from, self.edges[group + 1]) = (to, kept);
+        }
+        self.neighbours.truncate(kept);
+    }
+
+    pub fn count(&self) -> usize {
+        self.edges.len() - 1
+    }
+
+    pub fn members(&self, group: usize) -> &[usize] {
+        &self.members[self.starts[group]..self.starts[group + 1]]
+    }
+
+    pub fn neighbours(&self, group: usize) -> &[usize] {
+        &self.neighbours[self.edges[group]..self.edges[group + 1]]
+    }
+
+    /// Some of the groups in an order with little fill.
+    pub fn part_in_order(&self, groups: Vec<usize>) -> Result<Vec<usize>, SolveError> {
+        let mut number = HashMap::with_capacity(groups.len());
+        number.extend(groups.iter().enumerate().map(|(k, &group)| (group, k)));
+        let (mut starts, mut seen) = (vec![0], Vec::new());
+        for &group in &groups {
+            seen.extend(
+                self.neighbours(group)
+                    .iter()
+                    .filter_map(|other| number.get(other)),
+            );
+            let start = starts[starts.len() - 1];
+            seen[start..].sort_unstable();
+            starts.push(seen.len());
+        }
+        let count = groups.len();
+        let view = SymbolicSparseColMatRef::new_checked(count, count, &starts, None, &seen);
+        let (mut order, mut place) = (vec![0; count], vec![0; count]);
+        let request = amd::order_scratch::<usize>(count, seen.len());
+        let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
+        let stack = MemStack::new(&mut memory);
+        amd::order(&mut order, &mut place, view, Default::default(), stack)
+            .map_err(|_| SolveError::OutOfMemory)?;
+        Ok(order.iter().map(|&k| groups[k]).collect())
+    }
+}
+
+/// Lists of values by number, one after the other, each in the order in which they come; and where each list starts.
+pub(super) fn lists<P: Iterator<Item = (usize, usize)>>(
+    count: usize,
+    pairs: impl Fn() -> P,
+) -> (Vec<usize>, Vec<usize>) {
+    let mut starts = vec![0; count + 1];
+    pairs().for_each(|(number, _)| starts[number + 1] += 1);
+    for number in 0..count {
+        starts[number + 1] += starts[number];
+    }
+    let mut next = starts.clone();
+    let mut values = vec![0; starts[count]];
+    for (number, value) in pairs() {
+        values[next[number]] = value;
+        next[number] += 1;
+    }
+    (starts, values)
+}

@@ -1,0 +1,300 @@
+//! The order in which the fronts of [`super::fronts`] eliminate, found once for a pattern.
+//!
+//! Unknowns come in groups. The graph of the groups is ordered by approximate minimum degree, or by halves
+//! ([`super::dissection`]) where that pays. What an eliminated group then
+//! sees of the later ones is
+//!
+//! ```text
+//! later(k) = (neighbours(k) ∪ ⋃ later(children of k)) \ {k and what came before},      parent(k) = min later(k).
+//! ```
+//!
+//! A group is joined with its child where the child sees the same, or little less: one larger front then does the work of
+//! both. All of this takes time nearly linear in the entries of the pattern and of the groups' factors.
+
+use super::check::SolveError;
+use super::dissection;
+use super::graph::{Graph, NONE, lists};
+use super::pattern::Pattern;
+
+/// A child is joined where the two eliminate at most so many unknowns, and not more than this part of their front is zero.
+const JOINED: [(usize, f64); 4] = [(8, 0.8), (24, 0.4), (64, 0.15), (usize::MAX, 0.03)];
+/// A child that keeps its values while its parent's change is only joined if it eliminates at most so many unknowns.
+const JOINED_STILL: usize = 4;
+
+/// Minor iterations of a typical major one, and places that change in one of them.
+const MINORS: f64 = 3.0;
+const CHANGES: f64 = 4.0;
+
+/// What one front eliminates, and what it sees.
+pub(super) struct Node {
+    /// The unknowns eliminated here, then those that come later.
+    pub unknowns: Vec<usize>,
+    /// How many are eliminated here.
+    pub pivots: usize,
+    /// The node that takes its remainder, and the places of its later unknowns there.
+    pub parent: Option<usize>,
+    pub places: Vec<usize>,
+    /// Whether it depends on rows that change from one factorization to the next.
+    pub changing: bool,
+}
+
+/// The nodes, children before parents, each one's children next before it (with all of theirs).
+pub(super) struct Tree {
+    pub nodes: Vec<Node>,
+}
+
+impl Tree {
+    /// Finds the order for a pattern; `groups` is the number of each unknown's group, and the rows from `first` on are
+    /// those that change.
+    pub fn new(pattern: &Pattern, groups: &[usize], first: usize) -> Result<Self, SolveError> {
+        let graph = Graph::new(pattern, groups, first);
+        let (mut order, mut joined) =
+            tried(&graph, graph.part_in_order((0..graph.count()).collect())?);
+        if graph.changing.contains(&true) {
+            let other = tried(&graph, dissection::order(&graph)?);
+            if operations(&other.1) < operations(&joined) {
+                (order, joined) = other;
+            }
+        }
+        let mut tree = Tree { nodes: Vec::new() };
+        for root in roots(&joined) {
+            tree.lay_out(&graph, &order, &mut joined, root);
+        }
+        tree.find_places(pattern.size());
+        Ok(tree)
+    }
+
+    /// Numbers a node and all below it.
+    fn lay_out(&mut self, graph: &Graph, order: &Order, joined: &mut [Joined], root: usize) {
+        let mut path = vec![root];
+        while let Some(&node) = path.last() {
+            if let Some(child) = joined[node].children.pop() {
+                path.push(child);
+                continue;
+            }
+            path.pop();
+            let own = &mut joined[node];
+            for &child in &own.numbered {
+                self.nodes[child].parent = Some(self.nodes.len());
+            }
+            let groups = own.pivots.iter().chain(&own.later);
+            let members = groups.flat_map(|&k| graph.members(order.groups[k]));
+            self.nodes.push(Node {
+                unknowns: members.copied().collect(),
+                pivots: own.weight,
+                parent: None,
+                places: Vec::new(),
+                changing: own.changing,
+            });
+            (own.pivots, own.later) = (Vec::new(), Vec::new());
+            if let Some(&parent) = path.last() {
+                joined[parent].numbered.push(self.nodes.len() - 1);
+            }
+        }
+    }
+
+    fn find_places(&mut self, size: usize) {
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.nodes.len()];
+        for (k, node) in self.nodes.iter().enumerate() {
+            if let Some(parent) = node.parent {
+                children[parent].push(k);
+            }
+        }
+        let mut place = vec![0; size];
+        for (k, children) in children.iter().enumerate() {
+            for (at, &unknown) in self.nodes[k].unknowns.iter().enumerate() {
+                place[unknown] = at;
+            }
+            for &child in children {
+                let node = &mut self.nodes[child];
+                let later = &node.unknowns[node.pivots..];
+                node.places = later.iter().map(|&unknown| place[unknown]).collect();
+            }
+        }
+    }
+}
+
+/// What an order leads to; what is eliminated for a later group comes right before it then.
+fn tried(graph: &Graph, groups: Vec<usize>) -> (Order, Vec<Joined>) {
+    let order = Order::new(groups);
+    let parents = parents(graph, &order);
+    let order = order.in_postorder(&parents);
+    let joined = join(graph, &order);
+    (order, joined)
+}
+
+/// The elimination tree: the first later group that each one fills in, by place in the order.
+fn parents(graph: &Graph, order: &Order) -> Vec<usize> {
+    let mut parents = vec![NONE; graph.count()];
+    // Highest known ancestor of each place: paths are shortened as they are walked.
+    let mut top = vec![NONE; graph.count()];
+    for (k, &group) in order.groups.iter().enumerate() {
+        for &neighbour in graph.neighbours(group) {
+            let mut at = order.place[neighbour];
+            while at < k {
+                let next = std::mem::replace(&mut top[at], k);
+                if next == NONE {
+                    parents[at] = k;
+                }
+                at = next.min(k);
+            }
+        }
+    }
+    parents
+}
+
+/// Groups by place, and places by group.
+struct Order {
+    groups: Vec<usize>,
+    place: Vec<usize>,
+}
+
+impl Order {
+    fn new(groups: Vec<usize>) -> Order {
+        let mut place = vec![0; groups.len()];
+        for (k, &group) in groups.iter().enumerate() {
+            place[group] = k;
+        }
+        Order { groups, place }
+    }
+
+    /// The same elimination, with all below a group right before it.
+    fn in_postorder(self, parents: &[usize]) -> Order {
+        let count = parents.len();
+        let below = || {
+            let all = parents.iter().enumerate();
+            all.map(|(k, &parent)| (if parent == NONE { count } else { parent }, k))
+        };
+        let (starts, mut children) = lists(count + 1, below);
+        // Taken from behind, so that the first comes first.
+        for k in 0..=count {
+            children[starts[k]..starts[k + 1]].reverse();
+        }
+        let mut left: Vec<usize> = starts[1..].to_vec();
+        let mut path = vec![count];
+        let mut groups = Vec::with_capacity(count);
+        while let Some(&k) = path.last() {
+            if left[k] > starts[k] {
+                left[k] -= 1;
+                path.push(children[left[k]]);
+            } else {
+                path.pop();
+                groups.extend(self.groups.get(k));
+            }
+        }
+        Order::new(groups)
+    }
+}
+
+/// Groups that are eliminated in one front, by their places in the order.
+#[derive(Default)]
+struct Joined {
+    pivots: Vec<usize>,
+    /// What they see, ascending.
+    later: Vec<usize>,
+    /// Unknowns of both.
+    weight: usize,
+    seen: usize,
+    /// Entries of its factors that are only there since groups were joined.
+    zeros: usize,
+    children: Vec<usize>,
+    /// The children that have their number in the tree.
+    numbered: Vec<usize>,
+    changing: bool,
+    /// Whether it is part of another.
+    gone: bool,
+}
+
+/// Walks the order, and joins each group with those of its children for which it pays.
+fn join(graph: &Graph, order: &Order) -> Vec<Joined> {
+    let count = graph.count();
+    let weight = |k: usize| graph.members(order.groups[k]).len();
+    let mut all: Vec<Joined> = Vec::with_capacity(count);
+    // The children of each place, and which one saw a place last.
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); count];
+    let mut mark = vec![NONE; count];
+    for k in 0..count {
+        let group = order.groups[k];
+        let mut own = Joined {
+            changing: graph.changing[group],
+            weight: weight(k),
+            children: std::mem::take(&mut children[k]),
+            ..Joined::default()
+        };
+        let mut take = |later: &mut Vec<usize>, places: &mut dyn Iterator<Item = usize>| {
+            for place in places.filter(|&place| place > k) {
+                if std::mem::replace(&mut mark[place], k) != k {
+                    later.push(place);
+                }
+            }
+        };
+        let seen = graph.neighbours(group).iter();
+        take(&mut own.later, &mut seen.map(|&other| order.place[other]));
+        for &child in &own.children {
+            take(&mut own.later, &mut all[child].later.iter().copied());
+            own.changing |= all[child].changing;
+        }
+        own.later.sort_unstable();
+        own.seen = own.later.iter().map(|&place| weight(place)).sum();
+        absorb(&mut own, &mut all);
+        own.pivots.push(k);
+        if let Some(&parent) = own.later.first() {
+            children[parent].push(k);
+        }
+        all.push(own);
+    }
+    all
+}
+
+/// Joins a group with those of its children for which it pays; those that eliminate most come first.
+fn absorb(own: &mut Joined, all: &mut [Joined]) {
+    let mut children = std::mem::take(&mut own.children);
+    children.sort_by_key(|&child| std::cmp::Reverse(all[child].seen));
+    let mut kept = Vec::new();
+    for child in children {
+        let child_is = &mut all[child];
+        let more = (own.weight + own.seen).saturating_sub(child_is.seen);
+        let zeros = own.zeros + child_is.zeros + 2 * child_is.weight * more;
+        let weight = own.weight + child_is.weight;
+        let entries = weight * (weight + 2 * own.seen);
+        let still = own.changing && !child_is.changing && child_is.weight > JOINED_STILL;
+        let few =
+            |&(most, part): &(usize, f64)| weight <= most && zeros as f64 <= part * entries as f64;
+        if still || !(more == 0 || JOINED.iter().any(few)) {
+            kept.push(child);
+            continue;
+        }
+        (own.weight, own.zeros) = (weight, zeros);
+        own.pivots.append(&mut child_is.pivots);
+        own.children.append(&mut child_is.children);
+        child_is.later = Vec::new();
+        child_is.gone = true;
+    }
+    own.children.append(&mut kept);
+    own.children.sort_unstable();
+    own.pivots.sort_unstable();
+}
+
+/// Operations of a major iteration: of all fronts once, and in some minor ones of those that some changes reach.
+fn operations(all: &[Joined]) -> f64 {
+    let cube = |size: usize| (size as f64).powi(3);
+    // Of a front with all that come after it.
+    let mut path = vec![0.0; all.len()];
+    let (mut whole, mut reached, mut count) = (0.0, 0.0, 0.0);
+    for (k, own) in all.iter().enumerate().rev().filter(|(_, own)| !own.gone) {
+        let operations = cube(own.weight + own.seen) - cube(own.seen);
+        path[k] += operations;
+        own.children.iter().for_each(|&child| path[child] = path[k]);
+        whole += operations;
+        if own.changing {
+            (reached, count) = (reached + path[k], count + 1.0);
+        }
+    }
+    whole + MINORS * f64::min(whole, CHANGES * reached / f64::max(count, 1.0))
+}
+
+fn roots(all: &[Joined]) -> Vec<usize> {
+    let roots = all.iter().enumerate();
+    let roots = roots.filter(|(_, joined)| !joined.gone && joined.later.is_empty());
+    roots.map(|(k, _)| k).collect()
+}
