@@ -35,4 +35,6 @@ pub mod study;
 pub mod teach;
 pub mod tui;
 
-pub use stickslip_core::{contact, fem, interface, linalg, linear, model, step, strategy};
+pub use stickslip_core::{
+    contact, executor, fem, interface, linalg, linear, model, step, strategy,
+};

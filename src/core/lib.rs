@@ -94,6 +94,7 @@
 //!
 //! # The rooms
 //!
+//! - [`executor`]: work on bodies side by side, by whoever has threads to give.
 //! - [`linalg`]: patterns, factors, checked solves; a package of its own.
 //! - [`model`]: what is solved, as plain data: nodes, bodies, surfaces, contacts, loads, settings.
 //! - [`fem`]: an element is a small file here ([`fem::element`] says what it has to give): shape functions, internal forces
@@ -119,6 +120,7 @@
 #![forbid(unsafe_code)]
 
 pub mod contact;
+pub mod executor;
 pub mod fem;
 pub mod interface;
 pub mod linear;

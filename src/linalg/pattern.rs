@@ -72,6 +72,11 @@ impl Pattern {
             .collect()
     }
 
+    /// Index of the first entry of a column in the array of values.
+    pub fn block_start(&self, column: usize) -> usize {
+        self.col_ptr[column]
+    }
+
     /// The pattern of one of [`Pattern::blocks`], or of some that follow each other, and where its values are among those of
     /// the whole.
     pub fn block(&self, unknowns: Range<usize>) -> (Pattern, Range<usize>) {

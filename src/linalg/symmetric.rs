@@ -57,6 +57,8 @@ pub struct SymmetricFactors {
     /// Size of the largest of them.
     size: f64,
     residual: Vec<f64>,
+    /// D, in the order of elimination.
+    pivots: Vec<f64>,
     /// y, then u, in the order of elimination.
     moved: Vec<f64>,
     /// What the columns of a supernode do to the rows below it.
@@ -104,6 +106,7 @@ impl SymmetricFactors {
             values: vec![0.0; pattern.entries()],
             size: 0.0,
             residual: vec![0.0; n],
+            pivots: vec![0.0; n],
             moved: vec![0.0; n],
             below: vec![0.0; below],
             lower: vec![0.0; last.len().pow(2)],
@@ -141,6 +144,13 @@ impl SymmetricFactors {
                 Default::default(),
             )
             .map_err(|_| SolveError::Singular)?;
+        for (pivot, column) in
+            self.pivots
+                .iter_mut()
+                .zip(columns(supernodal(&self.symbolic), &self.factors, 0))
+        {
+            *pivot = column.pivot;
+        }
         self.ready = f64::EPSILON * self.growth() <= BACKWARD_LIMIT * self.size;
         if self.ready {
             Ok(())
@@ -152,18 +162,14 @@ impl SymmetricFactors {
     /// Largest sum of the terms |L| |D| |L|ᵀ of a diagonal entry. Where no pivot is negative it is the entry itself, and
     /// nothing is added up.
     fn growth(&mut self) -> f64 {
-        let symbolic = supernodal(&self.symbolic);
-        let pivots = columns(symbolic, &self.factors).map(|column| column.pivot);
-        let least = pivots.fold(
-            f64::INFINITY,
-            |least: f64, d| if d >= least { least } else { d },
-        );
-        if least > 0.0 {
+        let negative = |d: &f64| d.is_nan() || *d <= 0.0;
+        if !self.pivots.iter().any(negative) {
             return self.size;
         }
+        let symbolic = supernodal(&self.symbolic);
         let sums = &mut self.moved;
         sums.fill(0.0);
-        for column in columns(symbolic, &self.factors) {
+        for column in columns(symbolic, &self.factors, 0) {
             let size = column.pivot.abs();
             sums[column.place] += size;
             let rows = column.place + 1..column.place + 1 + column.own.len();
@@ -241,9 +247,8 @@ impl SymmetricFactors {
     }
 
     fn divide(&mut self, count: usize) {
-        let pivots = columns(supernodal(&self.symbolic), &self.factors);
-        for (value, column) in self.moved[..count].iter_mut().zip(pivots) {
-            *value /= column.pivot;
+        for (value, pivot) in self.moved[..count].iter_mut().zip(&self.pivots) {
+            *value /= pivot;
         }
     }
 
@@ -297,8 +302,8 @@ impl SymmetricFactors {
     /// D of the last factorization, by unknown: with the unknowns before them all eliminated, what is left of the diagonal.
     /// By Sylvester's law as many are negative as K has negative eigenvalues.
     pub fn pivots(&self, out: &mut [f64]) {
-        for column in columns(supernodal(&self.symbolic), &self.factors) {
-            out[self.order[column.place]] = column.pivot;
+        for (&unknown, pivot) in self.order.iter().zip(&self.pivots) {
+            out[unknown] = *pivot;
         }
     }
 
@@ -307,8 +312,7 @@ impl SymmetricFactors {
         let (c, first) = (self.last.len(), self.inner());
         self.lower.fill(0.0);
         self.upper.fill(0.0);
-        let columns = columns(supernodal(&self.symbolic), &self.factors);
-        for column in columns.skip(first) {
+        for column in columns(supernodal(&self.symbolic), &self.factors, first) {
             let to = column.place - first;
             let own = (to + 1..to + 1 + column.own.len()).zip(column.own);
             let rest = column.rows.iter().map(|row| row - first);
@@ -378,15 +382,19 @@ struct Column<'a> {
     rows: &'a [usize],
 }
 
-/// All columns, in the order of elimination.
+/// The columns from one on, in the order of elimination.
 fn columns<'a>(
     symbolic: &'a SymbolicSupernodalCholesky<usize>,
     factors: &'a [f64],
+    first: usize,
 ) -> impl Iterator<Item = Column<'a>> {
-    (0..symbolic.n_supernodes()).flat_map(move |s| {
+    let nodes = symbolic
+        .supernode_end()
+        .partition_point(|&end| end <= first);
+    (nodes..symbolic.n_supernodes()).flat_map(move |s| {
         let node = Node::of(symbolic, factors, s);
         let (start, width, rows) = (node.start, node.width, node.rows);
-        (0..width).map(move |k| {
+        (first.saturating_sub(start)..width).map(move |k| {
             let (own, below) = node.column(k).split_at(width);
             Column {
                 place: start + k,

@@ -1,7 +1,9 @@
 //! Assembly of the bodies' internal forces and tangent stiffness (the K_s and K_m of eqn 5).
 //!
-//! Where every entry of every element goes is found once; assembling then only adds.
+//! Where every entry of every element goes is found once; assembling then only adds. Bodies whose places lie apart are assembled
+//! side by side ([`Executor`]): each element adds to the same places in the same order, whoever does it.
 
+use crate::executor::{Executor, InTurn};
 use crate::fem::beam::{self, Section};
 use crate::fem::continuum;
 use crate::fem::element::{Assembled, Element, Past};
@@ -11,6 +13,7 @@ use crate::linalg::Pattern;
 use crate::model::Model;
 use crate::model::{Beam, Body, BodyKind, Dofs, Solid};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// An element and where it stands.
 struct Placed {
@@ -35,12 +38,43 @@ pub struct Assembly {
     half: bool,
     /// Numbers that the elements placed so far remember.
     history_len: usize,
-    /// Room for the largest element.
+    /// Elements that follow each other and add to places of their own; together all.
+    groups: Vec<Group>,
+    /// Who assembles them.
+    executor: Arc<dyn Executor>,
+    room: Room,
+    memory: Vec<f64>,
+}
+
+/// Room for the largest element.
+#[derive(Clone, Default)]
+struct Room {
     force: Vec<f64>,
     tangent: Vec<f64>,
     u: Vec<f64>,
     before: Vec<f64>,
-    memory: Vec<f64>,
+}
+
+/// Elements that are assembled by themselves.
+struct Group {
+    elements: Range<usize>,
+    /// First degree of freedom, entry and equation that are theirs.
+    first: Places,
+    room: Room,
+}
+
+/// Where degrees of freedom, entries of the stiffness and equations begin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Places {
+    dof: usize,
+    slot: usize,
+    equation: usize,
+}
+
+/// Sums from some places on.
+struct Sums<'a> {
+    first: Places,
+    out: Assembled<'a>,
 }
 
 /// How the degrees of freedom have moved.
@@ -57,17 +91,21 @@ pub struct Moved<'a> {
 }
 
 impl Assembly {
-    /// Lays out the elements of a scene.
+    /// Lays out the elements of a scene, to be assembled in turn.
     pub fn new(model: &Model) -> Self {
+        Assembly::with_executor(model, Arc::new(InTurn))
+    }
+
+    /// The same, to be assembled side by side by whoever this is.
+    pub fn with_executor(model: &Model, executor: Arc<dyn Executor>) -> Self {
         let mut assembly = Assembly {
             elements: Vec::new(),
             matrices: Vec::new(),
             half: false,
             history_len: 0,
-            force: Vec::new(),
-            tangent: Vec::new(),
-            u: Vec::new(),
-            before: Vec::new(),
+            groups: Vec::new(),
+            executor,
+            room: Room::default(),
             memory: Vec::new(),
         };
         for body in &model.bodies {
@@ -115,11 +153,7 @@ impl Assembly {
         let first = self.history_len;
         let remembered = element.history_len();
         self.history_len += remembered;
-        let size = self.force.len().max(dofs.len());
-        for buffer in [&mut self.force, &mut self.u, &mut self.before] {
-            buffer.resize(size, 0.0);
-        }
-        self.tangent.resize(size * size, 0.0);
+        self.room.hold(dofs.len());
         let most = self.memory.len().max(remembered);
         self.memory.resize(most, 0.0);
         self.elements.push(Placed {
@@ -147,7 +181,21 @@ impl Assembly {
 
     /// Finds the place of every entry in a pattern that has them all, or, of a symmetric stiffness, the upper `half`.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
+        self.bind_parts(dofs, pattern, half, &[0..pattern.size()]);
+    }
+
+    /// The same, where no element has entries in more than one of these `parts` of the equations, which are assembled side by
+    /// side.
+    pub fn bind_parts(
+        &mut self,
+        dofs: &Dofs,
+        pattern: &Pattern,
+        half: bool,
+        parts: &[Range<usize>],
+    ) {
         self.half = half;
+        let groups = self.groups_of(dofs, pattern, parts);
+        self.groups = groups.unwrap_or_else(|| vec![self.whole()]);
         for placed in &mut self.elements {
             placed.bind(dofs, pattern, half);
         }
@@ -156,36 +204,78 @@ impl Assembly {
         }
     }
 
+    /// All elements.
+    fn whole(&self) -> Group {
+        Group {
+            elements: 0..self.elements.len(),
+            first: Places::default(),
+            room: self.room.clone(),
+        }
+    }
+
+    /// A group of elements a part of the equations; `None` where their places do not lie apart in the same order.
+    fn groups_of(
+        &self,
+        dofs: &Dofs,
+        pattern: &Pattern,
+        parts: &[Range<usize>],
+    ) -> Option<Vec<Group>> {
+        let mut groups: Vec<Group> = Vec::with_capacity(parts.len());
+        // The part of the last element, and how far its degrees of freedom have come.
+        let (mut at, mut reach) = (0, 0);
+        for (k, placed) in self.elements.iter().enumerate() {
+            let least = placed.dofs.iter().copied().min()?;
+            let equation = placed.dofs.iter().find_map(|&d| dofs.equation[d]);
+            let part = equation.map_or(Some(at), |e| parts.iter().position(|p| p.contains(&e)))?;
+            if groups.is_empty() || part > at {
+                if least < reach {
+                    return None;
+                }
+                groups.push(Group {
+                    elements: k..k,
+                    first: Places {
+                        dof: if k == 0 { 0 } else { least },
+                        slot: pattern.block_start(parts[part].start),
+                        equation: parts[part].start,
+                    },
+                    room: self.room.clone(),
+                });
+            }
+            let group = groups.last_mut()?;
+            if part < at || least < group.first.dof {
+                return None;
+            }
+            group.elements.end = k + 1;
+            (at, reach) = (part, reach.max(placed.dofs.iter().max()? + 1));
+        }
+        // What no element adds to belongs to the first.
+        groups.first_mut()?.first = Places::default();
+        Some(groups)
+    }
+
     /// Internal forces and tangent.
     pub fn assemble(&mut self, dofs: &Dofs, moved: Moved<'_>, mut out: Assembled<'_>) {
         out.force.fill(0.0);
         out.size.fill(0.0);
         out.values.fill(0.0);
         out.coupling.fill(0.0);
-        for placed in &self.elements {
-            let n = placed.dofs.len();
-            let (u, before) = (&mut self.u[..n], &mut self.before[..n]);
-            let (force, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
-            placed.gather(moved.u, u);
-            force.fill(0.0);
-            tangent.fill(0.0);
-            let history = &moved.history[placed.history.clone()];
-            if !history.is_empty() {
-                placed.gather(moved.before, before);
-            }
-            let past = Past { u: before, history };
-            if !placed.element.add(&past, u, force, tangent) {
-                placed.give_up(&mut out);
-                continue;
-            }
-            if placed.held || !self.half {
-                placed.element.mirror(tangent);
-            }
-            placed.scatter(force, tangent, &mut out);
-            if placed.held {
-                placed.couple(dofs, tangent, moved.step, out.coupling);
-            }
-        }
+        let work = Work {
+            executor: &*self.executor,
+            elements: &self.elements,
+            half: self.half,
+            dofs,
+            moved,
+        };
+        let sums = Sums {
+            first: Places::default(),
+            out: Assembled {
+                force: &mut *out.force,
+                size: &mut *out.size,
+                values: &mut *out.values,
+                coupling: &mut *out.coupling,
+            },
+        };
+        work.all(&mut self.groups, sums);
         for matrix in &self.matrices {
             matrix.add(dofs, moved.u, moved.step, &mut out);
         }
@@ -197,8 +287,9 @@ impl Assembly {
         size.fill(0.0);
         for placed in &self.elements {
             let n = placed.dofs.len();
-            let (u, before) = (&mut self.u[..n], &mut self.before[..n]);
-            let (own, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
+            let room = &mut self.room;
+            let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
+            let (own, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
             placed.gather(moved.u, u);
             own.fill(0.0);
             let history = &moved.history[placed.history.clone()];
@@ -223,8 +314,9 @@ impl Assembly {
         coupling.fill(0.0);
         for placed in self.elements.iter().filter(|p| p.held) {
             let n = placed.dofs.len();
-            let (u, before) = (&mut self.u[..n], &mut self.before[..n]);
-            let (force, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
+            let room = &mut self.room;
+            let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
+            let (force, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
             placed.gather(moved.u, u);
             force.fill(0.0);
             tangent.fill(0.0);
@@ -235,7 +327,7 @@ impl Assembly {
             let past = Past { u: before, history };
             if placed.element.add(&past, u, force, tangent) {
                 placed.element.mirror(tangent);
-                placed.couple(dofs, tangent, moved.step, coupling);
+                placed.couple(dofs, tangent, moved.step, coupling, 0);
             }
         }
         for matrix in &self.matrices {
@@ -247,17 +339,128 @@ impl Assembly {
     pub fn advance(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {
         for placed in self.elements.iter().filter(|p| !p.history.is_empty()) {
             let n = placed.dofs.len();
-            placed.gather(u, &mut self.u[..n]);
-            placed.gather(before, &mut self.before[..n]);
+            placed.gather(u, &mut self.room.u[..n]);
+            placed.gather(before, &mut self.room.before[..n]);
             let history = &mut history[placed.history.clone()];
             let old = &mut self.memory[..history.len()];
             old.copy_from_slice(history);
             let past = Past {
-                u: &self.before[..n],
+                u: &self.room.before[..n],
                 history: old,
             };
-            placed.element.advance(&past, &self.u[..n], history);
+            placed.element.advance(&past, &self.room.u[..n], history);
         }
+    }
+}
+
+/// What is to be assembled.
+#[derive(Clone, Copy)]
+struct Work<'a> {
+    executor: &'a dyn Executor,
+    elements: &'a [Placed],
+    half: bool,
+    dofs: &'a Dofs,
+    moved: Moved<'a>,
+}
+
+impl Work<'_> {
+    /// Adds these groups up.
+    fn all(self, groups: &mut [Group], mut sums: Sums<'_>) {
+        match groups {
+            [] => {}
+            [group] => self.group(group, &mut sums),
+            _ => {
+                let (left, right) = groups.split_at_mut(groups.len() / 2);
+                let (mut before, mut after) = sums.split_at(right[0].first);
+                self.executor
+                    .join(&mut || self.all(&mut *left, before.reborrow()), &mut || {
+                        self.all(&mut *right, after.reborrow())
+                    });
+            }
+        }
+    }
+
+    fn group(self, group: &mut Group, sums: &mut Sums<'_>) {
+        let Room {
+            force,
+            tangent,
+            u,
+            before,
+        } = &mut group.room;
+        let Moved { step, history, .. } = self.moved;
+        for placed in &self.elements[group.elements.clone()] {
+            let n = placed.dofs.len();
+            let (u, before) = (&mut u[..n], &mut before[..n]);
+            let (force, tangent) = (&mut force[..n], &mut tangent[..n * n]);
+            placed.gather(self.moved.u, u);
+            force.fill(0.0);
+            tangent.fill(0.0);
+            let history = &history[placed.history.clone()];
+            if !history.is_empty() {
+                placed.gather(self.moved.before, before);
+            }
+            let past = Past { u: before, history };
+            if !placed.element.add(&past, u, force, tangent) {
+                placed.give_up(sums);
+                continue;
+            }
+            if placed.held || !self.half {
+                placed.element.mirror(tangent);
+            }
+            placed.scatter(force, tangent, sums);
+            if placed.held {
+                let first = sums.first.equation;
+                placed.couple(self.dofs, tangent, step, sums.out.coupling, first);
+            }
+        }
+    }
+}
+
+impl Sums<'_> {
+    fn reborrow(&mut self) -> Sums<'_> {
+        Sums {
+            first: self.first,
+            out: Assembled {
+                force: &mut *self.out.force,
+                size: &mut *self.out.size,
+                values: &mut *self.out.values,
+                coupling: &mut *self.out.coupling,
+            },
+        }
+    }
+
+    /// Those before some places, and those from there on.
+    fn split_at(&mut self, at: Places) -> (Sums<'_>, Sums<'_>) {
+        let first = self.first;
+        let out = &mut self.out;
+        let force = out.force.split_at_mut(at.dof - first.dof);
+        let size = out.size.split_at_mut(at.dof - first.dof);
+        let values = out.values.split_at_mut(at.slot - first.slot);
+        let coupling = out.coupling.split_at_mut(at.equation - first.equation);
+        let sums = |first, force, size, values, coupling| Sums {
+            first,
+            out: Assembled {
+                force,
+                size,
+                values,
+                coupling,
+            },
+        };
+        (
+            sums(first, force.0, size.0, values.0, coupling.0),
+            sums(at, force.1, size.1, values.1, coupling.1),
+        )
+    }
+}
+
+impl Room {
+    /// Makes it large enough for an element of so many degrees of freedom.
+    fn hold(&mut self, count: usize) {
+        let size = self.force.len().max(count);
+        for buffer in [&mut self.force, &mut self.u, &mut self.before] {
+            buffer.resize(size, 0.0);
+        }
+        self.tangent.resize(size * size, 0.0);
     }
 }
 
@@ -310,32 +513,43 @@ impl Placed {
         }
     }
 
-    fn scatter(&self, force: &[f64], tangent: &[f64], out: &mut Assembled<'_>) {
+    fn scatter(&self, force: &[f64], tangent: &[f64], sums: &mut Sums<'_>) {
+        let (first, out) = (sums.first, &mut sums.out);
         for (&d, force) in self.dofs.iter().zip(force) {
-            out.force[d] += force;
-            out.size[d] += force.abs();
+            out.force[d - first.dof] += force;
+            out.size[d - first.dof] += force.abs();
         }
         for &(entry, slot) in &self.slots {
-            out.values[slot as usize] += tangent[entry as usize];
+            out.values[slot as usize - first.slot] += tangent[entry as usize];
         }
     }
 
-    /// Forces due to the steps of degrees of freedom without an equation.
-    fn couple(&self, dofs: &Dofs, tangent: &[f64], step: &[f64], coupling: &mut [f64]) {
+    /// Forces due to the steps of degrees of freedom without an equation, by equation from `first` on.
+    fn couple(
+        &self,
+        dofs: &Dofs,
+        tangent: &[f64],
+        step: &[f64],
+        coupling: &mut [f64],
+        first: usize,
+    ) {
         for (row, &d) in tangent.chunks_exact(self.dofs.len()).zip(&self.dofs) {
             let Some(equation) = dofs.equation[d] else {
                 continue;
             };
             for (value, &other) in row.iter().zip(&self.dofs) {
                 if dofs.equation[other].is_none() {
-                    coupling[equation] += value * step[other];
+                    coupling[equation - first] += value * step[other];
                 }
             }
         }
     }
 
     /// No finite force balances anything here. The scale of forces stays finite, so that the residual does not.
-    fn give_up(&self, out: &mut Assembled<'_>) {
-        self.dofs.iter().for_each(|&d| out.force[d] = f64::INFINITY);
+    fn give_up(&self, sums: &mut Sums<'_>) {
+        let (first, force) = (sums.first.dof, &mut *sums.out.force);
+        self.dofs
+            .iter()
+            .for_each(|&d| force[d - first] = f64::INFINITY);
     }
 }

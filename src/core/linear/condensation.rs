@@ -25,10 +25,10 @@
 //!
 //! and only the masters' block K'_mm has to be factored: the relation of `condensed` in the limit of stiff springs.
 
+use crate::executor::{Executor, each};
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
 use crate::linear::coupling::Interface;
-use crate::linear::executor::{Executor, each};
 use crate::model::{Body, BodyKind, Model};
 use std::ops::Range;
 use std::sync::Arc;
@@ -136,6 +136,14 @@ impl Condensation {
     /// The pattern of the upper half of the bodies' stiffness.
     pub fn pattern(&self) -> &Arc<Pattern> {
         &self.pattern
+    }
+
+    /// The equations of the parts that are factored by themselves.
+    pub fn parts(&self) -> Vec<Range<usize>> {
+        self.parts
+            .iter()
+            .map(|part| part.equations.clone())
+            .collect()
     }
 
     /// Number of an equation among the interface's unknowns, if it is one.

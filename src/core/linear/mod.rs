@@ -8,7 +8,7 @@
 //!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `ordering`: the order of
 //!   elimination; `bordered` and `border`: the load factor as one more unknown; `drag`: what resists a damped motion.
 //! - [`singular`]: why there is no solution; [`stability`]: which way a state of equilibrium leads, by its `tangent`;
-//!   [`estimate`]: what a scene takes of time and memory; [`executor`]: bodies side by side.
+//!   [`estimate`]: what a scene takes of time and memory.
 
 mod augmented;
 pub mod bodies;
@@ -20,7 +20,6 @@ pub mod constant;
 mod coupling;
 mod drag;
 pub mod estimate;
-pub mod executor;
 pub mod norms;
 mod ordering;
 mod reduced;

@@ -9,6 +9,7 @@ use crate::contact::projection::{Projection, projection_at, tangent};
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::room;
 use crate::contact::table1::Equation;
+use crate::executor::Executor;
 use crate::fem::assembly::{Assembly, Moved};
 use crate::fem::element::Assembled;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
@@ -20,7 +21,6 @@ use crate::linear::condensed::Condensed;
 use crate::linear::coupling::Interface;
 use crate::linear::drag::stiffen;
 use crate::linear::estimate::{Estimate, condensable};
-use crate::linear::executor::Executor;
 use crate::linear::norms::Norms;
 use crate::linear::sizes::Sizes;
 use crate::linear::source::{At, Solved, Work};
@@ -116,7 +116,7 @@ impl System {
             .map(|_| Interface::default())
             .collect();
         System {
-            assembly: Assembly::new(model),
+            assembly: Assembly::with_executor(model, executor.clone()),
             layout: None,
             whole: None,
             taken: Vec::new(),
@@ -372,7 +372,9 @@ impl System {
         };
         if self.layout != Some(Layout::Bodies) {
             self.taken.clear();
-            self.assembly.bind(&model.dofs, bodies.pattern(), true);
+            let parts = bodies.parts();
+            self.assembly
+                .bind_parts(&model.dofs, bodies.pattern(), true, &parts);
             self.stiffness.resize(bodies.pattern().entries(), 0.0);
             for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
                 buffer.resize(model.dofs.equations, 0.0);

@@ -13,10 +13,10 @@
 
 use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
+use crate::executor::Executor;
 use crate::interface::kinematics::NodeKinematics;
 use crate::interface::problem::InterfaceProblem;
 use crate::linear::bodies::Bodies;
-use crate::linear::executor::Executor;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::{Solved, Source, Work};

@@ -21,7 +21,7 @@ impl Executor for InTurn {
 }
 
 /// Does a job on every item.
-pub(super) fn each<T: Send>(
+pub(crate) fn each<T: Send>(
     executor: &dyn Executor,
     items: &mut [T],
     job: &(dyn Fn(&mut T) + Sync),
