@@ -72,6 +72,40 @@ impl Pattern {
             .collect()
     }
 
+    /// Of a symmetric matrix' upper half with the unknowns in another order, the pattern of the lower half, and which entry of
+    /// this one each of its entries is.
+    pub(super) fn in_order(&self, order: &[usize]) -> (Pattern, Vec<usize>) {
+        let mut place = vec![0; self.n];
+        for (k, &unknown) in order.iter().enumerate() {
+            place[unknown] = k;
+        }
+        let entries = || self.iter().map(|(i, j)| (place[i], place[j]));
+        let lower = || entries().map(|(i, j)| (i.max(j), i.min(j)));
+        // By rows, and then by columns: rows ascend in each.
+        let (_, by_rows) = sorted(self.n, lower().map(|(row, _)| row).enumerate());
+        let places: Vec<(usize, usize)> = lower().collect();
+        let columns = by_rows.iter().map(|&entry| (entry, places[entry].1));
+        let (col_ptr, from) = sorted(self.n, columns);
+        let pattern = Pattern {
+            n: self.n,
+            col_ptr,
+            row_idx: from.iter().map(|&entry| places[entry].0).collect(),
+        };
+        (pattern, from)
+    }
+
+    /// The pattern of the transposed matrix.
+    pub(super) fn transposed(&self) -> Pattern {
+        let rows = self.iter().map(|(row, _)| row).enumerate();
+        let (col_ptr, from) = sorted(self.n, rows);
+        let columns: Vec<usize> = self.iter().map(|(_, column)| column).collect();
+        Pattern {
+            n: self.n,
+            col_ptr,
+            row_idx: from.iter().map(|&entry| columns[entry]).collect(),
+        }
+    }
+
     /// Index of the first entry of a column in the array of values.
     pub fn block_start(&self, column: usize) -> usize {
         self.col_ptr[column]
@@ -94,7 +128,7 @@ impl Pattern {
     }
 
     /// All entries as `(row, column)`, in the order of the values.
-    pub fn iter(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = (usize, usize)> + Clone + '_ {
         (0..self.n).flat_map(move |col| {
             self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]]
                 .iter()
@@ -145,6 +179,30 @@ impl Pattern {
             y[col] += own;
         }
     }
+}
+
+/// Entries with a number below n each, sorted by it; those of the same number stay in their order. Where each number begins, and
+/// the entries.
+fn sorted(
+    n: usize,
+    entries: impl Iterator<Item = (usize, usize)> + Clone,
+) -> (Vec<usize>, Vec<usize>) {
+    let mut starts = vec![0; n + 1];
+    let mut count = 0;
+    for (_, number) in entries.clone() {
+        starts[number + 1] += 1;
+        count += 1;
+    }
+    for number in 0..n {
+        starts[number + 1] += starts[number];
+    }
+    let mut next = starts.clone();
+    let mut sorted = vec![0; count];
+    for (entry, number) in entries {
+        sorted[next[number]] = entry;
+        next[number] += 1;
+    }
+    (starts, sorted)
 }
 
 /// The pattern as faer takes it.

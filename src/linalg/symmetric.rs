@@ -27,10 +27,12 @@ use super::pattern::{Pattern, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::perm::PermRef;
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use faer::sparse::linalg::cholesky::supernodal::{
+    SymbolicSupernodalCholesky, factorize_supernodal_numeric_ldlt,
+    factorize_supernodal_numeric_ldlt_scratch,
+};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -43,7 +45,9 @@ const BACKWARD_LIMIT: f64 = 1e-12;
 
 /// Factors of a symmetric matrix, with all that is needed to make them again without allocating.
 pub struct SymmetricFactors {
-    pattern: Arc<Pattern>,
+    /// Pattern of the lower half in the order of elimination, and which value of the matrix each of its entries is.
+    pattern: Pattern,
+    from: Vec<usize>,
     symbolic: SymbolicCholesky<usize>,
     /// All unknowns, in the order of their elimination.
     order: Vec<usize>,
@@ -77,33 +81,33 @@ impl SymmetricFactors {
     pub fn new(pattern: Arc<Pattern>, last: &[usize]) -> Result<Self, SolveError> {
         let n = pattern.n;
         let order = order(&pattern, last)?;
-        let mut inverse = vec![0; n];
-        for (place, &unknown) in order.iter().enumerate() {
-            inverse[unknown] = place;
-        }
+        let (lower, from) = pattern.in_order(&order);
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
         };
         let symbolic = factorize_symbolic_cholesky(
-            symbolic_view(&pattern),
+            symbolic_view(&lower.transposed()),
             Side::Upper,
-            SymmetricOrdering::Custom(PermRef::new_checked(&order, &inverse, n)),
+            SymmetricOrdering::Identity,
             params,
         )
         .map_err(|_| SolveError::OutOfMemory)?;
-        let request = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
         let raw = supernodal(&symbolic);
+        let request = factorize_supernodal_numeric_ldlt_scratch::<usize, f64>(
+            raw,
+            Par::Seq,
+            Default::default(),
+        );
         let rows = (0..raw.n_supernodes()).map(|s| raw.supernode(s).pattern().len());
         let below = rows.max().unwrap_or(0);
-        let diagonal = last
-            .iter()
-            .map(|&i| pattern.slot(i, i).ok_or(SolveError::Singular))
+        let diagonal = (n - last.len()..n)
+            .map(|place| lower.slot(place, place).ok_or(SolveError::Singular))
             .collect::<Result<_, _>>()?;
         Ok(SymmetricFactors {
             factors: vec![0.0; symbolic.len_val()],
             memory: MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?,
-            values: vec![0.0; pattern.entries()],
+            values: vec![0.0; lower.entries()],
             size: 0.0,
             residual: vec![0.0; n],
             pivots: vec![0.0; n],
@@ -115,7 +119,8 @@ impl SymmetricFactors {
             order,
             diagonal,
             symbolic,
-            pattern,
+            pattern: lower,
+            from,
             ready: false,
         })
     }
@@ -128,28 +133,30 @@ impl SymmetricFactors {
     /// counts.
     pub fn factor(&mut self, values: &[f64], shift: f64) -> Result<(), SolveError> {
         self.ready = false;
-        self.values.copy_from_slice(values);
+        for (value, &k) in self.values.iter_mut().zip(&self.from) {
+            *value = values[k];
+        }
         for &k in &self.diagonal {
             self.values[k] += shift;
         }
         self.size = largest(&self.values);
-        self.symbolic
-            .factorize_numeric_ldlt(
-                &mut self.factors,
-                SparseColMatRef::new(symbolic_view(&self.pattern), &self.values),
-                Side::Upper,
-                LdltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut self.memory),
-                Default::default(),
-            )
-            .map_err(|_| SolveError::Singular)?;
-        for (pivot, column) in
-            self.pivots
-                .iter_mut()
-                .zip(columns(supernodal(&self.symbolic), &self.factors, 0))
-        {
-            *pivot = column.pivot;
+        let symbolic = supernodal(&self.symbolic);
+        factorize_supernodal_numeric_ldlt(
+            &mut self.factors,
+            SparseColMatRef::new(symbolic_view(&self.pattern), &self.values),
+            LdltRegularization::default(),
+            symbolic,
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+            Default::default(),
+        )
+        .map_err(|_| SolveError::Singular)?;
+        for s in 0..symbolic.n_supernodes() {
+            let node = Node::of(symbolic, &self.factors, s);
+            let own = &mut self.pivots[node.start..node.start + node.width];
+            for (k, pivot) in own.iter_mut().enumerate() {
+                *pivot = node.column(k)[k];
+            }
         }
         self.ready = f64::EPSILON * self.growth() <= BACKWARD_LIMIT * self.size;
         if self.ready {
@@ -284,10 +291,10 @@ impl SymmetricFactors {
             x[unknown] = *value;
         }
         self.pattern
-            .multiply_half(&self.values, x, &mut self.residual);
+            .multiply_half(&self.values, &self.moved, &mut self.residual);
         let mut worst = 0.0_f64;
-        for &unknown in &self.order[..count] {
-            let apart = (self.residual[unknown] - b[unknown]).abs();
+        for (&unknown, product) in self.order[..count].iter().zip(&self.residual) {
+            let apart = (product - b[unknown]).abs();
             // `max` would ignore what is not a number.
             worst = if apart <= worst { worst } else { apart };
         }
