@@ -12,13 +12,11 @@ use crate::interface::problem::InterfaceProblem;
 use crate::interface::trials::Trials;
 use crate::interface::uniqueness::uniqueness;
 use crate::model::Model;
-use crate::step::drive::{RunEnd, Until};
-use crate::step::event::{Failure, Outcome};
+use crate::step::event::Failure;
 use crate::step::intervene::Start;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use crate::strategy::method;
-use std::ops::ControlFlow;
 
 /// What is said at the end of the history.
 pub const DONE: &str = "The history is done; nothing is solved next from here.";
@@ -216,7 +214,7 @@ pub fn going_round(
     }
     let known = match &state.status {
         Status::Failed(Failure::Cycle(cycle)) => Some(cycle.clone()),
-        _ => step_to_cycle(stepper),
+        _ => stepper.cycle_ahead(),
     };
     let Some(cycle) = known else {
         return Ok(None);
@@ -242,15 +240,4 @@ fn at_start(problem: &InterfaceProblem, cycle: &Cycle) -> InterfaceProblem {
         node.state = state;
     }
     started
-}
-
-fn step_to_cycle(stepper: &mut Stepper) -> Option<Cycle> {
-    let end = stepper.drive(Until::end(), |stepper| match stepper.event().outcome {
-        Outcome::Minor | Outcome::Failed(_) => ControlFlow::Continue(()),
-        _ => ControlFlow::Break(()),
-    });
-    match end {
-        RunEnd::Failed(Failure::Cycle(cycle)) => Some(cycle),
-        _ => None,
-    }
 }

@@ -113,8 +113,19 @@ pub struct Way {
     pub before: usize,
 }
 
+/// The frozen problem between two minor iterations, and what the nodes came with into the first of them.
+pub struct Between {
+    problem: InterfaceProblem,
+    before: Vec<ContactState>,
+}
+
 /// What pushed a node in the iteration that comes after the way; `None` if that cannot be told.
 pub fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
+    pushed(&between(stepper, way)?, slave)
+}
+
+/// Goes the way, up to the iteration after it.
+pub fn between(stepper: &mut Stepper, way: &Way) -> Option<Between> {
     stepper.restore(&way.state);
     let mut before: Vec<ContactState> = Vec::new();
     for (place, step) in way.steps.iter().enumerate() {
@@ -129,10 +140,15 @@ pub fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push
         }
     }
     let problem = stepper.interface_problem()?;
+    Some(Between { problem, before })
+}
+
+/// What pushed a node between two minor iterations.
+pub fn pushed(Between { problem, before }: &Between, slave: usize) -> Option<Vec<Push>> {
     let after = problem.states();
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
     let of = |node: usize| problem.nodes[node].slave;
-    let found = influences(&problem, &pick(&problem, &before), &after, &[target])?;
+    let found = influences(problem, &pick(problem, before), &after, &[target])?;
     let push = |influence: Influence| Push {
         slave: of(influence.from),
         modes: [before[of(influence.from)].mode, after[influence.from].mode],

@@ -17,7 +17,7 @@ use super::worker::Lender;
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
 use crate::explain::examination::{Examination, NOT_CONDENSED, Untold, examine_nodes, going_round};
-use crate::explain::influence::{Push, Way, pushes};
+use crate::explain::influence::{Push, Way, between, pushed, pushes};
 use crate::explain::page::page;
 use crate::explain::remedies::{self, Trial};
 use crate::explain::report;
@@ -442,12 +442,13 @@ impl Helper {
     fn pushes(&mut self, slave: usize, way: Way) -> Option<Vec<Push>> {
         let way = Arc::new(way);
         let theirs = way.clone();
-        let found = self.lender.look(move |stepper| {
+        // Their solver goes the way alone; what takes time is found out here.
+        let between = self.lender.look(move |stepper| {
             let at_hand = stepper.condenses() && stepper.stands_for(&theirs.state);
-            at_hand.then(|| pushes(stepper, slave, &theirs))
+            at_hand.then(|| between(stepper, &theirs))
         });
-        match found.flatten() {
-            Some(found) => found,
+        match between.flatten() {
+            Some(between) => pushed(&between?, slave),
             None => pushes(self.solver().0, slave, &way),
         }
     }
@@ -456,8 +457,8 @@ impl Helper {
     fn borrow(&mut self, state: &State) {
         let wanted = state.clone();
         let lent = self.lender.look(move |stepper| stepper.lend(&wanted));
-        if let Some(problem) = lent.flatten() {
-            self.solver().0.borrow(state, problem);
+        if let Some(lent) = lent.flatten() {
+            self.solver().0.borrow(lent);
         }
     }
 

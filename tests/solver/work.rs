@@ -174,7 +174,7 @@ fn a_borrowed_interface_problem_is_the_one_that_would_have_been_found() {
     let (mut lender, before) = in_a_major("condensed");
     let mut borrower = stepper(BLOCKS, &[("settings.solver", "condensed")]);
     let lent = lender.lend(&before).expect("it is at hand");
-    borrower.borrow(&before, lent);
+    borrower.borrow(lent);
     lender.step().expect("it goes on");
     let state = lender.state().clone();
     borrower.restore(&state);
@@ -182,5 +182,5 @@ fn a_borrowed_interface_problem_is_the_one_that_would_have_been_found() {
     assert_eq!(borrower.interface_problem(), Some(own));
     assert_eq!(borrower.work().assemblies, 0);
     let start = stepper(BLOCKS, &[]).state().clone();
-    assert_eq!(lender.lend(&start), None);
+    assert!(lender.lend(&start).is_none());
 }

@@ -96,9 +96,9 @@ impl Assembly {
         Assembly::with_executor(model, Arc::new(InTurn))
     }
 
-    /// The same, to be assembled side by side by whoever this is.
-    pub fn with_executor(model: &Model, executor: Arc<dyn Executor>) -> Self {
-        let mut assembly = Assembly {
+    /// No elements.
+    pub fn empty(executor: Arc<dyn Executor>) -> Self {
+        Assembly {
             elements: Vec::new(),
             matrices: Vec::new(),
             half: false,
@@ -107,7 +107,12 @@ impl Assembly {
             executor,
             room: Room::default(),
             memory: Vec::new(),
-        };
+        }
+    }
+
+    /// The same, to be assembled side by side by whoever this is.
+    pub fn with_executor(model: &Model, executor: Arc<dyn Executor>) -> Self {
+        let mut assembly = Assembly::empty(executor);
         for body in &model.bodies {
             match &body.kind {
                 BodyKind::Beam(beam) => assembly.add_beam(model, beam),

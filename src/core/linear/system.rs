@@ -50,7 +50,9 @@ enum Turned {
 
 /// The linearised system about a state.
 pub struct System {
-    pub(super) assembly: Assembly,
+    /// The elements, once they are laid out: a solver that only looks at contacts does without.
+    assembly: Assembly,
+    laid_out: bool,
     /// What `stiffness` is laid out for.
     pub(super) layout: Option<Layout>,
     pub(super) whole: Option<Factors>,
@@ -116,7 +118,8 @@ impl System {
             .map(|_| Interface::default())
             .collect();
         System {
-            assembly: Assembly::with_executor(model, executor.clone()),
+            assembly: Assembly::empty(executor.clone()),
+            laid_out: false,
             layout: None,
             whole: None,
             taken: Vec::new(),
@@ -189,6 +192,9 @@ impl System {
         model: &Model,
         at: &At<'_>,
     ) -> Result<(), SolveError> {
+        if !std::mem::replace(&mut self.laid_out, true) {
+            self.assembly = Assembly::with_executor(model, self.executor.clone());
+        }
         self.condensed.fresh = false;
         self.scaled = false;
         self.place(model, at.u);

@@ -15,6 +15,7 @@ use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
 use crate::executor::Executor;
 use crate::interface::kinematics::NodeKinematics;
+use crate::interface::minor_history::Cycle;
 use crate::interface::problem::InterfaceProblem;
 use crate::linear::bodies::Bodies;
 use crate::linear::norms::Norms;
@@ -43,11 +44,19 @@ pub struct Stepper {
     pub(super) kept: Option<Box<dyn Any + Send>>,
     /// Room for the displacements about which a stiffness is taken.
     pub(super) room: Arc<Vec<f64>>,
-    /// A state, and the interface problem that another solver had at hand for it.
-    borrowed: Option<Box<(State, InterfaceProblem)>>,
+    /// What another solver had at hand.
+    borrowed: Option<Box<Lent>>,
     /// What the contacts came with into the present minor iteration, where only one of them may change.
     pub(super) before: Vec<ContactState>,
     pub(super) event: Event,
+}
+
+/// What one solver lends another of the same scene.
+pub struct Lent {
+    state: State,
+    problem: InterfaceProblem,
+    /// The cycle that the minor iterations run into from the state.
+    cycle: Option<Cycle>,
 }
 
 impl Stepper {
@@ -136,35 +145,64 @@ impl Stepper {
 
     /// The algorithm box: one minor iteration, and what follows from it.
     fn iterate(&mut self) -> Outcome {
+        match self.iterate_minor() {
+            Some(outcome) => outcome,
+            None => self.end_major(true),
+        }
+    }
+
+    /// One minor iteration; `None` where modes and T_max have settled, which ends the major one.
+    fn iterate_minor(&mut self) -> Option<Outcome> {
         if !self.linearise() {
-            return self.fail(Failure::Singular(Singular::Unexplained));
+            return Some(self.fail(Failure::Singular(Singular::Unexplained)));
         }
         if let Err(why) = self.find_tangent() {
-            return self.fail(why);
+            return Some(self.fail(why));
         }
         self.norms = self.source.norms(&self.state.at());
         self.event.before = self.norms;
         if let Some((search, start, step)) = self.searching() {
-            return self.propose(search, start, step);
+            return Some(self.propose(search, start, step));
         }
         self.remember();
         let solved = self.source.solve(&self.state.at());
         if let Some(why) = self.unsolvable(solved) {
-            return self.escalate(why);
+            return Some(self.escalate(why));
         }
         self.state.minors += 1;
         let settled = self.check();
         self.note_changes();
         if !settled {
-            return self.go_on();
+            return Some(self.go_on());
         }
         if solved == Solved::NearlySingular && self.is_unbounded() {
-            return self.escalate(Failure::Singular(Singular::Unexplained));
+            return Some(self.escalate(Failure::Singular(Singular::Unexplained)));
         }
-        match self.unsupported() {
-            Some(first) => self.fail(first),
-            None => self.end_major(true),
+        self.unsupported().map(|first| self.fail(first))
+    }
+
+    /// The cycle that the minor iterations of the present major one run into from here; `None` where they settle, or end some
+    /// other way. It ends where it began.
+    pub fn cycle_ahead(&mut self) -> Option<Cycle> {
+        if let Some(lent) = self
+            .borrowed
+            .as_ref()
+            .filter(|lent| lent.state == self.state)
+        {
+            return lent.cycle.clone();
         }
+        let began = self.state.clone();
+        let found = loop {
+            self.event.position = self.state.next;
+            self.event.nodes.clear();
+            match self.iterate_minor() {
+                Some(Outcome::Minor) => {}
+                Some(Outcome::Failed(Failure::Cycle(cycle))) => break Some(cycle),
+                _ => break None,
+            }
+        };
+        self.restore(&began);
+        found
     }
 
     /// The event of the last minor iteration.
@@ -231,27 +269,30 @@ impl Stepper {
         self.source.problem(&self.state.at()).ok()
     }
 
-    /// The interface problem of a state, where it is at hand: the bodies are condensed, and within the same major iteration. It
-    /// goes to that state.
-    pub fn lend(&mut self, state: &State) -> Option<InterfaceProblem> {
+    /// What there is to know of a state's frozen problem, where it is at hand: the bodies are condensed, and within the same
+    /// major iteration. It goes to that state.
+    pub fn lend(&mut self, state: &State) -> Option<Lent> {
         let at_hand = self.condenses() && self.stands_for(state);
         at_hand.then(|| self.restore(state))?;
-        self.interface_problem()
+        Some(Lent {
+            problem: self.interface_problem()?,
+            cycle: self.cycle_ahead(),
+            state: state.clone(),
+        })
     }
 
-    /// Takes the interface problem of a state that another solver of the same scene has at hand, so that it need not be found
-    /// again within its major iteration.
-    pub fn borrow(&mut self, state: &State, problem: InterfaceProblem) {
-        self.borrowed = Some(Box::new((state.clone(), problem)));
+    /// Takes what another solver of the same scene has at hand, so that it need not be found again within its major iteration.
+    pub fn borrow(&mut self, lent: Lent) {
+        self.borrowed = Some(Box::new(lent));
     }
 
     /// What was borrowed, for the present state.
     fn borrowed(&self) -> Option<InterfaceProblem> {
-        let (state, problem) = &**self.borrowed.as_ref()?;
-        if !state.is_linearised_as(&self.state) {
+        let lent = self.borrowed.as_ref()?;
+        if !lent.state.is_linearised_as(&self.state) {
             return None;
         }
-        let mut problem = problem.clone();
+        let mut problem = lent.problem.clone();
         problem.settings = self.state.settings();
         for node in &mut problem.nodes {
             node.state = self.state.nodes[node.slave];
