@@ -149,7 +149,10 @@ def scene_d(tools, sizes):
                 return "stopped: " + text.strip().splitlines()[-1][:60]
             iterations = sum(int(row.split(",")[2]) for row in rows)
             return (abs(float(fields[4])), float(fields[5])), None, iterations
-        cases.append(Case("stickslip", "n=%d" % n, command, generate("gen_stickslip_d.py", file, "n=%d" % n), read))
+        made = generate("gen_stickslip_d.py", file, "n=%d" % n)
+        cases.append(Case("stickslip", "n=%d" % n, command, made, read))
+        old = command + ["--set", "settings.factor=needed"]
+        cases.append(Case("stickslip, old factors", "n=%d" % n, old, made, read))
         if tools["ccx"]:
             name = "d%d" % n
 
@@ -231,15 +234,15 @@ def ratios_a(cases):
 
 
 def ratios_d(cases, sizes):
-    print("\n| scene D, unknowns | program | tangential, normal force | iterations | MB | s | ratio |")
-    print("|---|---|---|---|---|---|---|")
+    print("\n| scene D, unknowns | program | tangential, normal force | iterations | MB | s | ratio | to old factors |")
+    print("|---|---|---|---|---|---|---|---|")
     for n in sizes:
         own = [c for c in cases if c.name == "n=%d" % n]
-        mine = statistics.median(own[0].times)
+        mine = [statistics.median(case.times) for case in own[:2]]
         for case in own:
             time = statistics.median(case.times)
             told = "%.4f, %.4f | %d" % (*case.result[0], case.result[2]) if case.result else case.status + " |"
-            ratio = "%.1f" % (time / mine) if own[0].result and case is not own[0] else ""
+            ratio = " | ".join("%.1f" % (time / t) for t in mine) if case not in own[:2] else " | "
             print("| %d | %s | %s | %.0f | %.2f | %s |" % (unknowns_d(n), case.series, told, max(case.memory), time, ratio))
 
 
