@@ -24,7 +24,8 @@ fn a_run_has_the_same_bits_on_one_thread_and_on_two() {
         ("05-cantilever-elastic-block", "history.increment=0.11", 0),
         (BLOCKS, "settings.solver=augmented", 0),
         (BLOCKS, "settings.solver=condensed", 0),
-        (BLOCKS, "refine=3", 0),
+        // Large enough for the bodies to be worked on side by side.
+        (BLOCKS, "refine=5", 0),
         ("osc-inclined-cantilever", "settings.minors=30", 3),
     ] {
         let written = THREADS.map(|threads| {

@@ -28,8 +28,9 @@ const COUNTED: usize = 100;
 const WARM: usize = 60;
 
 /// A stepper that is warm, and at the end of whose counted steps the scene still goes on.
-fn warm(name: &str, solver: &str, strategy: &str) -> Stepper {
+fn warm(name: &str, solver: &str, strategy: &str, factor: &str) -> Stepper {
     let set = [
+        ("settings.factor", factor),
         ("settings.solver", solver),
         ("settings.strategy", strategy),
         ("history.increment", "0.005"),
@@ -80,10 +81,15 @@ fn minor_major_and_increment_loops_do_not_allocate_after_warm_up() {
         "blocks",
     ] {
         for solver in ["augmented", "condensed"] {
-            for strategy in ["table2", "ladder"] {
-                let mut stepper = warm(name, solver, strategy);
+            for (strategy, factor) in [("table2", "each"), ("ladder", "each"), ("ladder", "needed")]
+            {
+                // With old factors it takes more major iterations from increment to increment, and their history grows.
+                if factor == "needed" && name == "02-two-cantilevers-smooth" {
+                    continue;
+                }
+                let mut stepper = warm(name, solver, strategy, factor);
                 let (made, majors, increments) = counted(&mut stepper, |_| {});
-                let what = format!("{name} {solver} {strategy}");
+                let what = format!("{name} {solver} {strategy} {factor}");
                 println!("{what}: {made} allocations, {majors} majors, {increments} increments");
                 assert!(majors > 0 && increments > 0, "{what}: too few of each");
                 assert_eq!(made, 0, "{what}");
@@ -95,7 +101,7 @@ fn minor_major_and_increment_loops_do_not_allocate_after_warm_up() {
 #[test]
 fn one_allocation_among_the_steps_is_seen() {
     let _alone = alone();
-    let mut stepper = warm("blocks", "augmented", "ladder");
+    let mut stepper = warm("blocks", "augmented", "ladder", "each");
     let mut kept = None;
     let (made, ..) = counted(&mut stepper, |event| {
         kept.get_or_insert_with(|| Box::new(event.load_factor));

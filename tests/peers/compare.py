@@ -35,8 +35,8 @@ ROOT = os.path.dirname(os.path.dirname(HERE))
 CIRCLE = "04-cantilever-rigid-circle"
 # What GetFEM stops at on scene D; the errors that are measured there are above it.
 TOLERANCE = "settings.tolerance=1e-6"
-# Of scene A: nodes an element, with the refinements of the scene's 5 elements.
-MESHES = ((3, (1, 2, 3, 4, 6, 8)), (4, (1, 2, 3, 4, 6)), (5, (1, 2, 4, 8)), (6, (1, 2)), (7, (1, 2)))
+# Of scene A: nodes an element, with the numbers of elements.
+MESHES = ((3, (5, 10, 15, 20, 30, 40)), (4, (3, 5, 8, 10, 15, 20, 30)), (5, (3, 5, 10, 20)), (6, (3, 5, 10)), (7, (3, 5, 8, 10)))
 COLUMNS = ["scene", "series", "run", "status", "error", "seconds", "repeats", "megabytes", "unknowns", "iterations"]
 
 
@@ -92,10 +92,10 @@ def scene_a(tools):
         return math.hypot(x - u, y - v)
 
     cases = []
-    for nodes, refines in MESHES:
-        for refine in refines:
-            command = [tools["stickslip"], "run", CIRCLE, "--quiet", "--csv", "-", "--set", "refine=%d" % refine,
-                       "--set", "nodes.beam.per_element=%d" % nodes, "--set", "history.increment=0.875",
+    for nodes, counts in MESHES:
+        for elements in counts:
+            command = [tools["stickslip"], "run", CIRCLE, "--quiet", "--csv", "-", "--set",
+                       "nodes.beam.elements=%d" % elements, "--set", "nodes.beam.per_element=%d" % nodes, "--set", "history.increment=0.875",
                        "--set", "settings.tolerance=1e-7"]
 
             def read(work, text):
@@ -105,7 +105,7 @@ def scene_a(tools):
                     return "stopped: " + text.strip().splitlines()[-1][:60]
                 iterations = sum(int(row.split(",")[3]) for row in rows)
                 return error(float(fields[4]), float(fields[5])), None, iterations
-            cases.append(Case("stickslip, %d nodes an element" % nodes, "refine=%d" % refine, command, None, read))
+            cases.append(Case("stickslip, %d nodes an element" % nodes, "elements=%d" % elements, command, None, read))
     if tools["ccx"]:
         for elements in (5, 10, 20, 40, 80):
             name = "a%d" % elements

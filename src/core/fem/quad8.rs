@@ -309,7 +309,7 @@ impl element::Element for Element {
             let Some(point) = self.point(&reference, past, p) else {
                 return false;
             };
-            let stress = point.terms().stress;
+            let stress = point.nominal();
             for (i, [x, y]) in point.grad.into_iter().enumerate() {
                 for a in 0..2 {
                     force[2 * i + a] += stress[a][0] * x + stress[a][1] * y;
@@ -384,40 +384,49 @@ impl Terms {
 }
 
 impl Point {
+    /// F.
+    fn deformation(&self) -> [[f64; 2]; 2] {
+        let h = &self.h;
+        [[1.0 + h[0][0], h[0][1]], [h[1][0], 1.0 + h[1][1]]]
+    }
+
+    /// S, times the volume.
+    fn stress(&self) -> [[f64; 2]; 2] {
+        let (v, s) = (self.volume, &self.response.stress);
+        [[v * s.x, v * s.z], [v * s.z, v * s.y]]
+    }
+
+    /// P = F S, times the volume.
+    fn nominal(&self) -> [[f64; 2]; 2] {
+        let s = self.stress();
+        self.deformation().map(|f| {
+            [
+                f[0] * s[0][0] + f[1] * s[1][0],
+                f[0] * s[0][1] + f[1] * s[1][1],
+            ]
+        })
+    }
+
     fn terms(&self) -> Terms {
-        let (h, v, d) = (&self.h, self.volume, &self.response.tangent);
-        let f = [[1.0 + h[0][0], h[0][1]], [h[1][0], 1.0 + h[1][1]]];
-        let t = &self.response.stress;
-        let s = [[v * t.x, v * t.z], [v * t.z, v * t.y]];
-        // ∂E/∂H_cL, and D times it.
-        let strain = |c: usize, l: usize| {
-            let mut e = [0.0, 0.0, f[c][1 - l]];
-            e[l] = f[c][l];
-            e
+        let (f, s) = (self.deformation(), self.stress());
+        let (v, d) = (self.volume, &self.response.tangent);
+        let mut terms = Terms {
+            stress: self.nominal(),
+            ..Terms::default()
         };
-        let mut terms = Terms::default();
         for l in 0..2 {
             for c in 0..2 {
-                let by = strain(c, l);
-                let mut answer = [0.0; 3];
-                for (k, answer) in answer.iter_mut().enumerate() {
-                    *answer = v * (d[(k, 0)] * by[0] + d[(k, 1)] * by[1] + d[(k, 2)] * by[2]);
-                }
+                // ∂E/∂H_cL has F_cL in its component L and, as shear, the other one of F; and D times it.
+                let [own, shear] = [f[c][l], f[c][1 - l]];
+                let answer = [0, 1, 2].map(|k| v * (d[(k, l)] * own + d[(k, 2)] * shear));
                 for a in 0..2 {
                     for j in 0..2 {
-                        let e = strain(a, j);
                         let geometric = if a == c { s[j][l] } else { 0.0 };
                         terms.moduli[a][j][l][c] =
-                            e[0] * answer[0] + e[1] * answer[1] + e[2] * answer[2] + geometric;
+                            f[a][j] * answer[j] + f[a][1 - j] * answer[2] + geometric;
                     }
                 }
             }
-        }
-        for (stress, f) in terms.stress.iter_mut().zip(f) {
-            *stress = [
-                f[0] * s[0][0] + f[1] * s[1][0],
-                f[0] * s[0][1] + f[1] * s[1][1],
-            ];
         }
         terms
     }

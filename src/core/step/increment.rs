@@ -158,6 +158,7 @@ impl Stepper {
     /// Starts the increment again, up to the end of this part.
     pub(super) fn restart(&mut self, part: SubIncrement) {
         self.state.sub_increment = part;
+        self.drop_factors();
         self.state.start_again();
         self.forget_workspace();
     }

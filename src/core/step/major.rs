@@ -99,7 +99,7 @@ impl Stepper {
         if !loaded || state.controls.settings.factor == Refactor::Each {
             self.drop_factors();
         } else if state.factored.is_none() {
-            let mut about = std::mem::take(&mut self.room);
+            let mut about = self.room.take().unwrap_or_default();
             Arc::make_mut(&mut about).clone_from(&self.state.u);
             self.state.factored = Some(about);
         }
@@ -109,7 +109,7 @@ impl Stepper {
     pub(super) fn drop_factors(&mut self) -> bool {
         match self.state.factored.take() {
             Some(about) => {
-                self.room = about;
+                self.room = Some(about);
                 false
             }
             None => true,

@@ -43,7 +43,7 @@ pub struct Stepper {
     /// What a search over all nodes keeps from one proposal to the next.
     pub(super) kept: Option<Box<dyn Any + Send>>,
     /// Room for the displacements about which a stiffness is taken.
-    pub(super) room: Arc<Vec<f64>>,
+    pub(super) room: Option<Arc<Vec<f64>>>,
     /// What another solver had at hand.
     borrowed: Option<Box<Lent>>,
     /// What the contacts came with into the present minor iteration, where only one of them may change.
@@ -82,7 +82,7 @@ impl Stepper {
             measured: false,
             norms: Norms::default(),
             kept: None,
-            room: Arc::default(),
+            room: None,
             borrowed: None,
             before: Vec::new(),
             model,
