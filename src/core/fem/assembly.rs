@@ -186,7 +186,8 @@ impl Assembly {
 
     /// Finds the place of every entry in a pattern that has them all, or, of a symmetric stiffness, the upper `half`.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
-        self.bind_parts(dofs, pattern, half, &[0..pattern.size()]);
+        let whole = 0..pattern.size();
+        self.bind_parts(dofs, pattern, half, std::slice::from_ref(&whole));
     }
 
     /// The same, where no element has entries in more than one of these `parts` of the equations, which are assembled side by

@@ -419,11 +419,10 @@ impl Point {
                 // ∂E/∂H_cL has F_cL in its component L and, as shear, the other one of F; and D times it.
                 let [own, shear] = [f[c][l], f[c][1 - l]];
                 let answer = [0, 1, 2].map(|k| v * (d[(k, l)] * own + d[(k, 2)] * shear));
-                for a in 0..2 {
+                for (a, (f, moduli)) in f.iter().zip(&mut terms.moduli).enumerate() {
                     for j in 0..2 {
                         let geometric = if a == c { s[j][l] } else { 0.0 };
-                        terms.moduli[a][j][l][c] =
-                            f[a][j] * answer[j] + f[a][1 - j] * answer[2] + geometric;
+                        moduli[j][l][c] = f[j] * answer[j] + f[1 - j] * answer[2] + geometric;
                     }
                 }
             }
