@@ -2,8 +2,8 @@
 //!
 //! The map of the house, from the ground up: each line uses those above it and none below.
 //!
-//! The solver is a package of its own, [`stickslip_core`], with [`linalg`] under it; its modules are handed on here. The
-//! program stands on them:
+//! The solver is a package of its own, [`stickslip_core`], with [`linalg`] under it; its modules are handed on here. Another
+//! is [`stickslip_exchange`]: files of other programs as plain data. The program stands on them:
 //!
 //! - [`outside`]: what comes from outside and goes there: files that are read and written, texts of others that are shown.
 //! - [`format`](mod@format): the scene file as its author writes it: read, located, described, and set by paths.

@@ -15,7 +15,7 @@ const PACKAGES: &[Package] = &[
     Package {
         name: "stickslip",
         folder: "src",
-        others: &["linalg", "core"],
+        others: &["linalg", "core", "exchange"],
     },
     Package {
         name: "stickslip_core",
@@ -25,6 +25,11 @@ const PACKAGES: &[Package] = &[
     Package {
         name: "stickslip_linalg",
         folder: "src/linalg",
+        others: &[],
+    },
+    Package {
+        name: "stickslip_exchange",
+        folder: "src/exchange",
         others: &[],
     },
 ];
