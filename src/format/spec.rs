@@ -7,8 +7,8 @@
 use super::arc::ArcSpec;
 use super::described::macros::described;
 use crate::model::{
-    Axis, Component, Control, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
-    least,
+    Axis, Component, Control, ElementKind, Friction, InitialState, Jumps, Law, Mode, Plane,
+    Settings, Update, least,
 };
 use serde::{Deserialize, Serialize};
 
@@ -118,9 +118,9 @@ described! {
             /// Nodes per element, 2 to 9.
             per_element: usize,
         },
-        /// A mesh of 8-node quadrilaterals on a block with four sides.
+        /// A mesh on a block with four sides: of 8-node quadrilaterals, or of another kind of element.
         ///
-        /// Its edges are chains of 3-node elements, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
+        /// Its edges are chains of elements of 2 or 3 nodes, as its elements have along a side, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
         /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
         /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
         Block {
@@ -131,6 +131,9 @@ described! {
             corners: Vec<Point>,
             /// Number of elements along the bottom and along the left edge, before refinement.
             elements: (usize, usize),
+            /// What it is made of; each quadrilateral is cut into two triangles where these are named. Default: quad8.
+            #[serde(default, skip_serializing_if = "ElementKind::is_default")]
+            element: ElementKind,
             /// Length of the last element over that of the first along bottom and top (left to right), and along left and
             /// right (upwards); lengths between grow by a constant factor. Refinement divides each element evenly.
             /// Default: (1, 1).

@@ -26,6 +26,7 @@ impl Names {
             Nodes::Block {
                 corners,
                 elements,
+                element,
                 grading,
                 sides,
                 place,
@@ -34,6 +35,7 @@ impl Names {
                 let shape = Shape {
                     corners,
                     elements: *elements,
+                    kind: *element,
                     grading: *grading,
                     sides,
                     place,
@@ -92,7 +94,12 @@ impl Names {
         if let EntryKind::Block(grid) = kind {
             for (which, edge) in EDGES.iter().enumerate() {
                 let nodes = grid.edge(which).iter().map(|n| first + n).collect();
-                self.enter(at, &format!("{id}.{edge}"), nodes, EntryKind::Edge);
+                self.enter(
+                    at,
+                    &format!("{id}.{edge}"),
+                    nodes,
+                    EntryKind::Edge(grid.per_edge()),
+                );
             }
         }
         Ok(())
