@@ -57,7 +57,8 @@ pub(super) fn check_total(spec: &Spec) -> Result<(), Fault> {
                 (Grid::nodes_per_cell(*element) * nx * ny * refine + border * (nx + ny)) * refine
                     + 1.0
             }
-            Nodes::Mesh { .. } | Nodes::Chain { .. } => 0.0,
+            Nodes::Given { nodes, .. } => nodes.len() as f64,
+            Nodes::Mesh { .. } | Nodes::Chain { .. } | Nodes::Import { .. } => 0.0,
         };
         let why = if total > limits::NODES as f64 {
             format!("at most {} can be had", limits::NODES)

@@ -76,6 +76,10 @@ impl Names {
                 through(&here, points, *per_element, refine)?,
                 EntryKind::Chain(*per_element),
             ),
+            Nodes::Import { file, .. } | Nodes::Given { id: file, .. } => {
+                let message = format!("the mesh {file:?} is not read");
+                return Err(Fault::new(here, message));
+            }
             Nodes::Chain { .. } | Nodes::Mesh { .. } => return Ok(()),
         };
         let id = nodes.id();
