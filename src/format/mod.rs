@@ -11,6 +11,7 @@
 
 pub mod arc;
 pub mod condensed;
+pub mod contact_law;
 pub mod described;
 pub mod error;
 pub mod kind;
