@@ -39,7 +39,8 @@ fn a_region_gives_its_elements_another_material() {
     let BodyKind::Solid(made) = &scene.model.bodies[0].kind else {
         panic!("no solid")
     };
-    assert_eq!(made.material_of, [0, 0, 1, 1, 0, 0, 1, 1]);
+    let materials: Vec<usize> = made.elements.iter().map(|e| e.material).collect();
+    assert_eq!(materials, [0, 0, 1, 1, 0, 0, 1, 1]);
     let text = Cost::of(&scene).to_string();
     for line in [
         "k: solid, 8 elements of 8 nodes, E 100, nu 0.3, St Venant-Kirchhoff, plane strain, thickness 1",

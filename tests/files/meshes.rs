@@ -170,7 +170,7 @@ fn area(scene: &Scene) -> (f64, f64) {
     };
     let (mut sum, mut least) = (0.0, f64::INFINITY);
     for element in &solid.elements {
-        let at: [[f64; 2]; 8] = std::array::from_fn(|k| scene.model.nodes[element[k]].at);
+        let at: [[f64; 2]; 8] = std::array::from_fn(|k| scene.model.nodes[element.nodes[k]].at);
         let mut own = Vec::new();
         for (r, v) in GAUSS {
             for (s, w) in GAUSS {

@@ -2,9 +2,7 @@
 
 use std::collections::HashSet;
 use stickslip::format::SceneError;
-use stickslip::model::BodyKind;
-use stickslip::model::Component;
-use stickslip::model::Model;
+use stickslip::model::{BodyKind, Component, Model, SolidElement};
 use stickslip::scene::{Scene, builtin};
 
 pub const PINNED: &str = "01-pinned-beam-rough-floor";
@@ -159,9 +157,12 @@ pub fn assert_usable(model: &Model) {
                 }
             }
             BodyKind::Solid(solid) => {
-                assert_eq!(solid.elements.len(), solid.material_of.len());
-                assert!(solid.material_of.iter().all(|&k| k < solid.materials.len()));
-                let nodes: HashSet<usize> = solid.elements.iter().flatten().copied().collect();
+                let sound = |e: &SolidElement| {
+                    e.material < solid.materials.len() && e.nodes.len() == e.kind.nodes()
+                };
+                assert!(solid.elements.iter().all(sound));
+                let nodes = solid.elements.iter().flat_map(|e| &e.nodes);
+                let nodes: HashSet<usize> = nodes.copied().collect();
                 assert_eq!(nodes, body.nodes.iter().copied().collect());
             }
             BodyKind::Linear(linear) => {

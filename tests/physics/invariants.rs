@@ -52,7 +52,7 @@ fn accepted_increments_are_in_equilibrium_with_their_supports() {
                 .loads
                 .iter()
                 .filter(|l| scene.model.dofs.first.iter().any(|f| f + axis == l.dof))
-                .map(|l| l.value * a.load)
+                .map(|l| l.value * l.scale.at(a.load))
                 .sum();
             assert!(
                 (reaction + load).abs() < 1e-8 * after.scale.max(1.0),
@@ -113,7 +113,7 @@ fn against_coulomb(
         } else {
             must((node.f_t.abs() - limit).abs() <= force, "not at its limit");
             must(
-                node.t_max * record.slip >= -force * length,
+                node.t_max.signum() * record.slip >= -length,
                 "friction goes with slip",
             );
         }
