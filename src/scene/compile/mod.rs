@@ -10,8 +10,10 @@ mod interface;
 mod layout;
 mod linear;
 mod monitors;
+mod pressures;
 mod renewed;
 mod tractions;
+mod volumes;
 
 use super::gaps;
 use super::geometry;
@@ -23,7 +25,8 @@ use crate::linear::estimate::Estimate;
 use crate::model::{InitialGaps, Model};
 pub(crate) use history::increments;
 use layout::Layout;
-pub(crate) use renewed::{Choices, Compiled, Groups, Loads, renewed};
+pub(crate) use layout::Loads;
+pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
@@ -44,6 +47,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         // Bodies that are given by matrices may have a single node, or all of them in one place.
         length = geometry::diagonal(names.nodes.iter());
     }
+    bodies::check_axis(spec, &names, &bodies, length)?;
     bodies::check_bodies(spec, &names, &bodies, length)?;
     if length == 0.0 {
         let message = "all nodes are in one place; the scene has no size to compare lengths with";
@@ -65,7 +69,11 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     }
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
-    let (mut loads, prescribed) = layout.loads(spec, &names)?;
+    let Loads {
+        dead: mut loads,
+        pressures,
+        prescribed,
+    } = layout.loads(spec, &names, &bodies)?;
     let dofs = layout.number(&mut bodies);
     loads.extend(linear::free_motions(spec, &bodies, &dofs));
     interface::find_rigid(&dofs, &mut surfaces)?;
@@ -84,6 +92,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         contacts: slaves,
         dofs,
         loads,
+        pressures,
         prescribed,
         path: spec.history.path.clone(),
         increment: spec.history.increment,
