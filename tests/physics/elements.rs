@@ -378,12 +378,69 @@ fn a_uniform_pressure_goes_through_matching_meshes_exactly_and_through_others_wi
         let [low, up] = pressed((6, kind), (6, kind));
         assert!(low < 1e-8 && up < 1e-8, "{kind:?}: {low:e} {up:e}");
     }
-    for row in contact_rows() {
+    for (name, [low, up]) in contact_rows() {
+        // A quad8 slave's forces, 1/6, 4/6, 1/6 a side, are halves on the nodes of a quad4 master of the same side.
+        let exact = name == "6 quad4 under 6 quad8";
+        let off = low.max(up);
         assert!(
-            row.1.iter().all(|off| *off > 1e-6),
-            "an error that is none: {row:?}"
+            if exact {
+                off < 1e-8
+            } else {
+                (1e-3..0.25).contains(&off)
+            },
+            "{name}: {low} {up}"
         );
-        assert!(row.1.iter().all(|off| *off < 1.5), "{row:?}");
+    }
+}
+
+/// The message that a scene is refused with.
+fn refused(text: &str) -> String {
+    Scene::from_text("test.ron", text, &[])
+        .expect_err("it is refused")
+        .to_string()
+}
+
+#[test]
+fn what_cannot_be_axisymmetric_or_under_pressure_is_refused_where_it_stands() {
+    let with = |material: &str, corner: &str, other: &str, more: &str| {
+        format!(
+            "(title: \"t\", nodes: [Block(id: \"k\", corners: [{corner}, (1, 1)], elements: (1, 1)),
+                Block(id: \"j\", corners: [(5, 0), (6, 1)], elements: (1, 1)), Chain(id: \"d\", of: [\"k.1\", \"k.8\"], per_element: 2)],
+              materials: [Elastic(id: \"m\", E: 1, nu: 0, {material}), Elastic(id: \"n\", E: 1, nu: 0)],
+              bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\"), Solid(id: \"j\", mesh: \"j\", material: \"{other}\"),
+                Springs(id: \"s\", bars: [(nodes: [\"k.1\", \"j.1\"], stiffness: 1)])],
+              history: (path: [0, 1], increment: 1), loads: [{more}])"
+        )
+    };
+    let (round, at) = ("plane: axisymmetric", "(0, 0)");
+    let cases = [
+        (with(round, at, "n", ""), "as a whole or not at all"),
+        (with(round, "(-1, 0)", "m", ""), "x is the radius"),
+        (
+            with("plane: axisymmetric, thickness: 2", at, "n", ""),
+            "has no thickness",
+        ),
+        (
+            with("law: neohookean, update: small", at, "n", ""),
+            "linear elasticity",
+        ),
+        (
+            with(round, at, "m", "Pressure(along: \"d\", value: 1)"),
+            "no outer face of a solid",
+        ),
+        (
+            with(round, at, "m", "Volume(on: \"l\", y: 1)"),
+            "no solid called \"l\"",
+        ),
+        (
+            with(round, at, "m", "Volume(on: \"s\", y: 1)"),
+            "is no solid",
+        ),
+    ];
+    for (text, expected) in cases {
+        let message = refused(&text);
+        assert!(message.contains(expected), "{message}");
+        assert!(message.contains("test.ron:"), "line and column: {message}");
     }
 }
 
@@ -440,19 +497,23 @@ fn tables() -> String {
         let runs = [4, 8].map(|cells| tube(kind, cells, "update: small"));
         let [coarse, better] = [0, 1].map(|k| (last(&runs[k], "u") / expected - 1.0).abs());
         let hoop = stresses(&runs[1])[0][0].unwrap()[2] / (p * 5.0 / 3.0) - 1.0;
-        writeln!(
-            text,
-            "| {coarse:.0e} | {better:.0e} | {:.1} | {:.1} % |",
-            order(coarse, better, 2.0),
-            100.0 * hoop.abs()
-        )
-        .unwrap();
+        if better < 1e-10 {
+            write!(text, "| round-off | round-off | ").unwrap();
+        } else {
+            write!(
+                text,
+                "| {coarse:.0e} | {better:.0e} | {:.1} ",
+                order(coarse, better, 2.0)
+            )
+            .unwrap();
+        }
+        writeln!(text, "| {:.1} % |", 100.0 * hoop.abs()).unwrap();
     }
     text += "\n| blocks | in the lower block | in the upper block |\n|---|---|---|\n";
     for (name, [low, up]) in contact_rows() {
         writeln!(
             text,
-            "| {name} | {:.0} % | {:.0} % |",
+            "| {name} | {:.1} % | {:.1} % |",
             100.0 * low,
             100.0 * up
         )
