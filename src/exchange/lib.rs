@@ -6,9 +6,11 @@
 //! for.
 //!
 //! - [`broken`]: what is wrong with a file, and where.
+//! - [`inp`]: decks of CalculiX and Abaqus.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
 
 #![forbid(unsafe_code)]
 
 pub mod broken;
+pub mod inp;
 pub mod mesh;
