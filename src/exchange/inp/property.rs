@@ -41,7 +41,7 @@ pub(super) fn apply(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<b
     Ok(true)
 }
 
-fn named<'a, T>(all: &'a [T], name: impl Fn(&T) -> &str, wanted: &str) -> Option<usize> {
+fn named<T>(all: &[T], name: impl Fn(&T) -> &str, wanted: &str) -> Option<usize> {
     all.iter().position(|one| name(one) == wanted)
 }
 

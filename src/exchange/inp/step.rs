@@ -484,25 +484,32 @@ fn surface_load(
     let step = in_step(card, open)?;
     step.new_pressures |= new;
     for line in &card.lines {
-        let (first, sides, value) = pressed_surface(*line, deck, names)?;
-        names.count(sides.len(), first)?;
+        let Pressed {
+            place,
+            sides,
+            value,
+        } = pressed_surface(*line, deck, names)?;
+        names.count(sides.len(), place)?;
         step.pressures
             .extend(sides.into_iter().map(|(element, side)| Pressure {
                 element,
                 side,
                 value,
                 amplitude,
-                place: first,
+                place,
             }));
     }
     Ok(())
 }
 
-fn pressed_surface(
-    line: Line<'_>,
-    deck: &Deck,
-    names: &Names,
-) -> Result<(Place, Vec<(usize, usize)>, f64), Fault> {
+/// A line of `*DSLOAD`.
+struct Pressed {
+    place: Place,
+    sides: Vec<(usize, usize)>,
+    value: f64,
+}
+
+fn pressed_surface(line: Line<'_>, deck: &Deck, names: &Names) -> Result<Pressed, Fault> {
     let words = cells(line);
     let [first, label, size] = words.as_slice() else {
         return Err(Fault::new(
@@ -518,7 +525,11 @@ fn pressed_surface(
     }
     let surface = surface_of(first, names)?;
     match &deck.surfaces[surface].of {
-        Faces::Elements(sides) => Ok((first.place(), sides.clone(), size.number("the pressure")?)),
+        Faces::Elements(sides) => Ok(Pressed {
+            place: first.place(),
+            sides: sides.clone(),
+            value: size.number("the pressure")?,
+        }),
         Faces::Nodes(_) => Err(first.wrong(
             "a surface of nodes has no area to press on; it must be one of sides (TYPE=ELEMENT)",
         )),
