@@ -7,10 +7,12 @@
 //!
 //! - [`broken`]: what is wrong with a file, and where.
 //! - [`inp`]: decks of CalculiX and Abaqus.
+//! - [`gmsh`]: meshes of Gmsh.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
 
 #![forbid(unsafe_code)]
 
 pub mod broken;
 pub mod inp;
+pub mod gmsh;
 pub mod mesh;

@@ -34,6 +34,15 @@ impl CellKind {
             CellKind::Quad9 => 9,
         }
     }
+
+    /// 0 for a point, 1 for a side, 2 for what has an area.
+    pub fn dimension(self) -> u8 {
+        match self {
+            CellKind::Point => 0,
+            CellKind::Line2 | CellKind::Line3 => 1,
+            _ => 2,
+        }
+    }
 }
 
 /// A cell of a mesh.

@@ -1,6 +1,7 @@
 //! The scene file as its author writes it: from its text to a [`Spec`], and from that back to a line.
 //!
-//! - [`spec`]: the types of the file; [`arc`]: how a path is followed; [`condensed`]: those of a file with an interface problem without bodies.
+//! - [`spec`]: the types of the file; [`arc`]: how a path is followed; [`given`]: meshes node by node; [`condensed`]: those of a file
+//!   with an interface problem without bodies.
 //! - [`described`]: the types, described once for [`paths`] and for the [`reference`](mod@reference), which
 //!   [`markdown`] writes.
 //! - [`notation`]: how RON is written here; [`read`]: from a text to a value; [`locate`]: from a path to its line.
@@ -13,6 +14,7 @@ pub mod arc;
 pub mod condensed;
 pub mod described;
 pub mod error;
+pub mod given;
 pub mod kind;
 pub mod locate;
 pub mod markdown;

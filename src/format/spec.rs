@@ -6,9 +6,10 @@
 
 use super::arc::ArcSpec;
 use super::described::macros::described;
+use super::given::{Cells, NodeSet, SideSet};
 use crate::model::{
-    Axis, Component, Control, Friction, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
-    least,
+    Axis, Component, Control, ElementKind, Friction, InitialState, Jumps, Law, Mode, Plane,
+    Settings, Update, least,
 };
 use serde::{Deserialize, Serialize};
 
@@ -118,9 +119,9 @@ described! {
             /// Nodes per element, 2 to 9.
             per_element: usize,
         },
-        /// A mesh of 8-node quadrilaterals on a block with four sides.
+        /// A mesh on a block with four sides: of 8-node quadrilaterals, or of another kind of element.
         ///
-        /// Its edges are chains of 3-node elements, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
+        /// Its edges are chains of elements of 2 or 3 nodes, as its elements have along a side, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
         /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
         /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
         Block {
@@ -131,6 +132,9 @@ described! {
             corners: Vec<Point>,
             /// Number of elements along the bottom and along the left edge, before refinement.
             elements: (usize, usize),
+            /// What it is made of; each quadrilateral is cut into two triangles where these are named. Default: quad8.
+            #[serde(default, skip_serializing_if = "ElementKind::is_default")]
+            element: ElementKind,
             /// Length of the last element over that of the first along bottom and top (left to right), and along left and
             /// right (upwards); lengths between grow by a constant factor. Refinement divides each element evenly.
             /// Default: (1, 1).
@@ -167,6 +171,42 @@ described! {
             /// Nodes per element, 2 to 9.
             per_element: usize,
         },
+        /// A mesh that is given node by node. `refine` does not divide its elements.
+        ///
+        /// Its nodes are called `ID.label`, and all of them `ID.all`. A solid on `ID` takes all elements, one on `ID.part`
+        /// those of a part; `ID.part` and `ID.set` stand for all nodes of theirs, and `ID.side` is a line of sides, walked
+        /// with the body on the left. Sides that do not hang together are several surfaces.
+        Given {
+            /// Name of the mesh.
+            id: String => name,
+            /// The nodes as `(label, x, y)`, in any order; no label stands twice.
+            nodes: Vec<(usize, f64, f64)> => skip,
+            /// The elements, part by part.
+            elements: Vec<Cells> => skip,
+            /// Nodes by name. Default: none.
+            #[serde(default)]
+            sets: Vec<NodeSet> => skip,
+            /// Sides by name. Default: none.
+            #[serde(default)]
+            sides: Vec<SideSet> => skip,
+        },
+        /// A mesh from a file of Gmsh (.msh, version 2.2 or 4.1, text or binary), which becomes a Given one. Snapshots have it
+        /// inside.
+        ///
+        /// Physical groups keep their names: those of surfaces are parts, those of curves are sides, those of points are sets.
+        /// One without a name is called `surface2`, `line3` or `point4` by its number.
+        Import {
+            /// Name of the mesh.
+            id: String => name,
+            /// The file, beside the scene or in a folder below it.
+            file: String,
+            /// Whether quadrilaterals of eight nodes are integrated in 2 x 2 points. Default: false.
+            #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+            reduced: bool,
+            /// Factor on all coordinates, from the file's unit of length to the scene's. Default: 1.
+            #[serde(default = "unit")]
+            scale: f64,
+        },
     }
 }
 
@@ -180,7 +220,9 @@ impl Nodes {
             | Nodes::Through { id, .. }
             | Nodes::Block { id, .. }
             | Nodes::Mesh { id, .. }
-            | Nodes::Chain { id, .. } => id,
+            | Nodes::Chain { id, .. }
+            | Nodes::Given { id, .. }
+            | Nodes::Import { id, .. } => id,
         }
     }
 }
@@ -328,7 +370,7 @@ described! {
         Solid {
             /// Name of the body.
             id: String => name,
-            /// Id of the block or mesh.
+            /// Id of the block or mesh, or `ID.part` of a given one.
             mesh: String,
             /// Id of the material.
             material: String,

@@ -1,7 +1,8 @@
-//! Blocks of 8-node quadrilaterals: their nodes, elements and edges.
+//! Blocks of quadrilaterals, or of triangles, two for each: their nodes, elements and edges.
 //!
-//! Nodes are numbered row by row from the bottom: a row of corners and middles has 2 nx + 1 of them, the row between
-//! two of these, which has no nodes inside elements, nx + 1. Curved sides are blended into the inside (transfinite
+//! Nodes are numbered row by row from the bottom. Of 8-node quadrilaterals a row of corners and middles has 2 nx + 1 of them,
+//! the row between two of these, which has no nodes inside elements, nx + 1. Kinds with a node inside each cell have 2 nx + 1
+//! in every row, those without middles nx + 1 in every second one and no others. Curved sides are blended into the inside (transfinite
 //! interpolation, Gordon and Hall 1973).
 
 use super::curves::{lagrange, point, sin_cos_degrees};
@@ -9,6 +10,7 @@ use super::geometry;
 use super::limits;
 use crate::format::error::{Fault, Path};
 use crate::format::spec::{Place, Point, Side, Sides};
+use crate::model::ElementKind;
 
 /// Edges of a block in the order of the walk around it.
 pub(crate) const EDGES: [&str; 4] = ["bottom", "right", "top", "left"];
@@ -19,48 +21,131 @@ const SHARPEST: f64 = 1e-2;
 /// Lengths that differ by less, relatively, are meant to be the same.
 const SAME_LENGTH: f64 = 1e-6;
 
-/// Number of elements of a block in its two directions, after refinement.
+/// Number of cells of a block in its two directions, after refinement, and what they are made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Grid {
     pub columns: usize,
     pub rows: usize,
+    pub kind: ElementKind,
 }
 
+/// At which half cells a row of nodes has them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Row {
+    None,
+    Corners,
+    All,
+}
+
+/// Corners and middles of the sides of a cell, by half cells to the right and up; then its middle.
+const AROUND: [(usize, usize); 9] = [
+    (0, 0),
+    (2, 0),
+    (2, 2),
+    (0, 2),
+    (1, 0),
+    (2, 1),
+    (1, 2),
+    (0, 1),
+    (1, 1),
+];
+
 impl Grid {
+    /// What the row at j half cells has.
+    fn row(self, j: usize) -> Row {
+        let even = j.is_multiple_of(2);
+        match self.kind {
+            ElementKind::Triangle3 | ElementKind::Quad4 if even => Row::Corners,
+            ElementKind::Triangle3 | ElementKind::Quad4 => Row::None,
+            ElementKind::Quad8 | ElementKind::Quad8Reduced if !even => Row::Corners,
+            _ => Row::All,
+        }
+    }
+
+    fn nodes_of(self, row: Row) -> usize {
+        match row {
+            Row::None => 0,
+            Row::Corners => self.columns + 1,
+            Row::All => 2 * self.columns + 1,
+        }
+    }
+
     fn first_of_row(self, j: usize) -> usize {
-        let (full, half) = (2 * self.columns + 1, self.columns + 1);
-        j / 2 * (full + half) + j % 2 * full
+        let [even, odd] = [0, 1].map(|j| self.nodes_of(self.row(j)));
+        j / 2 * (even + odd) + j % 2 * even
     }
 
-    /// Node at half elements i to the right and j up; not the middle of an element.
+    /// Node at half cells i to the right and j up, where there is one.
     fn node(self, i: usize, j: usize) -> usize {
-        self.first_of_row(j) + if j.is_multiple_of(2) { i } else { i / 2 }
+        self.first_of_row(j) + if self.row(j) == Row::All { i } else { i / 2 }
     }
 
-    /// Nodes of each element, row by row.
-    pub fn elements(self) -> impl Iterator<Item = [usize; 8]> {
-        const AROUND: [(usize, usize); 8] = [
-            (0, 0),
-            (2, 0),
-            (2, 2),
-            (0, 2),
-            (1, 0),
-            (2, 1),
-            (1, 2),
-            (0, 1),
-        ];
-        let places = (0..self.rows).flat_map(move |r| (0..self.columns).map(move |c| (c, r)));
-        places.map(move |(c, r)| AROUND.map(|(i, j)| self.node(2 * c + i, 2 * r + j)))
+    /// Nodes of each side of a cell.
+    pub fn per_edge(self) -> usize {
+        self.kind.per_face()
+    }
+
+    /// About how many nodes a cell has of its own.
+    pub fn nodes_per_cell(kind: ElementKind) -> f64 {
+        match kind {
+            ElementKind::Triangle3 | ElementKind::Quad4 => 1.0,
+            ElementKind::Quad8 | ElementKind::Quad8Reduced => 3.0,
+            ElementKind::Triangle6 | ElementKind::Quad9 => 4.0,
+        }
+    }
+
+    /// Nodes of each element, cell by cell, row by row.
+    pub fn elements(self) -> impl Iterator<Item = Vec<usize>> {
+        let cells = (0..self.rows).flat_map(move |r| (0..self.columns).map(move |c| (c, r)));
+        cells.flat_map(move |(c, r)| self.elements_of(c, r))
+    }
+
+    /// Elements of each cell: two triangles, or one quadrilateral.
+    fn per_cell(self) -> usize {
+        1 + usize::from(self.kind.is_triangle())
+    }
+
+    /// The elements of a cell. Triangles are cut along one diagonal and, in the next cell, along the other, so that meshes of
+    /// even numbers of cells are as symmetric as their blocks.
+    fn elements_of(self, c: usize, r: usize) -> Vec<Vec<usize>> {
+        let at = |(i, j): (usize, usize)| self.node(2 * c + i, 2 * r + j);
+        if !self.kind.is_triangle() {
+            return vec![
+                AROUND[..self.kind.nodes()]
+                    .iter()
+                    .copied()
+                    .map(at)
+                    .collect(),
+            ];
+        }
+        let halves = if (c + r).is_multiple_of(2) {
+            [[0, 1, 2], [0, 2, 3]]
+        } else {
+            [[0, 1, 3], [1, 2, 3]]
+        };
+        let triangle = |corners: [usize; 3]| {
+            let corners = corners.map(|k| AROUND[k]);
+            let middle = |k: usize| {
+                let ((a, b), (c, d)) = (corners[k], corners[(k + 1) % 3]);
+                ((a + c) / 2, (b + d) / 2)
+            };
+            let all = corners.into_iter().chain((0..3).map(middle));
+            all.take(self.kind.nodes()).map(at).collect()
+        };
+        halves.map(triangle).to_vec()
     }
 
     /// Nodes along an edge, walked anticlockwise around the block.
     pub fn edge(self, which: usize) -> Vec<usize> {
         let (right, top) = (2 * self.columns, 2 * self.rows);
+        let step = if self.per_edge() == 2 { 2 } else { 1 };
+        let across = (0..right + 1).step_by(step);
+        let up = (0..top + 1).step_by(step);
         match which {
-            0 => (0..=right).map(|i| self.node(i, 0)).collect(),
-            1 => (0..=top).map(|j| self.node(right, j)).collect(),
-            2 => (0..=right).rev().map(|i| self.node(i, top)).collect(),
-            _ => (0..=top).rev().map(|j| self.node(0, j)).collect(),
+            0 => across.map(|i| self.node(i, 0)).collect(),
+            1 => up.map(|j| self.node(right, j)).collect(),
+            2 => across.rev().map(|i| self.node(i, top)).collect(),
+            _ => up.rev().map(|j| self.node(0, j)).collect(),
         }
     }
 
@@ -68,8 +153,12 @@ impl Grid {
     /// from straight, blended between opposite ones (transfinite interpolation).
     fn positions(self, corners: &[Point; 4], at: &Stations, curves: &Curves) -> Vec<Point> {
         let places = (0..=2 * self.rows).flat_map(move |j| {
-            let step = 1 + j % 2;
-            (0..=2 * self.columns).step_by(step).map(move |i| (i, j))
+            let (step, last) = match self.row(j) {
+                Row::None => (1, 0),
+                Row::Corners => (2, 2 * self.columns + 1),
+                Row::All => (1, 2 * self.columns + 1),
+            };
+            (0..last).step_by(step).map(move |i| (i, j))
         });
         places
             .map(|(i, j)| {
@@ -105,6 +194,7 @@ type Curves = [Vec<Point>; 4];
 pub(crate) struct Shape<'a> {
     pub corners: &'a [Point],
     pub elements: (usize, usize),
+    pub kind: ElementKind,
     pub grading: (f64, f64),
     pub sides: &'a Sides,
     pub place: &'a Place,
@@ -141,6 +231,7 @@ pub(crate) fn block(
     let grid = Grid {
         columns: columns * refine,
         rows: rows * refine,
+        kind: shape.kind,
     };
     let at = Stations {
         across: stations(columns, shape.grading.0, refine),
@@ -324,10 +415,12 @@ fn deviations(ends: (Point, Point), stations: &[f64], at: impl Fn(f64) -> Point)
 
 /// Refuses a mesh with an element that is folded, or all but.
 fn check_elements(here: &Path, grid: Grid, at: &[Point]) -> Result<(), Fault> {
-    let folded = |nodes: &[usize; 8]| geometry::is_folded(&nodes.map(|n| [at[n].0, at[n].1]));
-    let Some(place) = grid.elements().position(|nodes| folded(&nodes)) else {
+    let folds = geometry::Folds::of(grid.kind);
+    let folded = |nodes: Vec<usize>| folds.is_folded(nodes.iter().map(|&n| [at[n].0, at[n].1]));
+    let Some(place) = grid.elements().position(folded) else {
         return Ok(());
     };
+    let place = place / grid.per_cell();
     let message = format!(
         "the block is folded in its element {} from the left, {} from the bottom: the Jacobian is not positive there; \
          corners run anticlockwise, and curved or graded sides must leave room for the elements",
@@ -377,8 +470,9 @@ mod tests {
         let grid = Grid {
             columns: 3,
             rows: 2,
+            kind: ElementKind::Quad8,
         };
-        let elements: Vec<[usize; 8]> = grid.elements().collect();
+        let elements: Vec<Vec<usize>> = grid.elements().collect();
         assert_eq!(elements[0], [0, 2, 13, 11, 1, 8, 12, 7]);
         assert_eq!(
             [elements[0][1], elements[0][5], elements[0][2]],
@@ -397,6 +491,54 @@ mod tests {
         }
     }
 
+    #[test]
+    fn of_every_kind_all_nodes_are_used_and_faces_meet_or_make_up_the_edges() {
+        for kind in ElementKind::ALL {
+            let (columns, rows) = (4, 3);
+            let grid = Grid {
+                columns,
+                rows,
+                kind,
+            };
+            let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)];
+            let stations = Stations {
+                across: super::stations(columns, 1.0, 1),
+                up: super::stations(rows, 1.0, 1),
+            };
+            let at = grid.positions(&corners, &stations, &Curves::default());
+            let elements: Vec<Vec<usize>> = grid.elements().collect();
+            let mut used = elements.concat();
+            used.sort_unstable();
+            used.dedup();
+            assert_eq!(used, (0..at.len()).collect::<Vec<_>>(), "{kind:?}");
+            // Every element lies as its parent does, up to size.
+            let folds = geometry::Folds::of(kind);
+            for nodes in &elements {
+                assert_eq!(nodes.len(), kind.nodes());
+                assert!(!folds.is_folded(nodes.iter().map(|&n| [at[n].0, at[n].1])));
+                for face in kind.faces_of(nodes).filter(|face| face.len() == 3) {
+                    let [a, b, c] = [at[face[0]], at[face[1]], at[face[2]]];
+                    assert_eq!((a.0 + c.0, a.1 + c.1), (2.0 * b.0, 2.0 * b.1), "{kind:?}");
+                }
+            }
+            let outer = crate::model::boundary(elements.iter().map(|e| (kind, e.as_slice())));
+            let mut expected = Vec::new();
+            for edge in (0..4).map(|k| grid.edge(k)) {
+                let m = kind.per_face() - 1;
+                expected.extend(
+                    (0..edge.len() - 1)
+                        .step_by(m)
+                        .map(|k| edge[k..=k + m].to_vec()),
+                );
+            }
+            let sorted = |mut faces: Vec<Vec<usize>>| {
+                faces.sort();
+                faces
+            };
+            assert_eq!(sorted(outer), sorted(expected), "{kind:?}");
+        }
+    }
+
     fn made(
         corners: &[Point],
         elements: (usize, usize),
@@ -407,6 +549,7 @@ mod tests {
         let shape = Shape {
             corners,
             elements,
+            kind: ElementKind::Quad8,
             grading,
             sides,
             place: &Place::default(),

@@ -4,7 +4,9 @@ use super::Scene;
 use super::compile::increments;
 use super::gaps;
 use crate::linear::estimate::Estimate;
-use crate::model::{Beam, Body, BodyKind, Elastic, Form, Linear, Model, Solid, Surface};
+use crate::model::{
+    Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, Model, Solid, Surface,
+};
 use crate::model::{Solver, Update};
 use std::fmt;
 
@@ -149,27 +151,44 @@ fn beam_line(name: &str, beam: &Beam) -> String {
 
 fn solid_line(name: &str, solid: &Solid) -> String {
     use crate::model::{Law, Plane};
-    let elements = plural(solid.elements.len(), "element");
     let made_of = |m: &Elastic| {
         let law = match (m.law, m.update) {
             (Law::NeoHookean, _) => "neo-Hookean",
             (Law::Svk, Update::Total) => "St Venant-Kirchhoff",
             (Law::Svk, Update::Updated) => "updated Lagrangian",
+            (Law::Svk, Update::Small) => "small strains",
         };
         let plane = match m.plane {
-            Plane::Strain => "plane strain",
-            Plane::Stress => "plane stress",
+            Plane::Strain => format!("plane strain, thickness {}", m.thickness),
+            Plane::Stress => format!("plane stress, thickness {}", m.thickness),
+            Plane::Axisymmetric => "axisymmetric, forces of the whole circumference".to_owned(),
         };
-        format!(
-            "E {}, nu {}, {law}, {plane}, thickness {}",
-            m.young, m.poisson, m.thickness
-        )
+        format!("E {}, nu {}, {law}, {plane}", m.young, m.poisson)
     };
     let materials: Vec<String> = solid.materials.iter().map(made_of).collect();
     format!(
-        "{name}: solid, {elements} of 8 nodes, {}",
+        "{name}: solid, {}, {}",
+        elements_of(solid),
         materials.join("; ")
     )
+}
+
+/// How many elements of which kinds.
+fn elements_of(solid: &Solid) -> String {
+    let of_kind = |kind: &ElementKind| {
+        let count = solid.elements.iter().filter(|e| e.kind == *kind).count();
+        (count > 0).then(|| {
+            let elements = plural(count, "element");
+            let word = if kind.is_default() {
+                String::new()
+            } else {
+                format!(" ({})", kind.word())
+            };
+            format!("{elements} of {} nodes{word}", kind.nodes())
+        })
+    };
+    let kinds: Vec<String> = ElementKind::ALL.iter().filter_map(of_kind).collect();
+    kinds.join(" and ")
 }
 
 fn surface_line(surface: &Surface) -> String {

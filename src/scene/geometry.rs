@@ -1,8 +1,9 @@
 //! Whether elements are sound curves, and how far a point is from a chain of them.
 
 use super::limits;
+use crate::fem::continuum;
 use crate::format::error::{Fault, Path};
-use crate::model::Node;
+use crate::model::{ElementKind, Node};
 
 /// Refuses chains with an element whose nodes coincide, or whose curve folds back or stands still.
 ///
@@ -14,11 +15,15 @@ pub(crate) fn check_elements(
     elements: &[Vec<usize>],
     length: f64,
 ) -> Result<(), Fault> {
-    let slopes = slopes(elements.first().map_or(2, Vec::len));
+    let mut table = slopes(elements.first().map_or(2, Vec::len));
     for element in elements {
+        // The boundary of a mesh of several kinds has elements of 2 nodes and of 3.
+        if table[0].len() != element.len() {
+            table = slopes(element.len());
+        }
         check_distances(path, nodes, element, length)?;
         let points: Vec<[f64; 2]> = element.iter().map(|&n| nodes[n].at).collect();
-        if folds(&slopes, &points) {
+        if folds(&table, &points) {
             let (first, last) = (
                 &nodes[element[0]].name,
                 &nodes[element[element.len() - 1]].name,
@@ -92,40 +97,44 @@ pub(crate) fn slope(m: usize, i: usize, t: f64) -> f64 {
         .sum()
 }
 
-/// Whether the Jacobian of an 8-node quadrilateral is not clearly positive at one of 5 by 5 places, its corners among
-/// them: below a thousandth of its greatest value.
-pub(crate) fn is_folded(nodes: &[[f64; 2]; 8]) -> bool {
-    const SMALLEST: f64 = 1e-3;
-    let places = (0..25).map(|k| (f64::from(k % 5) / 2.0 - 1.0, f64::from(k / 5) / 2.0 - 1.0));
-    let values: Vec<f64> = places.map(|(r, s)| jacobian(nodes, r, s)).collect();
-    let greatest = values.iter().copied().fold(0.0, f64::max);
-    !values.iter().all(|&j| j > SMALLEST * greatest)
-}
+/// Slopes of the shape functions of a kind of element at places all over its parent element, the corners among them.
+pub(crate) struct Folds(Vec<Vec<[f64; 2]>>);
 
-/// Determinant of dx/d(r, s) of an 8-node quadrilateral, r and s from −1 to 1.
-fn jacobian(nodes: &[[f64; 2]; 8], r: f64, s: f64) -> f64 {
-    const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    let mut slopes = [[0.0; 2]; 8];
-    for (k, (a, b)) in CORNERS.into_iter().enumerate() {
-        slopes[k] = [
-            0.25 * a * (1.0 + b * s) * (2.0 * a * r + b * s),
-            0.25 * b * (1.0 + a * r) * (a * r + 2.0 * b * s),
-        ];
+impl Folds {
+    /// Those of a kind, at 5 by 5 places.
+    pub fn of(kind: ElementKind) -> Self {
+        let part = |k: usize| k as f64 / 4.0;
+        let places = (0..25).map(|k| (part(k % 5), part(k / 5)));
+        let places = places.filter(|(r, s)| !kind.is_triangle() || r + s <= 1.0);
+        let slopes = |(r, s): (f64, f64)| {
+            let (xi, eta) = if kind.is_triangle() {
+                (r, s)
+            } else {
+                (2.0 * r - 1.0, 2.0 * s - 1.0)
+            };
+            continuum::shape(kind, xi, eta).1
+        };
+        Folds(places.map(slopes).collect())
     }
-    for (k, side) in [(4, -1.0), (6, 1.0)] {
-        slopes[k] = [-r * (1.0 + side * s), 0.5 * side * (1.0 - r * r)];
+
+    /// Whether the Jacobian of an element is not clearly positive at one of the places: below a thousandth of its greatest
+    /// value.
+    pub fn is_folded(&self, nodes: impl Iterator<Item = [f64; 2]> + Clone) -> bool {
+        const SMALLEST: f64 = 1e-3;
+        let jacobian = |slopes: &Vec<[f64; 2]>| {
+            let mut sums = [[0.0; 2]; 2];
+            for (x, d) in nodes.clone().zip(slopes) {
+                for (axis, row) in sums.iter_mut().enumerate() {
+                    for (by, sum) in row.iter_mut().enumerate() {
+                        *sum += x[axis] * d[by];
+                    }
+                }
+            }
+            sums[0][0] * sums[1][1] - sums[0][1] * sums[1][0]
+        };
+        let greatest = self.0.iter().map(jacobian).fold(0.0, f64::max);
+        !self.0.iter().map(jacobian).all(|j| j > SMALLEST * greatest)
     }
-    for (k, side) in [(5, 1.0), (7, -1.0)] {
-        slopes[k] = [0.5 * side * (1.0 - s * s), -s * (1.0 + side * r)];
-    }
-    let sum = |axis: usize, by: usize| -> f64 {
-        nodes
-            .iter()
-            .zip(&slopes)
-            .map(|(x, d)| x[axis] * d[by])
-            .sum()
-    };
-    sum(0, 0) * sum(1, 1) - sum(0, 1) * sum(1, 0)
 }
 
 /// Distance of two points.
@@ -243,7 +252,8 @@ mod tests {
                 [0.0, 1.0],
             ]
         };
-        assert!((jacobian(&with(2.0), 0.3, -0.7) - 2.0).abs() < 1e-14);
+        let folds = Folds::of(ElementKind::Quad8);
+        let is_folded = |nodes: &[[f64; 2]; 8]| folds.is_folded(nodes.iter().copied());
         assert!(!is_folded(&with(2.0)) && !is_folded(&with(1.2)));
         assert!(is_folded(&with(1.0)) && is_folded(&with(3.1)));
         assert!(is_folded(&[[0.0; 2]; 8]) && is_folded(&with(2.0).map(|[x, y]| [y, x])));

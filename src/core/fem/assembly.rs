@@ -11,7 +11,7 @@ use crate::fem::material::Material;
 use crate::fem::matrix;
 use crate::linalg::Pattern;
 use crate::model::Model;
-use crate::model::{Beam, Body, BodyKind, Dofs, Solid};
+use crate::model::{Beam, Body, BodyKind, Dofs, Solid, SolidElement};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -145,11 +145,16 @@ impl Assembly {
     }
 
     fn add_solid(&mut self, model: &Model, solid: &Solid) {
-        for (nodes, &material) in solid.elements.iter().zip(&solid.material_of) {
-            let elastic = &solid.materials[material];
+        for SolidElement {
+            kind,
+            nodes,
+            material,
+        } in &solid.elements
+        {
+            let elastic = &solid.materials[*material];
             let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
             let material = Material::new(elastic);
-            let element = continuum::element(solid.kind, &positions, material, elastic.update);
+            let element = continuum::element(*kind, &positions, material, elastic.update);
             self.place(element, dofs_of(model, nodes, 2));
         }
     }
@@ -475,8 +480,10 @@ pub fn history_len(model: &Model) -> usize {
     let of = |body: &Body| match &body.kind {
         BodyKind::Beam(_) | BodyKind::Linear(_) => 0,
         BodyKind::Solid(solid) => {
-            let of = |&m: &usize| continuum::history_len(solid.kind, solid.materials[m].update);
-            solid.material_of.iter().map(of).sum()
+            let of = |element: &SolidElement| {
+                continuum::history_len(element.kind, solid.materials[element.material].update)
+            };
+            solid.elements.iter().map(of).sum()
         }
     };
     model.bodies.iter().map(of).sum()

@@ -1,10 +1,26 @@
-//! The kinds of continuum elements, one file each: a new one is a file, a kind in [`ElementKind`], and a line in each of
-//! the functions here.
+//! The kinds of continuum elements by name: a new one is a file of [`super::kinds`], a kind in [`ElementKind`], and a line in
+//! each of the tables here.
 
 use crate::fem::element::{Element, Past};
+use crate::fem::isoparametric::{self, PointState};
+use crate::fem::kinds::{Parent, Shape, quad4, quad8, quad9, triangle3, triangle6};
 use crate::fem::material::Material;
-use crate::fem::quad8;
-use crate::model::{ElementKind, Update};
+use crate::fem::small;
+use crate::model::{ElementKind, Plane, Update};
+
+/// Calls a function with the rule of a kind, which is generic over its numbers of nodes and of points.
+macro_rules! with_rule {
+    ($kind:expr, $function:ident($($argument:expr),*)) => {
+        match $kind {
+            ElementKind::Triangle3 => $function(&*triangle3::RULE, $($argument),*),
+            ElementKind::Triangle6 => $function(&*triangle6::RULE, $($argument),*),
+            ElementKind::Quad4 => $function(&*quad4::RULE, $($argument),*),
+            ElementKind::Quad8 => $function(&*quad8::RULE, $($argument),*),
+            ElementKind::Quad8Reduced => $function(&*quad8::REDUCED, $($argument),*),
+            ElementKind::Quad9 => $function(&*quad9::RULE, $($argument),*),
+        }
+    };
+}
 
 /// An element of a kind on these undeformed positions. One that has not as many as its kind has nodes never answers, so that
 /// no state of it can be accepted.
@@ -14,12 +30,33 @@ pub fn element(
     material: Material,
     update: Update,
 ) -> Box<dyn Element> {
-    match (kind, at.try_into()) {
-        (ElementKind::Quad8, Ok(at)) => Box::new(quad8::Element::new(at, material, update)),
-        (kind, Err(_)) => Box::new(Malformed {
+    with_rule!(kind, made(at, material, update))
+}
+
+fn made<const N: usize, const P: usize>(
+    rule: &'static [Parent<N>; P],
+    at: &[[f64; 2]],
+    material: Material,
+    update: Update,
+) -> Box<dyn Element> {
+    let Ok(at) = <[[f64; 2]; N]>::try_from(at) else {
+        return Box::new(Malformed {
             dofs: 2 * at.len(),
-            history: history_len(kind, update),
-        }),
+            history: isoparametric::history_len(update, P),
+        });
+    };
+    let made: Box<dyn Element> = if material.plane == Plane::Axisymmetric {
+        Box::new(isoparametric::Element::<N, P, true>::new(
+            rule, at, material, update,
+        ))
+    } else {
+        Box::new(isoparametric::Element::<N, P, false>::new(
+            rule, at, material, update,
+        ))
+    };
+    match update {
+        Update::Total | Update::Updated => made,
+        Update::Small => Box::new(small::Element::new(&*made)),
     }
 }
 
@@ -43,26 +80,106 @@ impl Element for Malformed {
     }
 }
 
+/// States of the points of an element, in the order of its rule, with their places in the parent element; none of one with
+/// the wrong number of nodes, nor at a point where the material has no answer.
+pub fn states(
+    kind: ElementKind,
+    at: &[[f64; 2]],
+    (material, update): (Material, Update),
+    past: &Past<'_>,
+    u: &[f64],
+) -> Vec<([f64; 2], Option<PointState>)> {
+    with_rule!(kind, states_by(at, (material, update), past, u))
+}
+
+fn states_by<const N: usize, const P: usize>(
+    rule: &'static [Parent<N>; P],
+    at: &[[f64; 2]],
+    (material, update): (Material, Update),
+    past: &Past<'_>,
+    u: &[f64],
+) -> Vec<([f64; 2], Option<PointState>)> {
+    let Ok(at) = <[[f64; 2]; N]>::try_from(at) else {
+        return Vec::new();
+    };
+    let points = rule.iter().enumerate();
+    if material.plane == Plane::Axisymmetric {
+        let element = isoparametric::Element::<N, P, true>::new(rule, at, material, update);
+        points
+            .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
+            .collect()
+    } else {
+        let element = isoparametric::Element::<N, P, false>::new(rule, at, material, update);
+        points
+            .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
+            .collect()
+    }
+}
+
 /// How many numbers an element of a kind remembers from increment to increment.
 pub fn history_len(kind: ElementKind, update: Update) -> usize {
-    match kind {
-        ElementKind::Quad8 => quad8::history_len(update),
-    }
+    isoparametric::history_len(update, points(kind))
+}
+
+/// Number of points of a kind's rule.
+pub fn points(kind: ElementKind) -> usize {
+    with_rule!(kind, count())
+}
+
+fn count<const N: usize, const P: usize>(_: &[Parent<N>; P]) -> usize {
+    P
+}
+
+/// Points and weights of a kind's rule in its parent element, with the shape functions and their derivatives there.
+pub fn rule(kind: ElementKind) -> Vec<Sample> {
+    with_rule!(kind, samples())
+}
+
+fn samples<const N: usize, const P: usize>(rule: &[Parent<N>; P]) -> Vec<Sample> {
+    let sample = |parent: &Parent<N>| Sample {
+        at: parent.at,
+        n: parent.n.to_vec(),
+        d: parent.d.to_vec(),
+        weight: parent.weight,
+    };
+    rule.iter().map(sample).collect()
+}
+
+/// A point of a rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// ξ and η.
+    pub at: [f64; 2],
+    /// The shape functions there.
+    pub n: Vec<f64>,
+    /// ∂N/∂ξ, ∂N/∂η.
+    pub d: Vec<[f64; 2]>,
+    /// Weight of the point.
+    pub weight: f64,
 }
 
 /// Shape functions of a kind, and their derivatives by ξ and η, at a point of the parent element.
 pub fn shape(kind: ElementKind, xi: f64, eta: f64) -> (Vec<f64>, Vec<[f64; 2]>) {
     match kind {
-        ElementKind::Quad8 => {
-            let (n, d) = quad8::shape(xi, eta);
-            (n.to_vec(), d.to_vec())
-        }
+        ElementKind::Triangle3 => listed(triangle3::shape(xi, eta)),
+        ElementKind::Triangle6 => listed(triangle6::shape(xi, eta)),
+        ElementKind::Quad4 => listed(quad4::shape(xi, eta)),
+        ElementKind::Quad8 | ElementKind::Quad8Reduced => listed(quad8::shape(xi, eta)),
+        ElementKind::Quad9 => listed(quad9::shape(xi, eta)),
     }
+}
+
+fn listed<const N: usize>((n, d): Shape<N>) -> (Vec<f64>, Vec<[f64; 2]>) {
+    (n.to_vec(), d.to_vec())
 }
 
 /// Places of the nodes of a kind in its parent element.
 pub fn places(kind: ElementKind) -> Vec<[f64; 2]> {
     match kind {
-        ElementKind::Quad8 => quad8::PLACES.to_vec(),
+        ElementKind::Triangle3 => triangle3::PLACES.to_vec(),
+        ElementKind::Triangle6 => triangle6::PLACES.to_vec(),
+        ElementKind::Quad4 => quad4::PLACES.to_vec(),
+        ElementKind::Quad8 | ElementKind::Quad8Reduced => quad8::PLACES.to_vec(),
+        ElementKind::Quad9 => quad9::PLACES.to_vec(),
     }
 }

@@ -8,7 +8,7 @@
 //! neo-Hookean           W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²,   S = μ (I − C⁻¹) + λ ln J C⁻¹
 //! ```
 //!
-//! Plane strain has E33 = 0. Plane stress has S33 = 0, and E33 is eliminated exactly: with λ' = 2λμ/(λ + 2μ) for
+//! Plane strain has E33 = 0; axisymmetry has any, and stress answers it ([`Hoop`]). Plane stress has S33 = 0, and E33 is eliminated exactly: with λ' = 2λμ/(λ + 2μ) for
 //! λ in the first law, by a scalar Newton iteration in the second.
 
 use crate::model::Elastic;
@@ -44,6 +44,17 @@ pub struct Response {
     pub thickening: f64,
 }
 
+/// What it answers around the axis, where the strain there is no zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hoop {
+    /// S33.
+    pub stress: f64,
+    /// ∂S33/∂E11, ∂S33/∂E22, ∂S33/∂(2 E12), which are ∂S11/∂E33, ∂S22/∂E33, ∂S12/∂E33.
+    pub coupling: Vector3<f64>,
+    /// ∂S33/∂E33.
+    pub modulus: f64,
+}
+
 impl Material {
     /// The material of a scene.
     pub fn new(elastic: &Elastic) -> Self {
@@ -73,7 +84,7 @@ impl Material {
         // λ / (λ + 2μ) = ν / (1 − ν).
         let share = self.lambda / (self.lambda + 2.0 * mu);
         let (lambda, thickening) = match self.plane {
-            Plane::Strain => (self.lambda, 0.0),
+            Plane::Strain | Plane::Axisymmetric => (self.lambda, 0.0),
             Plane::Stress => (2.0 * mu * share, -share * trace),
         };
         let direct = lambda + 2.0 * mu;
@@ -92,9 +103,8 @@ impl Material {
 
     fn neo_hookean(&self, strain: &Vector3<f64>) -> Option<Response> {
         let (lambda, mu) = (self.lambda, self.mu);
-        let e = Matrix2::new(strain.x, 0.5 * strain.z, 0.5 * strain.z, strain.y);
-        // det C − 1 of the plane, without the difference of numbers near one.
-        let swelling = 2.0 * e.trace() + 4.0 * e.determinant();
+        let e = tensor(strain);
+        let swelling = swelling(&e);
         if swelling.is_nan() || swelling <= -1.0 {
             return None;
         }
@@ -102,7 +112,7 @@ impl Material {
         let log = swelling.ln_1p();
         // μ − λ ln J appears in stress and tangent; in plane stress it is μ C33.
         let (pressure, direct, thickening) = match self.plane {
-            Plane::Strain => (0.5 * lambda * log, lambda, 0.0),
+            Plane::Strain | Plane::Axisymmetric => (0.5 * lambda * log, lambda, 0.0),
             Plane::Stress => {
                 let x = self.log_of_c33(log)?;
                 let c33 = x.exp();
@@ -110,7 +120,19 @@ impl Material {
                 (-mu * x.exp_m1(), direct, 0.5 * x.exp_m1())
             }
         };
-        let s = inverse * (2.0 * mu * e + Matrix2::identity() * pressure);
+        Some(self.answer(&e, &inverse, (pressure, direct, thickening)))
+    }
+
+    /// S = C⁻¹ (2μ E + p I) and its derivative in the plane, where p is λ ln J or what stands for it, and `direct` its
+    /// derivative.
+    fn answer(
+        &self,
+        e: &Matrix2<f64>,
+        inverse: &Matrix2<f64>,
+        (pressure, direct, thickening): (f64, f64, f64),
+    ) -> Response {
+        let mu = self.mu;
+        let s = inverse * (2.0 * mu * *e + Matrix2::identity() * pressure);
         let (a, b, c) = (inverse[(0, 0)], inverse[(1, 1)], inverse[(0, 1)]);
         let v = Vector3::new(a, b, c);
         let both = Matrix3::new(
@@ -124,11 +146,76 @@ impl Material {
             b * c,
             0.5 * (a * b + c * c),
         );
-        Some(Response {
+        Response {
             stress: Vector3::new(s[(0, 0)], s[(1, 1)], 0.5 * (s[(0, 1)] + s[(1, 0)])),
             tangent: direct * v * v.transpose() + 2.0 * (mu - pressure) * both,
             thickening,
-        })
+        }
+    }
+
+    /// Stress and tangent where rings strain too, by `hoop` = E33; none where the law has no answer.
+    pub fn response_around(&self, strain: &Vector3<f64>, hoop: f64) -> Option<(Response, Hoop)> {
+        match self.law {
+            Law::Svk => Some(self.linear_around(strain, hoop)),
+            Law::NeoHookean => self.neo_hookean_around(strain, hoop),
+        }
+    }
+
+    /// S = C : E with E33 = `hoop`.
+    pub fn linear_around(&self, strain: &Vector3<f64>, hoop: f64) -> (Response, Hoop) {
+        let (lambda, direct) = (self.lambda, self.lambda + 2.0 * self.mu);
+        let mut response = self.linear(strain);
+        response.stress += Vector3::new(lambda * hoop, lambda * hoop, 0.0);
+        let hoop = Hoop {
+            stress: direct * hoop + lambda * (strain.x + strain.y),
+            coupling: Vector3::new(lambda, lambda, 0.0),
+            modulus: direct,
+        };
+        (response, hoop)
+    }
+
+    fn neo_hookean_around(&self, strain: &Vector3<f64>, hoop: f64) -> Option<(Response, Hoop)> {
+        let (lambda, mu) = (self.lambda, self.mu);
+        let e = tensor(strain);
+        let (swelling, around) = (swelling(&e), 2.0 * hoop);
+        if !(swelling > -1.0 && around > -1.0) {
+            return None;
+        }
+        let inverse = (Matrix2::identity() + 2.0 * e).try_inverse()?;
+        let pressure = 0.5 * lambda * (swelling.ln_1p() + around.ln_1p());
+        let response = self.answer(&e, &inverse, (pressure, lambda, hoop));
+        let c = 1.0 / (1.0 + around);
+        let hoop = Hoop {
+            stress: c * (2.0 * mu * hoop + pressure),
+            coupling: lambda * c * Vector3::new(inverse[(0, 0)], inverse[(1, 1)], inverse[(0, 1)]),
+            modulus: c * c * (lambda + 2.0 * (mu - pressure)),
+        };
+        Some((response, hoop))
+    }
+
+    /// S33 for a strain in the plane: zero in plane stress.
+    pub fn across(&self, strain: &Vector3<f64>) -> f64 {
+        match (self.plane, self.law) {
+            (Plane::Stress, _) => 0.0,
+            (_, Law::Svk) => self.linear_across(strain),
+            (_, Law::NeoHookean) => 0.5 * self.lambda * swelling(&tensor(strain)).ln_1p(),
+        }
+    }
+
+    /// The same by the constant moduli.
+    pub fn linear_across(&self, strain: &Vector3<f64>) -> f64 {
+        match self.plane {
+            Plane::Stress => 0.0,
+            _ => self.lambda * (strain.x + strain.y),
+        }
+    }
+
+    /// The same by the stress in the plane: ν (σ11 + σ22).
+    pub fn across_of(&self, stress: &Vector3<f64>) -> f64 {
+        match self.plane {
+            Plane::Stress => 0.0,
+            _ => self.lambda / (2.0 * (self.lambda + self.mu)) * (stress.x + stress.y),
+        }
     }
 
     /// x = ln C33 of plane stress, where `log` is ln det C of the plane: μ (eˣ − 1) + λ/2 (log + x) = 0.
@@ -146,6 +233,16 @@ impl Material {
         }
         x.is_finite().then_some(x)
     }
+}
+
+/// E as a matrix.
+fn tensor(strain: &Vector3<f64>) -> Matrix2<f64> {
+    Matrix2::new(strain.x, 0.5 * strain.z, 0.5 * strain.z, strain.y)
+}
+
+/// det C − 1 of the plane, without the difference of numbers near one.
+fn swelling(e: &Matrix2<f64>) -> f64 {
+    2.0 * e.trace() + 4.0 * e.determinant()
 }
 
 #[cfg(test)]
@@ -196,6 +293,53 @@ mod tests {
                     assert!(error < 1e-7 * scale, "{m:?} {strain:?}: {error:e}");
                 }
                 assert!((at.tangent - at.tangent.transpose()).amax() < 1e-15 * scale);
+            }
+        }
+    }
+
+    #[test]
+    fn around_the_axis_too_the_tangent_is_the_derivative_of_the_stress() {
+        for law in [Law::Svk, Law::NeoHookean] {
+            let m = material(law, Plane::Axisymmetric, 0.3);
+            for (strain, hoop) in STRAINS
+                .map(Vector3::from)
+                .into_iter()
+                .zip([0.0, 0.4, -0.3, 0.2, 1.0])
+            {
+                let all = |strain: &Vector3<f64>, hoop: f64| {
+                    let (plane, around) = m.response_around(strain, hoop).unwrap();
+                    (plane.stress, around.stress)
+                };
+                let (plane, around) = m.response_around(&strain, hoop).unwrap();
+                let (scale, h) = (plane.tangent.amax().max(around.modulus), 1e-5);
+                for k in 0..3 {
+                    let mut step = Vector3::zeros();
+                    step[k] = h;
+                    let (plus, minus) = (all(&(strain + step), hoop), all(&(strain - step), hoop));
+                    let error = (plus.0 - minus.0) / (2.0 * h) - plane.tangent.column(k);
+                    assert!(error.amax() < 1e-7 * scale, "{law:?} {strain:?}");
+                    let error = (plus.1 - minus.1) / (2.0 * h) - around.coupling[k];
+                    assert!(error.abs() < 1e-7 * scale, "{law:?} {strain:?}");
+                }
+                let (plus, minus) = (all(&strain, hoop + h), all(&strain, hoop - h));
+                let error = (plus.0 - minus.0) / (2.0 * h) - around.coupling;
+                assert!(error.amax() < 1e-7 * scale, "{law:?} {strain:?}");
+                let error = (plus.1 - minus.1) / (2.0 * h) - around.modulus;
+                assert!(error.abs() < 1e-7 * scale, "{law:?} {strain:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_strain_around_the_axis_the_answer_is_that_of_plane_strain() {
+        for law in [Law::Svk, Law::NeoHookean] {
+            let [flat, round] =
+                [Plane::Strain, Plane::Axisymmetric].map(|plane| material(law, plane, 0.3));
+            for strain in STRAINS.map(Vector3::from) {
+                let expected = flat.response(&strain).unwrap();
+                let (response, hoop) = round.response_around(&strain, 0.0).unwrap();
+                assert!((response.stress - expected.stress).amax() < 1e-12 * 100.0);
+                assert!((hoop.stress - flat.across(&strain)).abs() < 1e-12 * 100.0);
             }
         }
     }

@@ -1,18 +1,23 @@
 //! The bodies: shape functions, quadrature, materials, elements, and their assembly.
 //!
-//! - [`element`]: what an element is to the assembly; [`beam`], [`quad8`]: one file an element; [`continuum`]: the kinds
-//!   of continuum elements; [`matrix`]: bodies that are given by a matrix, sparse as they come.
-//! - [`material`]: stress by strain; [`lagrange`]: interpolation on curves, and quadrature.
-//! - [`assembly`]: all of them in one system.
+//! - [`lagrange`]: interpolation on curves, and Gauss points; [`quadrature`]: rules over triangles and squares.
+//! - [`kinds`]: the continuum elements, one file each: places, shape functions, rule; [`continuum`]: them by name.
+//! - [`isoparametric`]: one formulation for all of them, finite strains; [`small`]: about rest.
+//! - [`material`]: stress by strain.
+//! - [`beam`]: beams; [`matrix`]: bodies that are given by a matrix, sparse as they come.
+//! - [`element`]: what an element is to the assembly; [`assembly`]: all of them in one system.
 
 pub mod assembly;
 pub mod beam;
 pub mod continuum;
 pub mod element;
+pub mod isoparametric;
+pub mod kinds;
 pub mod lagrange;
 pub mod material;
 pub mod matrix;
-pub mod quad8;
+pub mod quadrature;
+pub mod small;
 
 #[cfg(test)]
 mod tests;

@@ -17,6 +17,19 @@ struct Specimen {
     per_node: usize,
     /// Size of its forces.
     stiffness: f64,
+    /// Which rigid motions strain nothing.
+    free: Free,
+}
+
+/// Rigid motions that strain nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Free {
+    /// All.
+    Motions,
+    /// Small displacements: shifts, and rotations to their first order.
+    Small,
+    /// About an axis: shifts along it.
+    AlongAxis,
 }
 
 /// Every element that there is, with every choice that it has. A new one is entered here.
@@ -28,13 +41,25 @@ fn specimens() -> Vec<Specimen> {
         }
     }
     for kind in ElementKind::ALL {
-        for plane in [Plane::Strain, Plane::Stress] {
-            all.push(solid(kind, Law::Svk, plane, Update::Total));
-            all.push(solid(kind, Law::NeoHookean, plane, Update::Total));
-            all.push(solid(kind, Law::Svk, plane, Update::Updated));
+        for (law, plane, update) in choices() {
+            all.push(solid(kind, law, plane, update));
         }
     }
     all
+}
+
+/// What there is to choose of a continuum.
+fn choices() -> Vec<(Law, Plane, Update)> {
+    let planes = [Plane::Strain, Plane::Stress, Plane::Axisymmetric];
+    let of_plane = |plane| {
+        [
+            (Law::Svk, plane, Update::Total),
+            (Law::NeoHookean, plane, Update::Total),
+            (Law::Svk, plane, Update::Updated),
+            (Law::Svk, plane, Update::Small),
+        ]
+    };
+    planes.into_iter().flat_map(of_plane).collect()
 }
 
 fn beam(m: usize, ga: Option<f64>) -> Specimen {
@@ -51,21 +76,21 @@ fn beam(m: usize, ga: Option<f64>) -> Specimen {
         at,
         per_node: 3,
         stiffness: 100.0,
+        free: Free::Motions,
     }
 }
 
-/// The parent element, stretched, sheared and bent.
+/// The parent element, stretched, sheared and bent; in axisymmetry beside the axis.
 fn solid(kind: ElementKind, law: Law, plane: Plane, update: Update) -> Specimen {
     let bent = |[x, y]: [f64; 2]| [1.2 * x + 0.2 * y + 0.1 * x * y, 0.8 * y - 0.1 * x * x];
-    let at: Vec<[f64; 2]> = continuum::places(kind).into_iter().map(bent).collect();
-    let elastic = Elastic {
-        young: 100.0,
-        poisson: 0.3,
-        law,
-        plane,
-        thickness: 0.7,
-        update,
+    let away = if plane == Plane::Axisymmetric {
+        2.5
+    } else {
+        0.0
     };
+    let places = continuum::places(kind).into_iter().map(bent);
+    let at: Vec<[f64; 2]> = places.map(|[x, y]| [x + away, y]).collect();
+    let elastic = elastic(law, plane, update);
     let element = continuum::element(kind, &at, Material::new(&elastic), update);
     Specimen {
         name: format!("{kind:?} {law:?} {plane:?} {update:?}"),
@@ -73,6 +98,22 @@ fn solid(kind: ElementKind, law: Law, plane: Plane, update: Update) -> Specimen 
         at,
         per_node: 2,
         stiffness: 100.0,
+        free: match (plane, update) {
+            (Plane::Axisymmetric, _) => Free::AlongAxis,
+            (_, Update::Small) => Free::Small,
+            _ => Free::Motions,
+        },
+    }
+}
+
+fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
+    Elastic {
+        young: 100.0,
+        poisson: 0.3,
+        law,
+        plane,
+        thickness: 0.7,
+        update,
     }
 }
 
@@ -89,9 +130,13 @@ impl Specimen {
         u
     }
 
-    /// A rigid motion: turned, then shifted.
+    /// A rigid motion, as far as it strains nothing: turned, then shifted.
     fn rigid(&self, angle: f64) -> Vec<f64> {
-        let (s, c) = angle.sin_cos();
+        let (s, c) = match self.free {
+            Free::Motions => angle.sin_cos(),
+            Free::Small => (angle, 1.0),
+            Free::AlongAxis => return self.displaced(|_, _| vec![0.0, angle]),
+        };
         self.displaced(|_, [x, y]| {
             let moved = [c * x - s * y - x + 3.0, s * x + c * y - y - 1.0, angle];
             moved[..self.per_node].to_vec()
@@ -194,6 +239,58 @@ fn the_shape_functions_of_every_kind_are_one_at_their_node_and_one_together() {
 }
 
 #[test]
+fn the_shape_functions_of_every_kind_reproduce_its_polynomials() {
+    for kind in ElementKind::ALL {
+        // Powers of ξ and η that the kind has.
+        let powers: &[(i32, i32)] = match kind {
+            ElementKind::Triangle3 => &[(0, 0), (1, 0), (0, 1)],
+            ElementKind::Quad4 => &[(0, 0), (1, 0), (0, 1), (1, 1)],
+            ElementKind::Triangle6 => &[(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)],
+            ElementKind::Quad8 | ElementKind::Quad8Reduced => &[
+                (0, 0),
+                (1, 0),
+                (0, 1),
+                (1, 1),
+                (2, 0),
+                (0, 2),
+                (2, 1),
+                (1, 2),
+            ],
+            ElementKind::Quad9 => &[
+                (0, 0),
+                (1, 0),
+                (0, 1),
+                (1, 1),
+                (2, 0),
+                (0, 2),
+                (2, 1),
+                (1, 2),
+                (2, 2),
+            ],
+        };
+        assert_eq!(powers.len(), kind.nodes());
+        let places = continuum::places(kind);
+        for (xi, eta) in [(0.3, -0.8), (1.0, 1.0), (-0.5, 0.1)] {
+            let (n, d) = continuum::shape(kind, xi, eta);
+            for &(i, j) in powers {
+                let term = |k: i32, x: f64| if k < 0 { 0.0 } else { x.powi(k) };
+                let value = |[x, y]: [f64; 2]| term(i, x) * term(j, y);
+                let slopes = [
+                    f64::from(i) * term(i - 1, xi) * term(j, eta),
+                    f64::from(j) * term(i, xi) * term(j - 1, eta),
+                ];
+                let sum: f64 = n.iter().zip(&places).map(|(n, at)| n * value(*at)).sum();
+                assert!((sum - value([xi, eta])).abs() < 1e-14, "{kind:?} {i} {j}");
+                for (k, slope) in slopes.into_iter().enumerate() {
+                    let sum: f64 = d.iter().zip(&places).map(|(d, at)| d[k] * value(*at)).sum();
+                    assert!((sum - slope).abs() < 1e-14, "{kind:?} {i} {j}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_nodes_of_every_face_lie_on_the_boundary_of_the_parent_element_in_order() {
     for kind in ElementKind::ALL {
         let places = continuum::places(kind);
@@ -219,21 +316,17 @@ fn the_nodes_of_every_face_lie_on_the_boundary_of_the_parent_element_in_order() 
 #[test]
 fn every_kind_of_continuum_element_passes_the_patch_test() {
     for kind in ElementKind::ALL {
-        for plane in [Plane::Strain, Plane::Stress] {
+        let of_plane = |plane| [(plane, Update::Total), (plane, Update::Small)];
+        for (plane, update) in [Plane::Strain, Plane::Stress]
+            .into_iter()
+            .flat_map(of_plane)
+        {
             let per_volume = |stretch: f64| -> [[f64; 2]; 2] {
-                let mut specimen = solid(kind, Law::Svk, plane, Update::Total);
+                let mut specimen = solid(kind, Law::Svk, plane, update);
                 let distort = |[x, y]: [f64; 2]| [stretch * x + 0.1 * y, y - 0.1 * stretch * x];
                 specimen.at = specimen.at.iter().map(|&at| distort(at)).collect();
-                let elastic = Elastic {
-                    young: 100.0,
-                    poisson: 0.3,
-                    law: Law::Svk,
-                    plane,
-                    thickness: 0.7,
-                    update: Update::Total,
-                };
-                let material = Material::new(&elastic);
-                let element = continuum::element(kind, &specimen.at, material, Update::Total);
+                let material = Material::new(&elastic(Law::Svk, plane, update));
+                let element = continuum::element(kind, &specimen.at, material, update);
                 specimen.element = element;
                 let u =
                     specimen.displaced(|_, [x, y]| vec![0.03 * x - 0.02 * y, 0.01 * x - 0.025 * y]);
@@ -294,14 +387,7 @@ fn area(kind: ElementKind, at: &[[f64; 2]]) -> f64 {
 fn an_element_with_too_few_nodes_never_answers() {
     for kind in ElementKind::ALL {
         let whole = solid(kind, Law::Svk, Plane::Strain, Update::Updated);
-        let elastic = Elastic {
-            young: 1.0,
-            poisson: 0.0,
-            law: Law::Svk,
-            plane: Plane::Strain,
-            thickness: 1.0,
-            update: Update::Updated,
-        };
+        let elastic = elastic(Law::Svk, Plane::Strain, Update::Updated);
         let (at, material) = (&whole.at[1..], Material::new(&elastic));
         let cut = continuum::element(kind, at, material, Update::Updated);
         assert_eq!(cut.dofs(), whole.element.dofs() - 2);

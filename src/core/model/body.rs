@@ -53,19 +53,26 @@ pub struct Beam {
     pub first_shear: Option<usize>,
 }
 
-/// A continuum of elements of one kind.
+/// A continuum of elements, of one kind or of several.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// What its elements are.
-    pub kind: ElementKind,
-    /// Node numbers of each element, in the order that [`ElementKind`] says.
-    pub elements: Vec<Vec<usize>>,
-    /// What it is made of.
+    /// Its elements.
+    pub elements: Vec<SolidElement>,
+    /// What they are made of.
     pub materials: Vec<Elastic>,
-    /// Index into `materials` of each element.
-    pub material_of: Vec<usize>,
-    /// The faces around it ([`ElementKind::boundary`]).
+    /// The faces around it ([`boundary`](super::mesh::boundary)).
     pub edges: Vec<Vec<usize>>,
+}
+
+/// An element of a continuum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolidElement {
+    /// What it is.
+    pub kind: ElementKind,
+    /// Its nodes, in the order that [`ElementKind`] says.
+    pub nodes: Vec<usize>,
+    /// Index into [`Solid::materials`].
+    pub material: usize,
 }
 
 /// An elastic continuum's numbers.
@@ -79,7 +86,7 @@ pub struct Elastic {
     pub law: Law,
     /// What is assumed across the plane.
     pub plane: Plane,
-    /// Thickness across the plane, undeformed (length).
+    /// Thickness across the plane, undeformed (length); without meaning in axisymmetry.
     pub thickness: f64,
     /// What strains and stresses are referred to.
     pub update: Update,
@@ -108,6 +115,9 @@ documented! {
         Strain,
         /// No stress: a thin sheet.
         Stress,
+        /// A body of revolution: x is the radius, y the axis, and rings strain as they grow, E33 = u_x/X + (u_x/X)²/2. Forces
+        /// (loads, contact forces, reactions, cohesion) are those of the whole circumference, 2 pi x.
+        Axisymmetric,
     }
 }
 
@@ -122,6 +132,9 @@ documented! {
         /// The shape at the last accepted increment, as in the paper: stress grows by the small-strain moduli times each
         /// increment's strain, and the answer depends on the size of the increments (its Fig. 8). Law svk only.
         Updated,
+        /// Small strains and rotations: strains linear in the displacements, forces in balance on the undeformed shape, a
+        /// constant stiffness (linear elasticity). Turning strains such a body. Law svk only.
+        Small,
     }
 }
 

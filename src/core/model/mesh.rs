@@ -1,23 +1,81 @@
 //! Kinds of continuum elements, as far as a model must know them: their nodes and their faces.
 
+use super::documented::documented;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// A kind of element of the plane continuum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ElementKind {
-    /// The 8-node quadrilateral of the serendipity family: the corners anticlockwise, then the middles of the sides that
-    /// start at them.
-    Quad8,
+documented! {
+    /// A kind of element of the plane continuum. Its nodes are the corners, anticlockwise, then the middles of the sides that
+    /// start at them, then the middle.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum ElementKind {
+        /// Triangles of 3 nodes: constant strains, one point. Stiff in bending; locks where nu is near 0.5.
+        Triangle3,
+        /// Triangles of 6 nodes: quadratic displacements, three points.
+        Triangle6,
+        /// Quadrilaterals of 4 nodes, 2 x 2 points. Stiff in bending; locks where nu is near 0.5.
+        Quad4,
+        /// Quadrilaterals of 8 nodes (serendipity), 3 x 3 points.
+        #[default]
+        Quad8,
+        /// Quadrilaterals of 8 nodes with reduced integration, 2 x 2 points: softer, and without locking.
+        #[serde(rename = "quad8r")]
+        Quad8Reduced,
+        /// Quadrilaterals of 9 nodes, 3 x 3 points.
+        Quad9,
+    }
 }
 
 impl ElementKind {
     /// All of them.
-    pub const ALL: [ElementKind; 1] = [ElementKind::Quad8];
+    pub const ALL: [ElementKind; 6] = [
+        ElementKind::Triangle3,
+        ElementKind::Triangle6,
+        ElementKind::Quad4,
+        ElementKind::Quad8,
+        ElementKind::Quad8Reduced,
+        ElementKind::Quad9,
+    ];
+
+    /// Whether it is what a mesh that names no kind has.
+    pub fn is_default(&self) -> bool {
+        *self == ElementKind::default()
+    }
+
+    /// Its word in a scene file.
+    pub fn word(self) -> &'static str {
+        match self {
+            ElementKind::Triangle3 => "triangle3",
+            ElementKind::Triangle6 => "triangle6",
+            ElementKind::Quad4 => "quad4",
+            ElementKind::Quad8 => "quad8",
+            ElementKind::Quad8Reduced => "quad8r",
+            ElementKind::Quad9 => "quad9",
+        }
+    }
 
     /// Number of nodes of an element.
     pub fn nodes(self) -> usize {
         match self {
-            ElementKind::Quad8 => 8,
+            ElementKind::Triangle3 => 3,
+            ElementKind::Quad4 => 4,
+            ElementKind::Triangle6 => 6,
+            ElementKind::Quad8 | ElementKind::Quad8Reduced => 8,
+            ElementKind::Quad9 => 9,
+        }
+    }
+
+    /// Whether it is a triangle.
+    pub fn is_triangle(self) -> bool {
+        matches!(self, ElementKind::Triangle3 | ElementKind::Triangle6)
+    }
+
+    /// Nodes of each of its faces: 2 or 3.
+    pub fn per_face(self) -> usize {
+        match self {
+            ElementKind::Triangle3 | ElementKind::Quad4 => 2,
+            _ => 3,
         }
     }
 
@@ -25,7 +83,12 @@ impl ElementKind {
     /// right of the walk. A face with m nodes is an m-node interface element.
     pub fn faces(self) -> &'static [&'static [usize]] {
         match self {
-            ElementKind::Quad8 => &[&[0, 4, 1], &[1, 5, 2], &[2, 6, 3], &[3, 7, 0]],
+            ElementKind::Triangle3 => &[&[0, 1], &[1, 2], &[2, 0]],
+            ElementKind::Triangle6 => &[&[0, 3, 1], &[1, 4, 2], &[2, 5, 0]],
+            ElementKind::Quad4 => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+            ElementKind::Quad8 | ElementKind::Quad8Reduced | ElementKind::Quad9 => {
+                &[&[0, 4, 1], &[1, 5, 2], &[2, 6, 3], &[3, 7, 0]]
+            }
         }
     }
 
@@ -39,24 +102,24 @@ impl ElementKind {
         let faces = self.faces().iter();
         faces.map(|face| face.iter().map(|&place| nodes[place]).collect())
     }
+}
 
-    /// The faces that belong to one of these elements only, by node number: the boundary of the body that they make, as
-    /// surface elements. Faces that follow each other stand one after the other.
-    pub fn boundary(self, elements: &[Vec<usize>]) -> Vec<Vec<usize>> {
-        let faces = elements.iter().flat_map(|nodes| self.faces_of(nodes));
-        let all: Vec<Vec<usize>> = faces.collect();
-        let ends = |face: &[usize]| Some((*face.first()?, *face.last()?));
-        let walked: HashMap<(usize, usize), usize> = all
-            .iter()
-            .enumerate()
-            .filter_map(|(k, face)| Some((ends(face)?, k)))
-            .collect();
-        let inside = |face: &[usize]| {
-            ends(face).is_some_and(|(first, last)| walked.contains_key(&(last, first)))
-        };
-        let outer: Vec<Vec<usize>> = all.into_iter().filter(|face| !inside(face)).collect();
-        in_order(outer)
-    }
+/// The faces that belong to one of these elements only, by node number: the boundary of the body that they make, as surface
+/// elements. Faces that follow each other stand one after the other.
+pub fn boundary<'a>(elements: impl Iterator<Item = (ElementKind, &'a [usize])>) -> Vec<Vec<usize>> {
+    let faces = elements.flat_map(|(kind, nodes)| kind.faces_of(nodes));
+    let all: Vec<Vec<usize>> = faces.collect();
+    let ends = |face: &[usize]| Some((*face.first()?, *face.last()?));
+    let walked: HashMap<(usize, usize), usize> = all
+        .iter()
+        .enumerate()
+        .filter_map(|(k, face)| Some((ends(face)?, k)))
+        .collect();
+    let inside = |face: &[usize]| {
+        ends(face).is_some_and(|(first, last)| walked.contains_key(&(last, first)))
+    };
+    let outer: Vec<Vec<usize>> = all.into_iter().filter(|face| !inside(face)).collect();
+    in_order(outer)
 }
 
 /// Faces walked from one to the next; where a walk closes or ends, the first face that is left begins another.
@@ -93,7 +156,9 @@ mod tests {
             let mut named: Vec<usize> = faces.concat();
             named.sort_unstable();
             named.dedup();
-            assert_eq!(named, (0..kind.nodes()).collect::<Vec<_>>(), "{kind:?}");
+            let outer = kind.nodes() - usize::from(kind == ElementKind::Quad9);
+            assert_eq!(named, (0..outer).collect::<Vec<_>>(), "{kind:?}");
+            assert!(faces.iter().all(|face| face.len() == kind.per_face()));
         }
     }
 
@@ -106,7 +171,10 @@ mod tests {
             vec![0, 2, 4, 6, 1, 3, 5, 7],
             vec![2, 10, 12, 4, 9, 11, 13, 3],
         ];
-        let boundary = ElementKind::Quad8.boundary(&elements);
+        let of_kind = elements
+            .iter()
+            .map(|nodes| (ElementKind::Quad8, nodes.as_slice()));
+        let boundary = boundary(of_kind);
         let expected = [
             [0, 1, 2],
             [2, 9, 10],
@@ -116,5 +184,18 @@ mod tests {
             [6, 7, 0],
         ];
         assert_eq!(boundary, expected);
+    }
+
+    #[test]
+    fn the_boundary_of_elements_of_several_kinds_is_walked_around_all() {
+        // 3---2       a quadrilateral, with a triangle on its right
+        // |   | \
+        // 0---1--4
+        let elements: [(ElementKind, &[usize]); 2] = [
+            (ElementKind::Quad4, &[0, 1, 2, 3]),
+            (ElementKind::Triangle3, &[1, 4, 2]),
+        ];
+        let boundary = boundary(elements.into_iter());
+        assert_eq!(boundary, [[0, 1], [1, 4], [4, 2], [2, 3], [3, 0]]);
     }
 }

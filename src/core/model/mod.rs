@@ -19,13 +19,15 @@ mod load;
 mod mesh;
 mod settings;
 
-pub use body::{Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, Update};
+pub use body::{
+    Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Update,
+};
 pub use contact::{Contact, Piece, STENCIL, Surface};
 pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, least};
-pub use mesh::ElementKind;
+pub use mesh::{ElementKind, boundary};
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, Refactor, ResidualMethod, Settings,
     SlipCount, Solver, Sticking, Strategy, Ties, Touch,

@@ -357,3 +357,17 @@ pairs! {
     usize, "x", "y", "two whole numbers (x, y)";
     String, "a", "b", "two texts (a, b)";
 }
+
+/// A node of a given mesh: its label, x and y, none of which is set by a path.
+impl Described for (usize, f64, f64) {
+    fn walk(&mut self, _place: &ScalarPlace<'_>, _visit: &mut Visit<'_>) {}
+    fn kind() -> String {
+        "a whole number and two numbers (label, x, y)".to_owned()
+    }
+    fn blank() -> String {
+        "(0, 0.0, 0.0)".to_owned()
+    }
+    fn shown(&self) -> String {
+        format!("{self:?}")
+    }
+}

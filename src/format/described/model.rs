@@ -6,9 +6,9 @@ use super::words::{of_word, word, words};
 use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
 use crate::model::documented::text;
 use crate::model::{
-    AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, Friction, Geometry, InitialGaps,
-    InitialState, Jumps, Law, Mode, Plane, Refactor, ResidualMethod, Settings, SlipCount, Solver,
-    Sticking, Strategy, Ties, Touch, Update,
+    AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
+    InitialGaps, InitialState, Jumps, Law, Mode, Plane, Refactor, ResidualMethod, Settings,
+    SlipCount, Solver, Sticking, Strategy, Ties, Touch, Update,
 };
 
 macro_rules! fields {
@@ -120,6 +120,7 @@ words!(
     Geometry,
     InitialGaps,
     Control,
+    ElementKind,
     Jumps,
     Law,
     Mode,

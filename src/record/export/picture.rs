@@ -13,7 +13,7 @@ use crate::explain::names;
 use crate::explain::number::{plain, short};
 use crate::explain::outline::{self, Bounds, Point, clip, curve, extent};
 use crate::explain::round_off::RoundOff;
-use crate::model::{BodyKind, Mode, Model};
+use crate::model::{BodyKind, Mode, Model, SolidElement};
 use crate::step::event::Outcome;
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
@@ -268,14 +268,13 @@ fn bodies(
         let BodyKind::Solid(solid) = &body.kind else {
             continue;
         };
-        let corners: Vec<usize> = solid.kind.corners().collect();
-        for element in &solid.elements {
-            let across = corners[corners.len() / 2];
-            let (a, b) = (now(element[0]), now(element[across]));
+        for SolidElement { kind, nodes, .. } in &solid.elements {
+            let across = kind.faces().len() / 2;
+            let (a, b) = (now(nodes[0]), now(nodes[across]));
             if (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale < ELEMENT {
                 continue;
             }
-            for face in solid.kind.faces_of(element) {
+            for face in kind.faces_of(nodes) {
                 let points: Vec<Point> = face.iter().map(|&node| now(node)).collect();
                 stroke(sheet, window, &points, &pen(0.7, PALE));
             }

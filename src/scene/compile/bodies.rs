@@ -8,7 +8,7 @@ use super::super::nodes::{Mesh, Names};
 use super::linear;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
-use crate::model::{Beam, Body, BodyKind, Elastic, ElementKind, Node, Solid};
+use crate::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
 use crate::model::{Law, Update};
 use std::collections::HashSet;
 
@@ -112,7 +112,11 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
                 let mesh = names
                     .mesh(mesh)
                     .map_err(|message| Fault::new(path.clone(), message))?;
-                total += 8 * mesh.elements.len();
+                total += mesh
+                    .elements
+                    .iter()
+                    .map(|(kind, _)| kind.nodes())
+                    .sum::<usize>();
                 limits::element_nodes(&path, total, spec.settings.memory)?;
                 Ok(Body {
                     name: id.clone(),
@@ -211,13 +215,20 @@ fn solid(
     else {
         return Err(Fault::new(here.clone(), "the body is no solid"));
     };
-    let elements: Vec<Vec<usize>> = mesh.elements.iter().map(|nodes| nodes.to_vec()).collect();
+    let faces = mesh
+        .elements
+        .iter()
+        .map(|(kind, nodes)| (*kind, nodes.as_slice()));
+    let edges = boundary(faces);
+    let elements = mesh.elements.into_iter().map(|(kind, nodes)| SolidElement {
+        kind,
+        nodes,
+        material: 0,
+    });
     let mut made = Solid {
-        material_of: vec![0; mesh.elements.len()],
         materials: vec![continuum(&here.then("material"), spec, of)?],
-        edges: ElementKind::Quad8.boundary(&elements),
-        kind: ElementKind::Quad8,
-        elements,
+        edges,
+        elements: elements.collect(),
     };
     for (k, region) in regions.iter().enumerate() {
         apply(
@@ -255,9 +266,9 @@ fn apply(
         point(&here.then(corner), *at)?;
     }
     let mut none = true;
-    for (element, own) in solid.elements.iter().zip(&mut solid.material_of) {
-        if contains((*from, *to), middle(nodes, solid.kind, element)) {
-            (*own, none) = (number, false);
+    for element in &mut solid.elements {
+        if contains((*from, *to), middle(nodes, element)) {
+            (element.material, none) = (number, false);
         }
     }
     if none {
@@ -271,10 +282,11 @@ fn apply(
 }
 
 /// Mean of an element's corners.
-fn middle(nodes: &[Node], kind: ElementKind, element: &[usize]) -> [f64; 2] {
-    let at = |place: usize| nodes[element[place]].at;
-    let count = kind.corners().count() as f64;
-    [0, 1].map(|k| kind.corners().map(|place| at(place)[k]).sum::<f64>() / count)
+fn middle(nodes: &[Node], element: &SolidElement) -> [f64; 2] {
+    let at = |place: usize| nodes[element.nodes[place]].at;
+    let corners = || element.kind.corners();
+    let count = corners().count() as f64;
+    [0, 1].map(|k| corners().map(|place| at(place)[k]).sum::<f64>() / count)
 }
 
 fn contains((from, to): (Point, Point), [x, y]: [f64; 2]) -> bool {

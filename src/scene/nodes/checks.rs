@@ -1,5 +1,6 @@
 //! Nodes that cannot be laid out, refused before any is made: unusable or doubled ids, and too many nodes.
 
+use super::super::blocks::Grid;
 use super::super::limits;
 use crate::format::error::{Fault, at};
 use crate::format::spec::{Nodes, Spec};
@@ -47,12 +48,17 @@ pub(super) fn check_total(spec: &Spec) -> Result<(), Fault> {
                 ..
             } => *elements as f64 * *per_element as f64 * spec.refine as f64,
             Nodes::Through { points, .. } => points.len() as f64 * spec.refine as f64,
-            Nodes::Block { elements, .. } => {
+            Nodes::Block {
+                elements, element, ..
+            } => {
                 let (nx, ny) = (elements.0 as f64, elements.1 as f64);
                 let refine = spec.refine as f64;
-                (3.0 * nx * ny * refine + 2.0 * (nx + ny)) * refine + 1.0
+                let border = (element.per_face() - 1) as f64;
+                (Grid::nodes_per_cell(*element) * nx * ny * refine + border * (nx + ny)) * refine
+                    + 1.0
             }
-            Nodes::Mesh { .. } | Nodes::Chain { .. } => 0.0,
+            Nodes::Given { nodes, .. } => nodes.len() as f64,
+            Nodes::Mesh { .. } | Nodes::Chain { .. } | Nodes::Import { .. } => 0.0,
         };
         let why = if total > limits::NODES as f64 {
             format!("at most {} can be had", limits::NODES)

@@ -68,7 +68,7 @@ impl Names {
         let fault = |message| Fault::new(here.clone(), message);
         let edge = self.chain(name).map_err(fault)?;
         let owner = parts.iter().any(|&k| self.entries[k].at == edge.at);
-        if edge.kind == EntryKind::Edge && owner {
+        if matches!(edge.kind, EntryKind::Edge(_)) && owner {
             return Ok(edge);
         }
         Err(fault(format!(
@@ -86,7 +86,18 @@ impl Names {
         b: &Entry,
         tolerance: f64,
     ) -> Result<Vec<(usize, usize)>, Fault> {
-        let elements = |edge: &Entry| edge.nodes.len() / 2;
+        let per = |edge: &Entry| edge.kind.per_element().unwrap_or(2);
+        if per(a) != per(b) {
+            let message = format!(
+                "{:?} has {} nodes a side and {:?} has {}; blocks that are joined need kinds of elements with as many",
+                a.id,
+                per(a),
+                b.id,
+                per(b)
+            );
+            return Err(Fault::new(here.clone(), message));
+        }
+        let elements = |edge: &Entry| edge.nodes.len() / (per(edge) - 1);
         if a.nodes.len() != b.nodes.len() {
             let message = format!(
                 "{:?} has {} elements and {:?} has {}; edges that are joined need as many",

@@ -26,6 +26,7 @@ impl Names {
             Nodes::Block {
                 corners,
                 elements,
+                element,
                 grading,
                 sides,
                 place,
@@ -34,6 +35,7 @@ impl Names {
                 let shape = Shape {
                     corners,
                     elements: *elements,
+                    kind: *element,
                     grading: *grading,
                     sides,
                     place,
@@ -74,6 +76,10 @@ impl Names {
                 through(&here, points, *per_element, refine)?,
                 EntryKind::Chain(*per_element),
             ),
+            Nodes::Import { file, .. } | Nodes::Given { id: file, .. } => {
+                let message = format!("the mesh {file:?} is not read");
+                return Err(Fault::new(here, message));
+            }
             Nodes::Chain { .. } | Nodes::Mesh { .. } => return Ok(()),
         };
         let id = nodes.id();
@@ -92,7 +98,12 @@ impl Names {
         if let EntryKind::Block(grid) = kind {
             for (which, edge) in EDGES.iter().enumerate() {
                 let nodes = grid.edge(which).iter().map(|n| first + n).collect();
-                self.enter(at, &format!("{id}.{edge}"), nodes, EntryKind::Edge);
+                self.enter(
+                    at,
+                    &format!("{id}.{edge}"),
+                    nodes,
+                    EntryKind::Edge(grid.per_edge()),
+                );
             }
         }
         Ok(())

@@ -27,7 +27,9 @@ impl Names {
     pub fn nodes(&self, name: &str) -> Result<Vec<usize>, String> {
         match self.split(name)? {
             (entry, Selector::All) => Ok(entry.nodes.clone()),
-            (entry, Selector::Whole) if entry.kind == EntryKind::Edge => Ok(entry.nodes.clone()),
+            (entry, Selector::Whole) if matches!(entry.kind, EntryKind::Edge(_)) => {
+                Ok(entry.nodes.clone())
+            }
             _ => Ok(vec![self.node(name)?]),
         }
     }
@@ -37,7 +39,7 @@ impl Names {
         if let Some(&k) = self.index.get(id) {
             let entry = &self.entries[k];
             return match entry.kind {
-                EntryKind::Chain(_) | EntryKind::Edge => Ok(entry),
+                EntryKind::Chain(_) | EntryKind::Edge(_) => Ok(entry),
                 EntryKind::Single => Err(format!(
                     "{id:?} is a single node; a chain is needed (Line, Arc, Through or Chain, or an edge of a Block)"
                 )),
@@ -102,9 +104,10 @@ impl Names {
             let EntryKind::Block(grid) = block.kind else {
                 continue;
             };
-            let elements = grid.elements();
-            made.elements
-                .extend(elements.map(|element| element.map(|n| block.nodes[n])));
+            made.elements.extend(grid.elements().map(|element| {
+                let nodes = element.into_iter().map(|n| block.nodes[n]);
+                (grid.kind, nodes.collect())
+            }));
         }
         Ok(made)
     }
@@ -205,7 +208,7 @@ impl Names {
             known.push(id.clone());
             match kind {
                 EntryKind::Single => shown.push(id.clone()),
-                EntryKind::Chain(_) | EntryKind::Edge => {
+                EntryKind::Chain(_) | EntryKind::Edge(_) => {
                     known.extend(["start", "end", "all"].map(|which| format!("{id}.{which}")));
                     shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
                 }
@@ -242,7 +245,7 @@ impl Entry {
             ),
             EntryKind::Mesh => ("a mesh", format!("\"{id}.{}\"", count.min(2))),
             kind => (
-                if kind == EntryKind::Edge {
+                if matches!(kind, EntryKind::Edge(_)) {
                     "an edge"
                 } else {
                     "a chain"

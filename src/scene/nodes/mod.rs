@@ -12,7 +12,7 @@ use super::blocks::Grid;
 use super::limits;
 use crate::format::error::{Fault, at};
 use crate::format::spec::{Nodes, Spec};
-use crate::model::Node;
+use crate::model::{ElementKind, Node};
 use checks::{check_ids, check_total};
 use std::collections::HashMap;
 
@@ -41,7 +41,8 @@ pub(crate) struct Entry {
 pub(crate) struct Mesh {
     /// Distinct nodes.
     pub nodes: Vec<usize>,
-    pub elements: Vec<[usize; 8]>,
+    /// Kind and nodes of each element.
+    pub elements: Vec<(ElementKind, Vec<usize>)>,
 }
 
 /// What an entry's nodes form.
@@ -51,9 +52,9 @@ pub(crate) enum EntryKind {
     Single,
     /// A chain of elements of that many nodes.
     Chain(usize),
-    /// A chain of 3-node elements along an edge of a block.
-    Edge,
-    /// A mesh of quadrilaterals on one block.
+    /// A chain of elements of that many nodes along an edge of a block.
+    Edge(usize),
+    /// A mesh on one block.
     Block(Grid),
     /// A mesh of several blocks.
     Mesh,
@@ -64,8 +65,7 @@ impl EntryKind {
     fn per_element(self) -> Option<usize> {
         match self {
             EntryKind::Single | EntryKind::Block(_) | EntryKind::Mesh => None,
-            EntryKind::Chain(m) => Some(m),
-            EntryKind::Edge => Some(3),
+            EntryKind::Chain(m) | EntryKind::Edge(m) => Some(m),
         }
     }
 }

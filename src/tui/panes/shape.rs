@@ -9,7 +9,7 @@ use crate::explain::examination::Examination;
 use crate::explain::number;
 use crate::explain::outline::{self, Bounds, Point, bounds, curve};
 use crate::fem::lagrange;
-use crate::model::{BodyKind, Contact, Solid};
+use crate::model::{BodyKind, Contact, Solid, SolidElement};
 use crate::tui::app::App;
 use crate::tui::camera::Camera;
 use crate::tui::canvas::{Canvas, Dot};
@@ -183,18 +183,16 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
 
 /// Lines between the elements of a solid, where there is room, and between its materials.
 fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: &View) {
-    let kind = solid.kind;
     let draw = |canvas: &mut Canvas, face: &[usize], style| {
         let now: Vec<Point> = face.iter().map(|&node| view.place(node)).collect();
         draw_curve(canvas, window, &now, style);
     };
-    let corners: Vec<usize> = kind.corners().collect();
-    for element in &solid.elements {
-        let across = corners[corners.len() / 2];
-        let (a, b) = (view.place(element[0]), view.place(element[across]));
+    for SolidElement { kind, nodes, .. } in &solid.elements {
+        let across = kind.faces().len() / 2;
+        let (a, b) = (view.place(nodes[0]), view.place(nodes[across]));
         let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
         if size >= ELEMENT && window.sees(a, size) {
-            for face in kind.faces_of(element) {
+            for face in kind.faces_of(nodes) {
                 draw(canvas, &face, app.theme.faint);
             }
         }
@@ -203,8 +201,13 @@ fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: 
         return;
     }
     let mut other = HashMap::new();
-    for (element, material) in solid.elements.iter().zip(&solid.material_of) {
-        for face in kind.faces_of(element) {
+    for SolidElement {
+        kind,
+        nodes,
+        material,
+    } in &solid.elements
+    {
+        for face in kind.faces_of(nodes) {
             // Neighbours share a face, and walk it each its own way.
             let mut ends = [face.first().copied(), face.last().copied()];
             ends.sort_unstable();

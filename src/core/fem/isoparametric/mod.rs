@@ -1,0 +1,519 @@
+//! The isoparametric continuum element, with finite rotations and strains: one formulation for every kind of
+//! [`super::kinds`].
+//!
+//! Degrees of freedom are x, y of node 1, of node 2, … With H = ∂u/∂X, F = I + H and the rule of the kind,
+//!
+//! ```text
+//! E = ½ (H + Hᵀ + Hᵀ H),      f_i = ∫ F S ∇N_i dV,
+//! K_ij = ∫ B_iᵀ (dS/dE) B_j dV + I ∫ ∇N_i · S ∇N_j dV,      B_i = ∂E/∂u_i.
+//! ```
+//!
+//! In axisymmetry (`HOOP`; x is the radius X) a ring strains as it grows: F33 = 1 + h with h = u_x/X, E33 = h + h²/2. It adds
+//! P33 N_i/X to the force along x, with P33 = F33 S33, and dV = 2π X dA: forces are those of the whole circumference.
+//!
+//! The same formulas serve both stress updates; they differ in what they are referred to.
+//!
+//! - **Total Lagrangian**: to the undeformed shape. A Gauss point remembers nothing.
+//! - **Updated Lagrangian**, as in the paper: to the shape at the last accepted increment. There the point keeps its
+//!   Cauchy stress σ_n (and how much it has thickened, in plane stress); in the increment f = ∂x/∂x_n,
+//!   ε = ½ (fᵀ f − I), S = σ_n + c : ε with the moduli of the small-strain law, and on acceptance
+//!   σ = f S fᵀ / det f. Rigid motions strain nothing here either, but the path is followed by chords: the answer
+//!   depends on the size of the increments.
+//!
+//! Either way force and tangent are a pure function of (shape, [`Past`], displacements now), and the tangent is exact.
+
+use crate::fem::element::{self, Past};
+use crate::fem::kinds::Parent;
+use crate::fem::material::{Hoop, Material, Response};
+use crate::model::{Law, Update};
+use nalgebra::{Matrix2, Vector3};
+use ring::{Ring, RingTerms};
+use std::f64::consts::PI;
+
+mod ring;
+#[cfg(test)]
+mod tests;
+
+/// Numbers that a Gauss point remembers under the updated-Lagrangian update: σ11, σ22, σ12, and, in plane stress, the thickness
+/// as a multiple of the first one, less one; in axisymmetry σ33. All zero before the first increment.
+pub const MEMORY: usize = 4;
+
+/// An element of N nodes and P points, of a plane body or (`HOOP`) of a body of revolution: its undeformed shape and what it
+/// is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Element<const N: usize, const P: usize, const HOOP: bool> {
+    at: [[f64; 2]; N],
+    rule: &'static [Parent<N>; P],
+    material: Material,
+    update: Update,
+    /// Gradients and areas of the Gauss points in the undeformed shape.
+    points: Box<[Gradients<N>; P]>,
+}
+
+/// ∇N_i at a Gauss point in a shape, and the area that belongs to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gradients<const N: usize> {
+    grad: [[f64; 2]; N],
+    area: f64,
+}
+
+/// State of a Gauss point, to look at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointState {
+    /// Position in the undeformed shape.
+    pub at: [f64; 2],
+    /// F, in the plane.
+    pub gradient: Matrix2<f64>,
+    /// Cauchy stress σ11, σ22, σ12.
+    pub cauchy: Vector3<f64>,
+    /// σ33. In plane strain under the updated update, of which nothing is remembered, ν (σ11 + σ22), which is right but for
+    /// squares of the strain.
+    pub across: f64,
+}
+
+/// The gradients of a Gauss point in a shape.
+fn gradients<const N: usize>(parent: &Parent<N>, at: &[[f64; 2]; N]) -> Gradients<N> {
+    let mut j = [[0.0; 2]; 2];
+    for (x, d) in at.iter().zip(&parent.d) {
+        for a in 0..2 {
+            for b in 0..2 {
+                j[a][b] += d[a] * x[b];
+            }
+        }
+    }
+    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+    let inverse = [
+        [j[1][1] / det, -j[0][1] / det],
+        [-j[1][0] / det, j[0][0] / det],
+    ];
+    let turned = |d: [f64; 2]| {
+        [
+            inverse[0][0] * d[0] + inverse[0][1] * d[1],
+            inverse[1][0] * d[0] + inverse[1][1] * d[1],
+        ]
+    };
+    Gradients {
+        grad: parent.d.map(turned),
+        area: det * parent.weight,
+    }
+}
+
+/// H = ∂u/∂X.
+fn slope<const N: usize>(grad: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> [[f64; 2]; 2] {
+    let mut h = [[0.0; 2]; 2];
+    for (u, g) in u.iter().zip(grad) {
+        for a in 0..2 {
+            for b in 0..2 {
+                h[a][b] += u[a] * g[b];
+            }
+        }
+    }
+    h
+}
+
+/// Green-Lagrange strain E11, E22, 2 E12.
+fn strain(h: &[[f64; 2]; 2]) -> Vector3<f64> {
+    Vector3::new(
+        h[0][0] + 0.5 * (h[0][0] * h[0][0] + h[1][0] * h[1][0]),
+        h[1][1] + 0.5 * (h[0][1] * h[0][1] + h[1][1] * h[1][1]),
+        h[0][1] + h[1][0] + h[0][0] * h[0][1] + h[1][0] * h[1][1],
+    )
+}
+
+fn plus_identity(h: &[[f64; 2]; 2]) -> Matrix2<f64> {
+    Matrix2::new(1.0 + h[0][0], h[0][1], h[1][0], 1.0 + h[1][1])
+}
+
+/// What the formulas are referred to, and the displacements from there.
+struct Reference<const N: usize> {
+    at: [[f64; 2]; N],
+    u: [[f64; 2]; N],
+}
+
+/// A Gauss point's part of the integrals.
+struct Point<const N: usize> {
+    grad: [[f64; 2]; N],
+    h: [[f64; 2]; 2],
+    /// Volume in the reference.
+    volume: f64,
+    response: Response,
+    /// What goes on around the axis; `None` in the plane.
+    ring: Option<Ring<N>>,
+}
+
+/// x and y of each of N nodes.
+fn pairs<const N: usize>(u: &[f64]) -> [[f64; 2]; N] {
+    let mut pairs = [[0.0; 2]; N];
+    for (pair, u) in pairs.iter_mut().zip(u.chunks_exact(2)) {
+        *pair = [u[0], u[1]];
+    }
+    pairs
+}
+
+impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
+    /// An element on these undeformed positions, integrated by this rule.
+    pub fn new(
+        rule: &'static [Parent<N>; P],
+        at: [[f64; 2]; N],
+        material: Material,
+        update: Update,
+    ) -> Self {
+        Element {
+            points: Box::new(std::array::from_fn(|p| gradients(&rule[p], &at))),
+            at,
+            rule,
+            material,
+            update,
+        }
+    }
+
+    fn reference(&self, past: &Past<'_>, u: &[f64]) -> Reference<N> {
+        let mut reference = Reference {
+            at: self.at,
+            u: pairs(u),
+        };
+        if self.update == Update::Updated {
+            let before: [[f64; 2]; N] = pairs(past.u);
+            for (i, before) in before.into_iter().enumerate() {
+                for a in 0..2 {
+                    reference.at[i][a] += before[a];
+                    reference.u[i][a] -= before[a];
+                }
+            }
+        }
+        reference
+    }
+
+    /// Gauss point p; none where the material has no answer, or the reference shape is folded.
+    fn point(&self, reference: &Reference<N>, past: &Past<'_>, p: usize) -> Option<Point<N>> {
+        let Gradients { grad, area } = match self.update {
+            Update::Total | Update::Small => self.points[p],
+            Update::Updated => gradients(&self.rule[p], &reference.at),
+        };
+        let h = slope(&grad, &reference.u);
+        if HOOP {
+            let ring = Ring::new(&self.rule[p], reference);
+            return self.point_of_revolution(past, p, (grad, area), h, ring);
+        }
+        let strain = strain(&h);
+        let (thickness, response) = match self.update {
+            Update::Total | Update::Small => {
+                // C does not know whether an element is turned inside out; J does.
+                if self.material.law == Law::NeoHookean && plus_identity(&h).determinant() <= 0.0 {
+                    return None;
+                }
+                (self.material.thickness, self.material.response(&strain)?)
+            }
+            Update::Updated => {
+                let memory = &past.history[MEMORY * p..MEMORY * (p + 1)];
+                let mut response = self.material.linear(&strain);
+                response.stress += Vector3::new(memory[0], memory[1], memory[2]);
+                (self.material.thickness * (1.0 + memory[3]), response)
+            }
+        };
+        (area > 0.0).then_some(Point {
+            grad,
+            h,
+            volume: area * thickness,
+            response,
+            ring: None,
+        })
+    }
+
+    /// The same in axisymmetry.
+    fn point_of_revolution(
+        &self,
+        past: &Past<'_>,
+        p: usize,
+        (grad, area): ([[f64; 2]; N], f64),
+        h: [[f64; 2]; 2],
+        mut ring: Ring<N>,
+    ) -> Option<Point<N>> {
+        let strain = strain(&h);
+        let growth = ring.h + 0.5 * ring.h * ring.h;
+        let (response, hoop) = match self.update {
+            Update::Total | Update::Small => {
+                let inside_out = plus_identity(&h).determinant() <= 0.0 || ring.h <= -1.0;
+                if self.material.law == Law::NeoHookean && inside_out {
+                    return None;
+                }
+                self.material.response_around(&strain, growth)?
+            }
+            Update::Updated => {
+                let memory = &past.history[MEMORY * p..MEMORY * (p + 1)];
+                let (mut response, mut hoop) = self.material.linear_around(&strain, growth);
+                response.stress += Vector3::new(memory[0], memory[1], memory[2]);
+                hoop.stress += memory[3];
+                (response, hoop)
+            }
+        };
+        ring.hoop = hoop;
+        let volume = area * 2.0 * PI * ring.radius;
+        (area > 0.0 && volume > 0.0).then_some(Point {
+            grad,
+            h,
+            volume,
+            response,
+            ring: Some(ring),
+        })
+    }
+
+    /// State of Gauss point p; none where the material has no answer.
+    pub fn point_state(&self, past: &Past<'_>, u: &[f64], p: usize) -> Option<PointState> {
+        let mut at = [0.0; 2];
+        for (n, x) in self.rule[p].n.iter().zip(&self.at) {
+            at = [at[0] + n * x[0], at[1] + n * x[1]];
+        }
+        let h = slope(&self.points[p].grad, &pairs(u));
+        let gradient = plus_identity(&h);
+        let (cauchy, across) = if self.update == Update::Small {
+            self.linear_stress(&h, &self.reference(past, u), p)
+        } else {
+            let point = self.point(&self.reference(past, u), past, p)?;
+            (point.cauchy(), self.across(&point))
+        };
+        Some(PointState {
+            at,
+            gradient,
+            cauchy,
+            across,
+        })
+    }
+
+    /// Stress in the plane and across it by strains that are linear in the displacements.
+    fn linear_stress(
+        &self,
+        h: &[[f64; 2]; 2],
+        reference: &Reference<N>,
+        p: usize,
+    ) -> (Vector3<f64>, f64) {
+        let strain = Vector3::new(h[0][0], h[1][1], h[0][1] + h[1][0]);
+        if HOOP {
+            let ring = Ring::new(&self.rule[p], reference);
+            let (response, hoop) = self.material.linear_around(&strain, ring.h);
+            return (response.stress, hoop.stress);
+        }
+        let stress = self.material.linear(&strain).stress;
+        (stress, self.material.linear_across(&strain))
+    }
+
+    /// σ33.
+    fn across(&self, point: &Point<N>) -> f64 {
+        let swelling = plus_identity(&point.h).determinant();
+        match (&point.ring, self.update) {
+            (Some(ring), _) => (1.0 + ring.h) * ring.hoop.stress / swelling,
+            (None, Update::Updated) => self.material.across_of(&point.cauchy()),
+            (None, _) => self.material.across(&strain(&point.h)) / swelling,
+        }
+    }
+}
+
+impl<const N: usize, const P: usize, const HOOP: bool> element::Element for Element<N, P, HOOP> {
+    fn dofs(&self) -> usize {
+        2 * N
+    }
+
+    fn history_len(&self) -> usize {
+        history_len(self.update, P)
+    }
+
+    fn add(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
+        let dofs = 2 * N;
+        let reference = self.reference(past, u);
+        let mut terms = [Terms::default(); P];
+        let mut rings = [const { None::<RingTerms<N>> }; P];
+        // ∇N of all nodes, one direction after the other: numbers side by side are what a processor is fast at.
+        let mut grad = [[[0.0; N]; 2]; P];
+        for p in 0..P {
+            let Some(point) = self.point(&reference, past, p) else {
+                return false;
+            };
+            for (i, [x, y]) in point.grad.into_iter().enumerate() {
+                (grad[p][0][i], grad[p][1][i]) = (x, y);
+            }
+            terms[p] = point.terms();
+            if HOOP {
+                rings[p] = point.ring_terms();
+            }
+        }
+        for i in 0..N {
+            // K_ij by the components of i and of j.
+            let mut sums = [[[0.0; N]; 2]; 2];
+            for (p, (terms, grad)) in terms.iter().zip(&grad).enumerate() {
+                let [x, y] = [grad[0][i], grad[1][i]];
+                for a in 0..2 {
+                    force[2 * i + a] += terms.stress[a][0] * x + terms.stress[a][1] * y;
+                }
+                terms.add_rows([x, y], grad, &mut sums);
+                if HOOP && let Some(ring) = &rings[p] {
+                    force[2 * i] += ring.stress * ring.share[i];
+                    ring.add_rows(i, grad, &mut sums);
+                }
+            }
+            for (a, sums) in sums.iter().enumerate() {
+                let row = (2 * i + a) * dofs;
+                for j in i..N {
+                    tangent[row + 2 * j] += sums[0][j];
+                    tangent[row + 2 * j + 1] += sums[1][j];
+                }
+            }
+        }
+        true
+    }
+
+    fn resist(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], _: &mut [f64]) -> bool {
+        let reference = self.reference(past, u);
+        for p in 0..P {
+            let Some(point) = self.point(&reference, past, p) else {
+                return false;
+            };
+            let stress = point.nominal();
+            let ring = if HOOP { point.ring_terms() } else { None };
+            for (i, [x, y]) in point.grad.into_iter().enumerate() {
+                for a in 0..2 {
+                    force[2 * i + a] += stress[a][0] * x + stress[a][1] * y;
+                }
+                if HOOP && let Some(ring) = &ring {
+                    force[2 * i] += ring.stress * ring.share[i];
+                }
+            }
+        }
+        true
+    }
+
+    fn advance(&self, past: &Past<'_>, u: &[f64], history: &mut [f64]) {
+        if self.update != Update::Updated {
+            return;
+        }
+        let reference = self.reference(past, u);
+        for p in 0..P {
+            let (old, new) = (
+                &past.history[MEMORY * p..MEMORY * (p + 1)],
+                &mut history[MEMORY * p..MEMORY * (p + 1)],
+            );
+            // Where there is no answer the increment cannot have been accepted.
+            let Some(point) = self.point(&reference, past, p) else {
+                continue;
+            };
+            new[..3].copy_from_slice(point.cauchy().as_slice());
+            new[3] = if HOOP {
+                self.across(&point)
+            } else {
+                (1.0 + old[3]) * point.stretch() - 1.0
+            };
+        }
+    }
+
+    fn mirror(&self, tangent: &mut [f64]) {
+        let dofs = 2 * N;
+        for i in 2..dofs {
+            for j in 0..i & !1 {
+                tangent[i * dofs + j] = tangent[j * dofs + i];
+            }
+        }
+    }
+}
+
+/// How many numbers an element of so many points remembers from increment to increment.
+pub fn history_len(update: Update, points: usize) -> usize {
+    match update {
+        Update::Total | Update::Small => 0,
+        Update::Updated => MEMORY * points,
+    }
+}
+
+/// P = F S, and its derivative by H, times the volume of a Gauss point.
+#[derive(Clone, Copy, Default)]
+struct Terms {
+    stress: [[f64; 2]; 2],
+    /// ∂P_aJ/∂H_cL at [a][J][L][c].
+    moduli: [[[[f64; 2]; 2]; 2]; 2],
+}
+
+impl Terms {
+    /// Adds Σ_JL N_i,J ∂P_aJ/∂H_cL N_j,L to [a][c][j], where N_i,J are x and y.
+    fn add_rows<const N: usize>(
+        &self,
+        [x, y]: [f64; 2],
+        grad: &[[f64; N]; 2],
+        sums: &mut [[[f64; N]; 2]; 2],
+    ) {
+        for (moduli, sums) in self.moduli.iter().zip(sums) {
+            for (c, sums) in sums.iter_mut().enumerate() {
+                let by_x = moduli[0][0][c] * x + moduli[1][0][c] * y;
+                let by_y = moduli[0][1][c] * x + moduli[1][1][c] * y;
+                for (sum, (x, y)) in sums.iter_mut().zip(grad[0].iter().zip(&grad[1])) {
+                    *sum += by_x * x + by_y * y;
+                }
+            }
+        }
+    }
+}
+
+impl<const N: usize> Point<N> {
+    /// F.
+    fn deformation(&self) -> [[f64; 2]; 2] {
+        let h = &self.h;
+        [[1.0 + h[0][0], h[0][1]], [h[1][0], 1.0 + h[1][1]]]
+    }
+
+    /// S, times the volume.
+    fn stress(&self) -> [[f64; 2]; 2] {
+        let (v, s) = (self.volume, &self.response.stress);
+        [[v * s.x, v * s.z], [v * s.z, v * s.y]]
+    }
+
+    /// P = F S, times the volume.
+    fn nominal(&self) -> [[f64; 2]; 2] {
+        let s = self.stress();
+        self.deformation().map(|f| {
+            [
+                f[0] * s[0][0] + f[1] * s[1][0],
+                f[0] * s[0][1] + f[1] * s[1][1],
+            ]
+        })
+    }
+
+    fn terms(&self) -> Terms {
+        let (f, s) = (self.deformation(), self.stress());
+        let (v, d) = (self.volume, &self.response.tangent);
+        let mut terms = Terms {
+            stress: self.nominal(),
+            ..Terms::default()
+        };
+        for l in 0..2 {
+            for c in 0..2 {
+                // ∂E/∂H_cL has F_cL in its component L and, as shear, the other one of F; and D times it.
+                let [own, shear] = [f[c][l], f[c][1 - l]];
+                let answer = [0, 1, 2].map(|k| v * (d[(k, l)] * own + d[(k, 2)] * shear));
+                for (a, (f, moduli)) in f.iter().zip(&mut terms.moduli).enumerate() {
+                    for j in 0..2 {
+                        let geometric = if a == c { s[j][l] } else { 0.0 };
+                        moduli[j][l][c] = f[j] * answer[j] + f[1 - j] * answer[2] + geometric;
+                    }
+                }
+            }
+        }
+        terms
+    }
+
+    /// Stretch across the plane.
+    fn stretch(&self) -> f64 {
+        match &self.ring {
+            Some(ring) => 1.0 + ring.h,
+            None => (1.0 + 2.0 * self.response.thickening).max(0.0).sqrt(),
+        }
+    }
+
+    /// σ = F S Fᵀ / J.
+    fn cauchy(&self) -> Vector3<f64> {
+        let (f, s) = (plus_identity(&self.h), self.response.stress);
+        let sigma = f * Matrix2::new(s.x, s.z, s.z, s.y) * f.transpose()
+            / (f.determinant() * self.stretch());
+        Vector3::new(
+            sigma[(0, 0)],
+            sigma[(1, 1)],
+            0.5 * (sigma[(0, 1)] + sigma[(1, 0)]),
+        )
+    }
+}

@@ -1,0 +1,91 @@
+//! What axisymmetry adds to a Gauss point: the ring that it is part of.
+//!
+//! With b_i = N_i / X, h = Σ b_i u_xi and F33 = 1 + h, P33 = F33 S33 adds b_i P33 to the force along x. Its derivatives by H and h,
+//!
+//! ```text
+//! ∂P_aJ/∂h = F_aK (∂S_KJ/∂E33) F33 = ∂P33/∂H_aJ,      ∂P33/∂h = S33 + F33² ∂S33/∂E33,
+//! ```
+//!
+//! add to the tangent, which stays symmetric.
+
+use super::{Hoop, Parent, Point, Reference};
+
+/// The ring of a Gauss point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ring<const N: usize> {
+    /// b_i.
+    pub share: [f64; N],
+    /// X in the reference.
+    pub radius: f64,
+    /// h.
+    pub h: f64,
+    /// Stress around the axis, once it is known.
+    pub hoop: Hoop,
+}
+
+/// P33 and its derivatives, times the volume of the point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RingTerms<const N: usize> {
+    pub share: [f64; N],
+    pub stress: f64,
+    /// ∂P_aJ/∂h.
+    coupling: [[f64; 2]; 2],
+    /// ∂P33/∂h.
+    modulus: f64,
+}
+
+impl<const N: usize> Ring<N> {
+    /// The ring of a point of the parent element.
+    pub fn new(parent: &Parent<N>, reference: &Reference<N>) -> Self {
+        let radius: f64 = parent
+            .n
+            .iter()
+            .zip(&reference.at)
+            .map(|(n, x)| n * x[0])
+            .sum();
+        let share = parent.n.map(|n| n / radius);
+        let h = share.iter().zip(&reference.u).map(|(b, u)| b * u[0]).sum();
+        Ring {
+            share,
+            radius,
+            h,
+            hoop: Hoop::default(),
+        }
+    }
+}
+
+impl<const N: usize> Point<N> {
+    /// What its ring adds; none in the plane.
+    pub(super) fn ring_terms(&self) -> Option<RingTerms<N>> {
+        let ring = self.ring.as_ref()?;
+        let (v, hoop, f33) = (self.volume, &ring.hoop, 1.0 + ring.h);
+        let [xx, yy, xy] = [0, 1, 2].map(|k| v * f33 * hoop.coupling[k]);
+        let coupling = self
+            .deformation()
+            .map(|f| [f[0] * xx + f[1] * xy, f[0] * xy + f[1] * yy]);
+        Some(RingTerms {
+            share: ring.share,
+            stress: v * f33 * hoop.stress,
+            coupling,
+            modulus: v * (hoop.stress + f33 * f33 * hoop.modulus),
+        })
+    }
+}
+
+impl<const N: usize> RingTerms<N> {
+    /// Adds to K_ij, at [a][c][j], what the hoop strain gives.
+    pub fn add_rows(&self, i: usize, grad: &[[f64; N]; 2], sums: &mut [[[f64; N]; 2]; 2]) {
+        let [x, y] = [grad[0][i], grad[1][i]];
+        let own = self.share[i];
+        for (a, row) in self.coupling.iter().enumerate() {
+            let by_gradient = row[0] * x + row[1] * y;
+            for j in 0..N {
+                sums[a][0][j] += by_gradient * self.share[j];
+                sums[0][a][j] += own * (row[0] * grad[0][j] + row[1] * grad[1][j]);
+            }
+        }
+        for j in 0..N {
+            sums[0][0][j] += own * self.modulus * self.share[j];
+        }
+    }
+}

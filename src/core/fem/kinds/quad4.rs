@@ -1,0 +1,24 @@
+//! The 4-node quadrilateral: displacements are bilinear; 2 × 2 Gauss points.
+//!
+//! It is stiff in bending, and locks where the material hardly compresses.
+
+use super::{Parent, Shape, parents};
+use crate::fem::quadrature::square;
+use std::sync::LazyLock;
+
+/// Places of the nodes in the parent square.
+pub const PLACES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+
+/// Its rule.
+pub static RULE: LazyLock<[Parent<4>; 4]> = LazyLock::new(|| parents(square(2), shape));
+
+/// N_i = ¼ (1 + ξ_i ξ) (1 + η_i η).
+pub fn shape(xi: f64, eta: f64) -> Shape<4> {
+    let (mut n, mut d) = ([0.0; 4], [[0.0; 2]; 4]);
+    for (i, [a, b]) in PLACES.into_iter().enumerate() {
+        let (p, q) = (1.0 + a * xi, 1.0 + b * eta);
+        n[i] = 0.25 * p * q;
+        d[i] = [0.25 * a * q, 0.25 * b * p];
+    }
+    (n, d)
+}

@@ -1,0 +1,49 @@
+//! The 8-node quadrilateral of the serendipity family: quadratic along each side; 3 × 3 Gauss points, or 2 × 2.
+//!
+//! With 2 × 2 points (reduced integration) it is softer and does not lock where the material hardly compresses; it has one
+//! motion that strains no point (hourglass), which two elements side by side cannot share. Nodes are the corners
+//! anticlockwise, then the middles of the sides 1-2, 2-3, 3-4, 4-1.
+
+use super::{Parent, Shape, parents};
+use crate::fem::quadrature::square;
+use std::sync::LazyLock;
+
+/// Places of the nodes in the parent square.
+pub const PLACES: [[f64; 2]; 8] = [
+    [-1.0, -1.0],
+    [1.0, -1.0],
+    [1.0, 1.0],
+    [-1.0, 1.0],
+    [0.0, -1.0],
+    [1.0, 0.0],
+    [0.0, 1.0],
+    [-1.0, 0.0],
+];
+
+/// Its full rule.
+pub static RULE: LazyLock<[Parent<8>; 9]> = LazyLock::new(|| parents(square(3), shape));
+
+/// Its reduced rule.
+pub static REDUCED: LazyLock<[Parent<8>; 4]> = LazyLock::new(|| parents(square(2), shape));
+
+/// The shape functions and their derivatives by ξ and η.
+pub fn shape(xi: f64, eta: f64) -> Shape<8> {
+    let (mut n, mut d) = ([0.0; 8], [[0.0; 2]; 8]);
+    for (i, [a, b]) in PLACES.into_iter().enumerate() {
+        let (p, q) = (1.0 + a * xi, 1.0 + b * eta);
+        if a == 0.0 {
+            let bubble = 1.0 - xi * xi;
+            n[i] = 0.5 * bubble * q;
+            d[i] = [-xi * q, 0.5 * bubble * b];
+        } else if b == 0.0 {
+            let bubble = 1.0 - eta * eta;
+            n[i] = 0.5 * bubble * p;
+            d[i] = [0.5 * bubble * a, -eta * p];
+        } else {
+            let rest = a * xi + b * eta - 1.0;
+            n[i] = 0.25 * p * q * rest;
+            d[i] = [0.25 * a * q * (rest + p), 0.25 * b * p * (rest + q)];
+        }
+    }
+    (n, d)
+}

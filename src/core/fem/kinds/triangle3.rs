@@ -1,0 +1,19 @@
+//! The 3-node triangle: displacements are linear, strains constant; one point.
+//!
+//! It is stiff in bending, and locks where the material hardly compresses.
+
+use super::{Parent, Shape, parents};
+use crate::fem::quadrature::TRIANGLE_1;
+use std::sync::LazyLock;
+
+/// Places of the nodes in the parent triangle.
+pub const PLACES: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+
+/// Its rule, exact for the stiffness.
+pub static RULE: LazyLock<[Parent<3>; 1]> = LazyLock::new(|| parents(TRIANGLE_1, shape));
+
+/// N = 1 − ξ − η, ξ, η.
+pub fn shape(xi: f64, eta: f64) -> Shape<3> {
+    let n = [1.0 - xi - eta, xi, eta];
+    (n, [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
+}

@@ -1,0 +1,35 @@
+//! The 6-node triangle: displacements are quadratic; three points inside.
+
+use super::{Parent, Shape, parents};
+use crate::fem::quadrature::TRIANGLE_3;
+use std::sync::LazyLock;
+
+/// Places of the nodes in the parent triangle.
+pub const PLACES: [[f64; 2]; 6] = [
+    [0.0, 0.0],
+    [1.0, 0.0],
+    [0.0, 1.0],
+    [0.5, 0.0],
+    [0.5, 0.5],
+    [0.0, 0.5],
+];
+
+/// Its rule, exact for the stiffness where the sides are straight: nine strains for the nine ways to deform.
+pub static RULE: LazyLock<[Parent<6>; 3]> = LazyLock::new(|| parents(TRIANGLE_3, shape));
+
+/// With L = (1 − ξ − η, ξ, η): N = L (2 L − 1) at a corner, 4 L_a L_b between the corners a and b.
+pub fn shape(xi: f64, eta: f64) -> Shape<6> {
+    const SLOPES: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
+    let l = [1.0 - xi - eta, xi, eta];
+    let (mut n, mut d) = ([0.0; 6], [[0.0; 2]; 6]);
+    for a in 0..3 {
+        let b = (a + 1) % 3;
+        n[a] = l[a] * (2.0 * l[a] - 1.0);
+        n[3 + a] = 4.0 * l[a] * l[b];
+        for k in 0..2 {
+            d[a][k] = (4.0 * l[a] - 1.0) * SLOPES[a][k];
+            d[3 + a][k] = 4.0 * (SLOPES[a][k] * l[b] + l[a] * SLOPES[b][k]);
+        }
+    }
+    (n, d)
+}
