@@ -26,6 +26,8 @@ fn model() -> Model {
         start: Mode::Free,
         state: Default::default(),
         overlap: 0.0,
+        bond: Default::default(),
+        area: None,
     };
     Model {
         title: String::new(),

@@ -47,6 +47,8 @@
 //!         start: Mode::Free,
 //!         state: InitialState::default(),
 //!         overlap: 0.0,
+//!         bond: Default::default(),
+//!         area: None,
 //!     }],
 //!     // Only the slave node has unknowns: its x and its y.
 //!     dofs: Dofs {

@@ -13,6 +13,6 @@
 #![forbid(unsafe_code)]
 
 pub mod broken;
-pub mod inp;
 pub mod gmsh;
+pub mod inp;
 pub mod mesh;

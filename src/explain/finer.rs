@@ -32,6 +32,10 @@ pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<Fine
     let mut spec = spec.clone();
     spec.refine *= 2;
     let refine = spec.refine;
+    let own = spec.slaves.iter().filter_map(|group| group.friction);
+    let by_area = own
+        .chain([spec.friction])
+        .any(|friction| friction.adhesion != 0.0);
     let model = Scene::from_spec("finer", spec).ok()?.model;
     if model.dofs.len() <= state.u.len() {
         return None;
@@ -39,8 +43,10 @@ pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<Fine
     let mut stepper = Stepper::new(Arc::new(model));
     let settings = Intervention::Settings(state.controls.settings);
     stepper.intervene(&settings).ok()?;
-    // Friction that was changed for all nodes is that of the finer ones; groups of nodes have what the scene says.
-    if let [first, rest @ ..] = state.controls.friction.as_slice()
+    // Friction that was changed for all nodes is that of the finer ones; groups of nodes, and cohesion by area, have what the
+    // scene says.
+    if !by_area
+        && let [first, rest @ ..] = state.controls.friction.as_slice()
         && rest.iter().all(|friction| friction == first)
         && stepper
             .model()

@@ -353,6 +353,10 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
             "friction angle {} degrees, cohesion {}",
             f.angle, f.cohesion
         ),
+        Intervention::Frictions(all) => {
+            let angle = all.first().map_or(0.0, |first| first.angle);
+            format!("friction angle {angle} degrees, cohesion of each node by its area")
+        }
         Intervention::Settings(_) => "settings changed".into(),
     }
 }

@@ -12,6 +12,7 @@
 //! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless floor
 //! y = 0, where u_n = u_y and u_t = −u_x.
 
+use super::contact_law::{ContactLaw, FrictionSpec};
 use super::error::{Path, Step, at};
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
 use crate::model::{Friction, InitialState, Jumps, Mode, Settings};
@@ -191,7 +192,7 @@ impl Problem {
                 smooth: false,
             }],
             slaves: self.contacts.iter().map(slave).collect(),
-            friction: Friction::default(),
+            friction: FrictionSpec::default(),
             supports: Vec::new(),
             loads: self.contacts.iter().filter_map(load).collect(),
             history: self.history.clone(),
@@ -318,7 +319,10 @@ fn slave(contact: &Contact) -> SlaveSpec {
         nodes: vec![contact.id.clone()],
         on: vec![FLOOR.to_owned()],
         start: contact.start,
-        friction: Some(contact.friction),
+        friction: Some(contact.friction.into()),
+        law: ContactLaw::Hard,
+        stick: None,
+        area: None,
         state: contact.state,
     }
 }

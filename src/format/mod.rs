@@ -12,6 +12,7 @@
 
 pub mod arc;
 pub mod condensed;
+pub mod contact_law;
 pub mod described;
 pub mod error;
 pub mod given;

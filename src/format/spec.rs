@@ -5,11 +5,12 @@
 //! default that its comment names.
 
 use super::arc::ArcSpec;
+use super::contact_law::{ContactLaw, FrictionSpec};
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
 use crate::model::{
-    Axis, Component, Control, ElementKind, Friction, InitialState, Jumps, Law, Mode, Plane,
-    Settings, Update, least,
+    Axis, Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
+    least,
 };
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +44,7 @@ described! {
         pub slaves: Vec<SlaveSpec>,
         /// Coulomb friction of every slave node that names none of its own. Default: smooth.
         #[serde(default)]
-        pub friction: Friction,
+        pub friction: FrictionSpec,
         /// Restrained degrees of freedom. Default: none.
         #[serde(default)]
         pub supports: Vec<SupportSpec>,
@@ -490,7 +491,17 @@ described! {
         pub start: Mode,
         /// Friction of these nodes. Default: the scene's.
         #[serde(default)]
-        pub friction: Option<Friction>,
+        pub friction: Option<FrictionSpec>,
+        /// What holds where these nodes touch. Default: Hard.
+        #[serde(default, skip_serializing_if = "ContactLaw::is_hard")]
+        pub law: ContactLaw,
+        /// Stick stiffness K_t, a shear stress by length: a node that sticks gives way along the surface by F_t / (K_t A), with its
+        /// tributary area A (elastic slip). Default: none, it sticks rigidly.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub stick: Option<f64>,
+        /// Tributary area of each of these nodes, undeformed. Default: none, it is that of the sides of its body.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub area: Option<f64>,
         /// What these nodes bring from iterations before the scene's first. Default: nothing.
         #[serde(default)]
         pub state: InitialState,

@@ -96,6 +96,10 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
         Intervention::Release { slave } => format!("{} released", names::slave(model, *slave)),
         Intervention::Increment(size) => format!("increment {size}"),
         Intervention::Friction(friction) => format!("friction {}", friction.angle),
+        Intervention::Frictions(all) => match all.first() {
+            Some(friction) => format!("friction {}", friction.angle),
+            None => "friction".into(),
+        },
         Intervention::Settings(_) => "settings".into(),
     }
 }

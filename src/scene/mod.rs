@@ -17,6 +17,7 @@ pub mod nodes;
 pub mod siconos;
 pub mod solver;
 
+mod areas;
 mod blocks;
 mod compile;
 mod curves;

@@ -4,13 +4,28 @@ use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
 use super::worker::Job;
 use crate::explain::report;
+use crate::format::contact_law::FrictionSpec;
 use crate::format::{Spec, paths};
 use crate::history::branches;
 use crate::history::strip::PointKind;
+use crate::model::{Contact, Friction};
 use crate::outside::shown;
 use crate::scene::Scene;
 use crate::step::intervene::Intervention;
 use crate::step::state::Controls;
+
+/// Numbers closer than this, relative to what they were found from, are the same: the rest is round-off.
+const SAME: f64 = 1e-12;
+
+/// A number that was found with round-off of the size of `from`: that of the scene where it is the same, and no negative one.
+fn told(found: f64, scene: f64, from: f64) -> f64 {
+    let near = SAME * from.abs().max(scene.abs());
+    match found {
+        found if (found - scene).abs() <= near => scene,
+        found if found <= near => 0.0,
+        found => (found / near.max(f64::MIN_POSITIVE)).round() * near,
+    }
+}
 
 impl Session {
     /// Changes something at the cursor; `setting` is the path and the value that it came from.
@@ -82,10 +97,50 @@ impl Session {
         let mut spec = self.scene.spec.clone();
         spec.settings = controls.settings;
         spec.history.increment = controls.increment;
-        if let Some(friction) = controls.friction.first() {
-            spec.friction = *friction;
-        }
+        spec.friction = self.friction_in_force(controls);
         spec
+    }
+
+    /// The scene's friction that makes what is in force at its nodes. Where these have one cohesion and one area, what part of
+    /// the cohesion is by area is as in the scene.
+    fn friction_in_force(&self, controls: &Controls) -> FrictionSpec {
+        let scene = self.scene.spec.friction;
+        let Some(first) = controls.friction.first() else {
+            return scene;
+        };
+        let contacts = self.model().contacts.iter().zip(&controls.friction);
+        let cohesion = |area: f64, now: &Friction| (area, now.cohesion);
+        let by_area = contacts.filter_map(|(c, now)| {
+            (c.friction == scene.of_node(c.area)).then_some(cohesion(c.area?, now))
+        });
+        let by_area: Vec<(f64, f64)> = by_area.collect();
+        let order = |a: &&(f64, f64), b: &&(f64, f64)| a.0.total_cmp(&b.0);
+        let ends = by_area
+            .iter()
+            .min_by(order)
+            .zip(by_area.iter().max_by(order));
+        let adhesion = match ends {
+            Some((a, b)) if b.0 > a.0 * (1.0 + SAME) => (b.1 - a.1) / (b.0 - a.0),
+            _ => scene.adhesion,
+        };
+        let adhesion = told(adhesion, scene.adhesion, first.cohesion);
+        let own = self
+            .model()
+            .contacts
+            .first()
+            .and_then(|contact| contact.area);
+        let cohesion = match adhesion {
+            0.0 => first.cohesion,
+            adhesion => {
+                let rest = first.cohesion - adhesion * own.unwrap_or(0.0);
+                told(rest, scene.cohesion, first.cohesion)
+            }
+        };
+        FrictionSpec {
+            angle: first.angle,
+            cohesion,
+            adhesion,
+        }
     }
 
     /// A scalar of the scene with what was set since, as a person types it.
@@ -105,7 +160,12 @@ impl Session {
         if path.starts_with("settings.") {
             Ok(Intervention::Settings(sound.model.settings))
         } else if path.starts_with("friction.") {
-            Ok(Intervention::Friction(sound.spec.friction))
+            let friction = sound.spec.friction;
+            let of_node = |contact: &Contact| friction.of_node(contact.area);
+            Ok(match friction.adhesion {
+                0.0 => Intervention::Friction(friction.of_node(None)),
+                _ => Intervention::Frictions(sound.model.contacts.iter().map(of_node).collect()),
+            })
         } else if path == "history.increment" {
             Ok(Intervention::Increment(sound.spec.history.increment))
         } else {

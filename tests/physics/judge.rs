@@ -52,6 +52,8 @@ impl Stage {
             start: Mode::Free,
             state: InitialState::default(),
             overlap: 0.0,
+            bond: Default::default(),
+            area: None,
         }];
         let with = |at: [f64; 2]| {
             let mut all = vec![at];
@@ -112,6 +114,8 @@ fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<Law> {
         start: Mode::Free,
         state: InitialState::default(),
         overlap: 0.0,
+        bond: Default::default(),
+        area: None,
     };
     let with = |at: [f64; 2]| [&[at], &chain[..]].concat();
     let (before, now) = (with(from), with(to));

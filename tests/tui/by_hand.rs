@@ -65,6 +65,8 @@ pub fn model(slaves: usize) -> Model {
                 start: Mode::Free,
                 state: Default::default(),
                 overlap: 0.0,
+                bond: Default::default(),
+                area: None,
             })
             .collect(),
         dofs: Dofs {

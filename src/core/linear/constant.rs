@@ -103,6 +103,8 @@ impl Constant {
             start: Mode::Free,
             state: Default::default(),
             overlap: 0.0,
+            bond: Default::default(),
+            area: None,
         };
         let node = |k: usize| Node {
             name: format!("contact.{}", k + 1),

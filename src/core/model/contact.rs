@@ -48,4 +48,47 @@ pub struct Contact {
     /// How deep the node starts inside its surface, where that is closed over the first leg of the path only
     /// ([`crate::model::InitialGaps::Ramp`]); 0 for all others (length).
     pub overlap: f64,
+    /// What holds where it touches.
+    pub bond: Bond,
+    /// Tributary area of the undeformed slave node, by which forces are pressures; that of a whole turn where its body is
+    /// axisymmetric. `None` where nothing tells it.
+    pub area: Option<f64>,
+}
+
+/// What holds between a slave node and its surface where they touch, beside friction. The default is hard contact: g >= 0 and
+/// F_n >= 0, one of them zero, and sticking without any motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Bond {
+    /// Nothing gives way.
+    #[default]
+    Hard,
+    /// Springs in series with these compliances along n and along t (length by force), at least one of them positive. While the
+    /// node touches, g + c_n F_n = 0; while it sticks, it has gone c_t F_t along t from its stick point.
+    Giving([f64; 2]),
+    /// Held at a point of its surface, in tension too.
+    Tied,
+}
+
+impl Bond {
+    /// The bond with these compliances, along n and along t (length by force).
+    pub fn giving(give: [f64; 2]) -> Self {
+        if give == [0.0; 2] {
+            Bond::Hard
+        } else {
+            Bond::Giving(give)
+        }
+    }
+
+    /// Compliances in series along n and along t (length by force).
+    pub fn give(&self) -> [f64; 2] {
+        match self {
+            Bond::Giving(give) => *give,
+            Bond::Hard | Bond::Tied => [0.0; 2],
+        }
+    }
+
+    /// Whether it holds the node for ever.
+    pub fn is_tied(&self) -> bool {
+        *self == Bond::Tied
+    }
 }

@@ -35,6 +35,8 @@ pub enum Intervention {
     Increment(f64),
     /// Replace the friction of every slave node.
     Friction(Friction),
+    /// Replace the friction of each slave node by its own, in the order of the scene.
+    Frictions(Vec<Friction>),
     /// Replace the settings.
     Settings(Settings),
 }
@@ -101,7 +103,10 @@ impl State {
             Intervention::Assume(starts) => self.assume(starts)?,
             Intervention::Release { slave } => self.node_mut(*slave)?.forced = Forced::No,
             Intervention::Increment(increment) => self.retry(model, *increment)?,
-            Intervention::Friction(friction) => self.set_friction(friction)?,
+            Intervention::Friction(friction) => {
+                self.set_friction(&vec![*friction; self.nodes.len()])?;
+            }
+            Intervention::Frictions(all) => self.set_friction(all)?,
             Intervention::Settings(settings) => self.set(model, settings)?,
         }
         self.search = Progress::default();
@@ -178,14 +183,19 @@ impl State {
         Ok(())
     }
 
-    fn set_friction(&mut self, friction: &Friction) -> Result<(), Refusal> {
-        let sound = (0.0..90.0).contains(&friction.angle)
-            && (0.0..f64::INFINITY).contains(&friction.cohesion);
-        if !sound {
+    /// Replaces the friction of all slave nodes, one entry each.
+    fn set_friction(&mut self, all: &[Friction]) -> Result<(), Refusal> {
+        let sound = |friction: &Friction| {
+            (0.0..90.0).contains(&friction.angle)
+                && (0.0..f64::INFINITY).contains(&friction.cohesion)
+        };
+        if all.len() != self.nodes.len() || !all.iter().all(sound) {
             return Err(Refusal::Friction);
         }
-        Arc::make_mut(&mut self.controls).friction.fill(*friction);
-        for node in &mut self.nodes {
+        Arc::make_mut(&mut self.controls)
+            .friction
+            .copy_from_slice(all);
+        for (node, friction) in self.nodes.iter_mut().zip(all) {
             node.t_max = t_max(friction, node.f_n, node.sign);
         }
         Ok(())

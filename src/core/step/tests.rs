@@ -150,6 +150,8 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         start: Mode::Free,
         state: Default::default(),
         overlap: 0.0,
+        bond: Default::default(),
+        area: None,
     };
     let load = |(dof, value)| Load {
         dof,

@@ -46,6 +46,7 @@ macro_rules! name_field {
     }};
 }
 
+/// Variants of an enum have fields in braces, or none.
 macro_rules! described {
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
         $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
@@ -109,15 +110,15 @@ macro_rules! described {
         }
     };
     ($(#[$($meta:tt)*])* $vis:vis enum $name:ident {
-        $($(#[$($form_meta:tt)*])* $form:ident {
+        $($(#[$($form_meta:tt)*])* $form:ident $({
             $($(#[$($part_meta:tt)*])* $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
-        }),* $(,)?
+        })?),* $(,)?
     }) => {
         $(#[$($meta)*])*
         $vis enum $name {
-            $($(#[$($form_meta)*])* $form {
+            $($(#[$($form_meta)*])* $form $({
                 $($(#[$($part_meta)*])* $part: $type),*
-            }),*
+            })?),*
         }
 
         #[allow(non_snake_case)]
@@ -128,15 +129,17 @@ macro_rules! described {
                 visit: &mut $crate::format::described::Visit<'_>,
             ) {
                 match self {
-                    $($name::$form { $($part),* } => {
-                        $($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*
+                    $($name::$form $({ $($part),* })? => {
+                        $($($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*)?
                     })*
                 }
             }
             fn called(&self) -> Option<&str> {
                 match self {
-                    $($name::$form { $($part),* } => {
-                        [$($crate::format::described::macros::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
+                    $($name::$form $({ $($part),* })? => {
+                        let called: &[Option<&str>] =
+                            &[$($($crate::format::described::macros::name_field!($part $(, $mark)?)),*)?];
+                        called.iter().copied().flatten().next()
                     })*
                 }
             }
@@ -144,11 +147,13 @@ macro_rules! described {
                 $crate::format::described::link(stringify!($name))
             }
             fn blank() -> String {
-                let all = [$($crate::format::described::blank_form(stringify!($form), &[$((
-                    stringify!($part),
-                    false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                    <$type as $crate::format::described::Described>::blank(),
-                )),*])),*];
+                let all = [$($crate::format::described::macros::blank_variant!($form $({
+                    $((
+                        stringify!($part),
+                        false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                        <$type as $crate::format::described::Described>::blank(),
+                    )),*
+                })?)),*];
                 all[0].clone()
             }
             fn shown(&self) -> String {
@@ -160,12 +165,14 @@ macro_rules! described {
                 }
                 let mut forms = Vec::new();
                 $(
-                    let blank = $crate::format::described::blank_form(stringify!($form), &[$((
-                        stringify!($part),
-                        false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                        <$type as $crate::format::described::Described>::blank(),
-                    )),*]);
-                    let $name::$form { $($part),* } = &$crate::format::described::read_blank(&blank)? else {
+                    let blank = $crate::format::described::macros::blank_variant!($form $({
+                        $((
+                            stringify!($part),
+                            false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                            <$type as $crate::format::described::Described>::blank(),
+                        )),*
+                    })?);
+                    let $name::$form $({ $($part),* })? = &$crate::format::described::read_blank(&blank)? else {
                         return Err(format!("{blank}: read as another form"));
                     };
                     forms.push($crate::format::described::Form {
@@ -173,12 +180,12 @@ macro_rules! described {
                         docs: $crate::model::documented::text(
                             &[$(stickslip_core::doc_line!($($form_meta)*)),*],
                         ),
-                        fields: vec![$($crate::format::described::field_of(
+                        fields: vec![$($($crate::format::described::field_of(
                             stringify!($part),
                             &[$(stickslip_core::doc_line!($($part_meta)*)),*],
                             $part,
                             false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                        )),*],
+                        )),*)?],
                     });
                 )*
                 into.push($crate::format::described::Type {
@@ -186,11 +193,21 @@ macro_rules! described {
                     docs: $crate::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
                     forms,
                 });
-                $($(<$type as $crate::format::described::Described>::types(into)?;)*)*
+                $($($(<$type as $crate::format::described::Described>::types(into)?;)*)?)*
                 Ok(())
             }
         }
     };
 }
 
-pub(crate) use {described, has_default, name_field, walk_field};
+/// The shortest text of a variant: its name alone where it has no fields.
+macro_rules! blank_variant {
+    ($form:ident) => {
+        stringify!($form).to_owned()
+    };
+    ($form:ident { $($fields:tt)* }) => {
+        $crate::format::described::blank_form(stringify!($form), &[$($fields)*])
+    };
+}
+
+pub(crate) use {blank_variant, described, has_default, name_field, walk_field};

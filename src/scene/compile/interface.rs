@@ -5,8 +5,10 @@ use super::super::limits;
 use super::super::nodes::Names;
 use super::super::nodes::checks::unique;
 use super::bodies::{check_chain, elements};
+use super::laws;
 use crate::contact::element::closed;
 use crate::contact::smooth::smooth;
+use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{Nodes, Side, SlaveSpec, Spec};
 use crate::model::{Component, Friction, InitialState};
@@ -66,19 +68,20 @@ pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut [Surface]) -> 
     Ok(())
 }
 
-/// The slave nodes, in the order in which the file names them.
+/// The slave nodes, in the order in which the file names them, and the pair (entry of the list) that each is of. What holds
+/// between them and their surfaces follows ([`super::laws`]).
 pub(super) fn slaves(
     spec: &Spec,
     names: &Names,
     surfaces: &[Surface],
     length: f64,
-) -> Result<Vec<Contact>, Fault> {
+) -> Result<(Vec<Contact>, Vec<usize>), Fault> {
     friction(&at!["friction"], &spec.friction)?;
     let members: Vec<HashSet<usize>> = surfaces
         .iter()
         .map(|surface| surface.elements.iter().flatten().copied().collect())
         .collect();
-    let mut made = Vec::new();
+    let (mut made, mut pairs) = (Vec::new(), Vec::new());
     let mut taken = HashSet::new();
     for (k, group) in spec.slaves.iter().enumerate() {
         let here = at!["slaves", k];
@@ -87,6 +90,7 @@ pub(super) fn slaves(
         }
         let on = candidates(&here, group, surfaces)?;
         initial_state(&here.then("state"), &group.state)?;
+        laws::check(&here, group)?;
         if group.nodes.is_empty() {
             return Err(Fault::new(
                 here.then("nodes"),
@@ -108,19 +112,22 @@ pub(super) fn slaves(
                 let slave = Contact {
                     node,
                     surfaces: on.clone(),
-                    friction: group.friction.unwrap_or(spec.friction),
+                    friction: Friction::default(),
                     start: group.start,
                     state: group.state,
                     overlap: 0.0,
+                    bond: Default::default(),
+                    area: None,
                 };
                 let fresh = taken.insert(node);
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;
                 made.push(slave);
+                pairs.push(k);
             }
             ends.extend(own_ends);
         }
     }
-    Ok(made)
+    Ok((made, pairs))
 }
 
 /// Numbers of the surfaces that a group of slaves may touch.
@@ -227,8 +234,12 @@ fn initial_state(here: &Path, state: &InitialState) -> Result<(), Fault> {
 }
 
 /// Refuses friction that no surface has.
-pub(super) fn friction(here: &Path, friction: &Friction) -> Result<(), Fault> {
-    let Friction { angle, cohesion } = *friction;
+pub(super) fn friction(here: &Path, friction: &FrictionSpec) -> Result<(), Fault> {
+    let FrictionSpec {
+        angle,
+        cohesion,
+        adhesion,
+    } = *friction;
     if !(0.0..90.0).contains(&angle) {
         return Err(Fault::new(
             here.then("angle"),
@@ -242,6 +253,13 @@ pub(super) fn friction(here: &Path, friction: &Friction) -> Result<(), Fault> {
             format!(
                 "the cohesion is {cohesion:?}; it is a force per slave node and must not be negative"
             ),
+        ));
+    }
+    limits::finite(&here.then("adhesion"), adhesion, "the adhesion")?;
+    if adhesion < 0.0 {
+        return Err(Fault::new(
+            here.then("adhesion"),
+            format!("the adhesion is {adhesion:?}; it is a force by area and must not be negative"),
         ));
     }
     Ok(())
@@ -363,7 +381,7 @@ pub(super) fn check_held_slaves(
 }
 
 /// The name in the file that made a node a slave.
-fn slave_path(spec: &Spec, names: &Names, node: usize) -> Path {
+pub(super) fn slave_path(spec: &Spec, names: &Names, node: usize) -> Path {
     for (k, group) in spec.slaves.iter().enumerate() {
         for (j, name) in group.nodes.iter().enumerate() {
             if names.nodes(name).is_ok_and(|nodes| nodes.contains(&node)) {

@@ -7,6 +7,7 @@ mod arc;
 mod bodies;
 mod history;
 mod interface;
+mod laws;
 mod layout;
 mod linear;
 mod monitors;
@@ -50,19 +51,22 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         return Err(Fault::new(at!["nodes"], message));
     }
     let mut surfaces = interface::surfaces(spec, &names, length)?;
-    let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
+    let (mut slaves, pairs) = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
     interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
     history::settings(&spec.settings)?;
-    match spec.settings.initial_gaps {
-        InitialGaps::Keep => {}
-        InitialGaps::Adjust => {
-            let within = spec.settings.adjust_gap;
-            gaps::adjust(&mut names.nodes, &surfaces, &slaves, within);
-            bodies::check_bodies(spec, &names, &bodies, length)?;
-        }
-        InitialGaps::Ramp => gaps::ramp(&names.nodes, &surfaces, &mut slaves),
+    if spec.settings.initial_gaps == InitialGaps::Adjust {
+        let within = spec.settings.adjust_gap;
+        gaps::adjust(&mut names.nodes, &surfaces, &slaves, within);
+        bodies::check_bodies(spec, &names, &bodies, length)?;
     }
+    if laws::tie(spec, &mut names, &surfaces, &pairs, &mut slaves, length)? {
+        bodies::check_bodies(spec, &names, &bodies, length)?;
+    }
+    if spec.settings.initial_gaps == InitialGaps::Ramp {
+        gaps::ramp(&names.nodes, &surfaces, &mut slaves);
+    }
+    laws::apply(spec, &names, &bodies, &pairs, &mut slaves)?;
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
     let (mut loads, prescribed) = layout.loads(spec, &names)?;

@@ -6,11 +6,12 @@ use super::super::nodes::Names;
 use super::layout::Layout;
 use super::linear::free_motions;
 use super::{history, interface};
+use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Path, Step};
 use crate::format::paths::Found;
 use crate::format::spec::{History, SlaveSpec, Spec};
 use crate::linear::estimate::Estimate;
-use crate::model::{Control, Friction, Load, Model, Prescribed, Settings};
+use crate::model::{Control, Load, Model, Prescribed, Settings};
 
 /// Settings that more than the solver reads: nodes are moved for them, or the scene is refused.
 const DEEP: [&str; 3] = ["initial_gaps", "adjust_gap", "memory"];
@@ -105,7 +106,14 @@ impl Choices {
     pub(crate) fn loads(&self, with: &Compiled<'_>) -> Option<Loads> {
         let solver = self.spec.settings.solver;
         let fits = || Estimate::of(with.model).too_large(solver).is_none();
-        let suit = self.are_sound() && (solver == with.model.settings.solver || fits());
+        let areas = with
+            .model
+            .contacts
+            .iter()
+            .all(|contact| contact.area.is_some());
+        let suit = self.are_sound()
+            && (areas || !self.has_adhesion())
+            && (solver == with.model.settings.solver || fits());
         match suit {
             true if self.loaded => self.other_loads(with),
             true => Some((with.model.loads.clone(), with.model.prescribed.clone())),
@@ -144,6 +152,13 @@ impl Choices {
             && frictions.all(|own| interface::friction(&Path::default(), own).is_ok())
     }
 
+    /// Whether any friction is by area.
+    fn has_adhesion(&self) -> bool {
+        let own = self.spec.slaves.iter().filter_map(|group| group.friction);
+        let mut all = own.chain([self.spec.friction]);
+        all.any(|friction| friction.adhesion != 0.0)
+    }
+
     /// Number of increments of their history.
     pub(crate) fn increments(&self) -> f64 {
         history::increments(&self.spec.history.path, self.spec.history.increment)
@@ -159,7 +174,7 @@ fn key(path: &Path, step: usize) -> &str {
 }
 
 /// A scene without bodies, nodes and all that stands on them.
-fn bare(friction: Friction, history: History, settings: Settings) -> Spec {
+fn bare(friction: FrictionSpec, history: History, settings: Settings) -> Spec {
     Spec {
         title: String::new(),
         about: String::new(),
@@ -207,7 +222,9 @@ pub(crate) fn renewed(model: &Model, groups: &Groups, choices: &Choices, loads: 
     model.settings = history::resolved(&spec.settings, &model.bodies);
     for (contact, &group) in model.contacts.iter_mut().zip(&groups.0) {
         let own = spec.slaves.get(group).and_then(|group| group.friction);
-        contact.friction = own.unwrap_or(spec.friction);
+        if !contact.bond.is_tied() {
+            contact.friction = own.unwrap_or(spec.friction).of_node(contact.area);
+        }
     }
     model
 }

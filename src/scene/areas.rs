@@ -1,0 +1,218 @@
+//! Tributary areas of slave nodes, by which forces are pressures: p = F_n / A.
+//!
+//! The area of a node is the integral of its shape function over the sides of its body that belong to the slave surface,
+//! undeformed,
+//!
+//! ```text
+//! A_i = ∫ N_i w |dx/dξ| dξ,
+//! ```
+//!
+//! where w is the thickness across the plane; 1 for beams, whose elements are their sides. On a straight side of length L that
+//! is L/2 for each of 2 nodes, and L/6, 4L/6, L/6 for 3. A side belongs to the slave surface if all its nodes are slaves of
+//! one pair. A node without such a side (one slave node by itself, say) has half of each side of its body that it is on.
+//! Bodies that are given by matrices have no sides.
+
+use crate::fem::lagrange::{gauss, shape};
+use crate::model::{Beam, Body, BodyKind, Node, Solid};
+use std::collections::HashMap;
+
+/// Parts of a side's area that are round-off.
+const NONE: f64 = 1e-9;
+
+/// A side of a body, with what it is wide across the plane (length).
+#[derive(Debug, Clone, Copy)]
+struct Side<'a> {
+    nodes: &'a [usize],
+    width: f64,
+}
+
+/// Areas of the nodes of a scene that are slaves, `pair_of` being the pair of each; `None` for all others, and where a node is
+/// on no side.
+pub(super) fn tributary(
+    nodes: &[Node],
+    bodies: &[Body],
+    pair_of: &[Option<usize>],
+) -> Vec<Option<f64>> {
+    let sides: Vec<Side<'_>> = bodies.iter().flat_map(sides).collect();
+    let mut areas = vec![None; nodes.len()];
+    let mut add = |node: usize, area: f64| *areas[node].get_or_insert(0.0) += area;
+    for side in &sides {
+        let pair = pair_of[side.nodes[0]];
+        if pair.is_some() && side.nodes.iter().all(|&node| pair_of[node] == pair) {
+            let shares = shares(side, nodes);
+            side.nodes
+                .iter()
+                .zip(shares)
+                .for_each(|(&node, share)| add(node, share));
+        }
+    }
+    let mut alone: Vec<Option<f64>> = vec![None; nodes.len()];
+    for side in &sides {
+        let lonely = |node: &&usize| pair_of[**node].is_some() && areas[**node].is_none();
+        for &node in side.nodes.iter().filter(lonely) {
+            *alone[node].get_or_insert(0.0) += 0.5 * shares(side, nodes).iter().sum::<f64>();
+        }
+    }
+    let both = areas.into_iter().zip(alone);
+    both.map(|(area, alone)| area.or(alone)).collect()
+}
+
+/// The sides of a body.
+fn sides(body: &Body) -> Vec<Side<'_>> {
+    let beam = |beam: &'_ Beam| -> Vec<f64> { vec![1.0; beam.elements.len()] };
+    let widths = match &body.kind {
+        BodyKind::Beam(of) => beam(of),
+        BodyKind::Solid(solid) => widths(solid),
+        BodyKind::Linear(_) => return Vec::new(),
+    };
+    let lines = body.kind.lines().iter().zip(widths);
+    lines.map(|(nodes, width)| Side { nodes, width }).collect()
+}
+
+/// Thickness at each edge of a solid.
+fn widths(solid: &Solid) -> Vec<f64> {
+    if let [only] = solid.materials.as_slice() {
+        return vec![only.thickness; solid.edges.len()];
+    }
+    // The element behind an edge is the one that has all its nodes.
+    let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (k, element) in solid.elements.iter().enumerate() {
+        element
+            .iter()
+            .for_each(|&node| around.entry(node).or_default().push(k));
+    }
+    let behind = |edge: &Vec<usize>| {
+        let all = |k: &&usize| edge.iter().all(|node| solid.elements[**k].contains(node));
+        around.get(&edge[0])?.iter().find(all).copied()
+    };
+    let width = |edge| {
+        let material = behind(edge).map_or(0, |k| solid.material_of[k]);
+        solid.materials[material].thickness
+    };
+    solid.edges.iter().map(width).collect()
+}
+
+/// What each node of a side has of its area. Lagrange polynomials of many nodes have negative integrals; there a node has what is
+/// nearest to it.
+fn shares(side: &Side<'_>, nodes: &[Node]) -> Vec<f64> {
+    let count = side.nodes.len();
+    let by_shape = integrals(side, nodes, -1.0, 1.0);
+    let whole: f64 = by_shape.iter().sum();
+    if by_shape.iter().all(|share| *share >= -NONE * whole) {
+        let rounded = |share: f64| if share <= NONE * whole { 0.0 } else { share };
+        return by_shape.into_iter().map(rounded).collect();
+    }
+    let half = 1.0 / (count as f64 - 1.0);
+    let place = |k: usize| -1.0 + 2.0 * half * k as f64;
+    let nearest = |k: usize| {
+        let (from, to) = ((place(k) - half).max(-1.0), (place(k) + half).min(1.0));
+        integrals(side, nodes, from, to).iter().sum()
+    };
+    (0..count).map(nearest).collect()
+}
+
+/// ∫ N_i w |dx/dξ| dξ over a part of a side.
+fn integrals(side: &Side<'_>, nodes: &[Node], from: f64, to: f64) -> Vec<f64> {
+    let count = side.nodes.len();
+    let mut sums = vec![0.0; count];
+    for (x, weight) in gauss(count + 2) {
+        let here = shape(count, 0.5 * (from + to) + 0.5 * (to - from) * x);
+        let slope = [0, 1].map(|axis| -> f64 {
+            let at = side.nodes.iter().map(|&node| nodes[node].at[axis]);
+            at.zip(here.d).map(|(at, d)| at * d).sum()
+        });
+        let size = 0.5 * (to - from) * weight * side.width * slope[0].hypot(slope[1]);
+        sums.iter_mut()
+            .zip(here.n)
+            .for_each(|(sum, n)| *sum += size * n);
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn beam(elements: Vec<Vec<usize>>) -> Body {
+        let (ea, ei) = (1.0, 1.0);
+        Body {
+            name: "beam".into(),
+            nodes: Vec::new(),
+            kind: BodyKind::Beam(Beam {
+                elements,
+                ea,
+                ei,
+                ga: None,
+                first_shear: None,
+            }),
+        }
+    }
+
+    fn row(count: usize, length: f64) -> Vec<Node> {
+        let at = |k: usize| [length * k as f64 / (count as f64 - 1.0), 0.0];
+        (0..count)
+            .map(|k| Node {
+                name: String::new(),
+                at: at(k),
+            })
+            .collect()
+    }
+
+    fn close(found: &[Option<f64>], exact: &[f64]) {
+        for (found, exact) in found.iter().zip(exact) {
+            assert!((found.unwrap() - exact).abs() < 1e-14, "{found:?} {exact}");
+        }
+    }
+
+    #[test]
+    fn a_straight_side_is_shared_by_the_integrals_of_its_shape_functions() {
+        let linear = tributary(
+            &row(3, 2.0),
+            &[beam(vec![vec![0, 1], vec![1, 2]])],
+            &[Some(0); 3],
+        );
+        close(&linear, &[0.5, 1.0, 0.5]);
+        let quadratic = tributary(&row(3, 3.0), &[beam(vec![vec![0, 1, 2]])], &[Some(0); 3]);
+        close(&quadratic, &[0.5, 2.0, 0.5]);
+    }
+
+    #[test]
+    fn a_slave_by_itself_has_half_of_the_sides_that_it_is_on() {
+        let bodies = [beam(vec![vec![0, 1], vec![1, 2]])];
+        let found = tributary(&row(3, 2.0), &bodies, &[None, Some(0), None]);
+        assert_eq!(found, [None, Some(1.0), None]);
+        let apart = tributary(&row(3, 2.0), &bodies, &[Some(1), Some(0), Some(1)]);
+        assert_eq!(apart, [Some(0.5), Some(1.0), Some(0.5)]);
+    }
+
+    #[test]
+    fn the_areas_of_an_arc_add_up_to_its_length() {
+        let place = |k: usize| {
+            let angle = 0.25 * std::f64::consts::PI * k as f64 / 2.0;
+            Node {
+                name: String::new(),
+                at: [angle.cos(), angle.sin()],
+            }
+        };
+        let nodes: Vec<Node> = (0..5).map(place).collect();
+        let found = tributary(&nodes, &[beam(vec![(0..5).collect()])], &[Some(0); 5]);
+        let sum: f64 = found.iter().flatten().sum();
+        assert!((sum - 0.5 * std::f64::consts::PI).abs() < 1e-4, "{sum}");
+    }
+
+    #[test]
+    fn no_area_is_negative_however_many_nodes_a_side_has() {
+        for m in 2..=9 {
+            let found = tributary(
+                &row(m, 1.0),
+                &[beam(vec![(0..m).collect()])],
+                &[Some(0); 9][..m],
+            );
+            assert!(
+                found.iter().all(|area| area.unwrap() > 0.0),
+                "{m}: {found:?}"
+            );
+            assert!((found.iter().flatten().sum::<f64>() - 1.0).abs() < 1e-13);
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The laws of the pairs: tributary areas, what holds where their nodes touch, and the friction of each node.
+
+use super::super::areas::tributary;
+use super::super::limits;
+use super::super::nodes::Names;
+use super::interface::slave_path;
+use crate::contact::projection::{project, projection_at};
+use crate::format::contact_law::{ContactLaw, FrictionSpec};
+use crate::format::error::{Fault, Path};
+use crate::format::spec::{SlaveSpec, Spec};
+use crate::model::{Body, Bond, Contact, Friction, InitialState, Mode, Surface};
+
+/// Most that a tied node is moved, as a part of the scene's length: what is farther away was not meant to be joined.
+const JOINED: f64 = 0.05;
+
+/// Refuses a pair's law that makes no sense by itself.
+pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
+    let positive = |at: Path, value: f64, what: &str| {
+        limits::finite(&at, value, what)?;
+        match value > 0.0 {
+            true => Ok(()),
+            false => Err(Fault::new(
+                at,
+                format!("{what} is {value:?}; it must be positive"),
+            )),
+        }
+    };
+    if let ContactLaw::Penalty { stiffness } = group.law {
+        let place = here.then("law").then("stiffness");
+        positive(place, stiffness, "the penalty stiffness")?;
+    }
+    if let Some(stick) = group.stick {
+        positive(here.then("stick"), stick, "the stick stiffness")?;
+    }
+    if let Some(area) = group.area {
+        positive(here.then("area"), area, "the tributary area")?;
+    }
+    if group.law != ContactLaw::Tied {
+        return Ok(());
+    }
+    let idle = |field: &str, why: &str| {
+        let message = format!("a tied node {why}; leave {field} out");
+        Err(Fault::new(here.then(field), message))
+    };
+    let InitialState {
+        t_max, slip, ratio, ..
+    } = group.state;
+    match group {
+        SlaveSpec {
+            friction: Some(_), ..
+        } => idle("friction", "has no friction"),
+        SlaveSpec { stick: Some(_), .. } => idle("stick", "is held rigidly"),
+        SlaveSpec {
+            start: Mode::Sliding,
+            ..
+        } => idle("start", "is always fixed"),
+        _ if [t_max, slip, ratio] != [0.0; 3] => {
+            idle("state", "never slides, and brings forces at most")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Puts the tied nodes onto their surfaces, and holds them there.
+pub(super) fn tie(
+    spec: &Spec,
+    names: &mut Names,
+    surfaces: &[Surface],
+    pairs: &[usize],
+    slaves: &mut [Contact],
+    length: f64,
+) -> Result<bool, Fault> {
+    let mut places: Vec<[f64; 2]> = names.nodes.iter().map(|node| node.at).collect();
+    let mut moved = false;
+    for (slave, &pair) in slaves.iter_mut().zip(pairs) {
+        if spec.slaves[pair].law != ContactLaw::Tied {
+            continue;
+        }
+        let at = places[slave.node];
+        let refused = |why: String| {
+            let message = format!(
+                "node {:?} is to be tied, and {why}",
+                names.nodes[slave.node].name
+            );
+            Fault::new(slave_path(spec, names, slave.node), message)
+        };
+        let Some(spot) = project(at, surfaces, &slave.surfaces, &places, None) else {
+            let why = "lies past the ends of its surface: there is no point to hold it at; take it off the list, or make the surface longer";
+            return Err(refused(why.to_owned()));
+        };
+        let over = projection_at(surfaces, spot, &places, at);
+        if over.gap.abs() > JOINED * length {
+            let why = format!(
+                "is {:.4e} away from its surface, more than a twentieth of the scene: it would be moved there; bring them together, or take it off the list",
+                over.gap.abs()
+            );
+            return Err(refused(why));
+        }
+        moved |= over.foot != at;
+        places[slave.node] = over.foot;
+        names.nodes[slave.node].at = over.foot;
+        (slave.bond, slave.start) = (Bond::Tied, Mode::Fixed);
+    }
+    Ok(moved)
+}
+
+/// Finds areas, bonds and friction of all slave nodes. A node without any area under a penalty bears no force: it is taken off
+/// the list.
+pub(super) fn apply(
+    spec: &Spec,
+    names: &Names,
+    bodies: &[Body],
+    pairs: &[usize],
+    slaves: &mut Vec<Contact>,
+) -> Result<(), Fault> {
+    let mut pair_of = vec![None; names.nodes.len()];
+    for (slave, &pair) in slaves.iter().zip(pairs) {
+        pair_of[slave.node] = Some(pair);
+    }
+    let areas = tributary(&names.nodes, bodies, &pair_of);
+    for (slave, &pair) in slaves.iter_mut().zip(pairs) {
+        let group = &spec.slaves[pair];
+        slave.area = group.area.or(areas[slave.node]);
+        let own = group.friction.unwrap_or(spec.friction);
+        if slave.bond.is_tied() {
+            slave.friction = Friction::default();
+            continue;
+        }
+        check_area(spec, names, group, &own, slave)?;
+        slave.friction = own.of_node(slave.area);
+        slave.bond = bond(group, slave.area.unwrap_or(0.0));
+    }
+    slaves.retain(|slave| slave.bond.give().iter().all(|give| give.is_finite()));
+    Ok(())
+}
+
+/// What holds at a node of a pair.
+fn bond(group: &SlaveSpec, area: f64) -> Bond {
+    let normal = match group.law {
+        ContactLaw::Penalty { stiffness } => 1.0 / (stiffness * area),
+        ContactLaw::Hard | ContactLaw::Tied => 0.0,
+    };
+    // No friction acts on a hard node without an area, where there is no cohesion by node.
+    let tangential = match group.stick {
+        Some(stick) if area > 0.0 => 1.0 / (stick * area),
+        _ => 0.0,
+    };
+    Bond::giving([normal, tangential])
+}
+
+/// Refuses laws by area at a node that has none.
+fn check_area(
+    spec: &Spec,
+    names: &Names,
+    group: &SlaveSpec,
+    friction: &FrictionSpec,
+    slave: &Contact,
+) -> Result<(), Fault> {
+    let wants = match (group.law, group.stick, friction.adhesion != 0.0) {
+        _ if slave.area.is_some() => return Ok(()),
+        (ContactLaw::Penalty { .. }, ..) => "a penalty stiffness is a pressure by length",
+        (_, Some(_), _) => "a stick stiffness is a stress by length",
+        (_, _, true) => "an adhesion is a force by area",
+        _ => return Ok(()),
+    };
+    let message = format!(
+        "{wants}, and node {:?} has no tributary area, since it is on no side of a beam or of a body of elements; give the pair an `area`, that of each of its nodes",
+        names.nodes[slave.node].name
+    );
+    Err(Fault::new(slave_path(spec, names, slave.node), message))
+}
