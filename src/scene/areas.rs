@@ -78,15 +78,19 @@ fn widths(solid: &Solid) -> Vec<f64> {
     let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
     for (k, element) in solid.elements.iter().enumerate() {
         element
+            .nodes
             .iter()
             .for_each(|&node| around.entry(node).or_default().push(k));
     }
     let behind = |edge: &Vec<usize>| {
-        let all = |k: &&usize| edge.iter().all(|node| solid.elements[**k].contains(node));
+        let all = |k: &&usize| {
+            edge.iter()
+                .all(|node| solid.elements[**k].nodes.contains(node))
+        };
         around.get(&edge[0])?.iter().find(all).copied()
     };
     let width = |edge| {
-        let material = behind(edge).map_or(0, |k| solid.material_of[k]);
+        let material = behind(edge).map_or(0, |k| solid.elements[k].material);
         solid.materials[material].thickness
     };
     solid.edges.iter().map(width).collect()

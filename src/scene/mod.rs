@@ -4,7 +4,7 @@
 //!   is wrong.
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
-//! - [`siconos`]: interface problems of another code.
+//! - `deck`: decks of CalculiX and Abaqus; [`siconos`]: interface problems of another code.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod base;
@@ -21,6 +21,7 @@ mod areas;
 mod blocks;
 mod compile;
 mod curves;
+mod deck;
 mod geometry;
 
 use crate::format::paths::Override;
@@ -42,6 +43,8 @@ pub struct Scene {
     pub spec: Spec,
     /// What the solver uses.
     pub model: Model,
+    /// What was passed over in the file, or read as something else: place and words.
+    pub remarks: Vec<String>,
     names: Names,
     overrides: Vec<Override>,
 }
@@ -76,6 +79,9 @@ impl Scene {
         text: &str,
         overrides: &[(String, String)],
     ) -> Result<Scene, SceneError> {
+        if deck::is_one(text) {
+            return Scene::from_deck(name, text, overrides);
+        }
         if siconos::is_one(text) {
             return Scene::from_siconos(name, text, overrides);
         }
@@ -94,6 +100,32 @@ impl Scene {
         }
         let spec = read::spec(name, text)?;
         Scene::assemble(name, text, spec, overrides, Vec::new())
+    }
+
+    fn from_deck(
+        name: &str,
+        text: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Scene, SceneError> {
+        let read = deck::read(name, text)?;
+        let place = |overrides: &[Override], fault: Fault| {
+            let own = read
+                .origin
+                .of(&fault.path)
+                .map(|(file, at)| (file.to_owned(), at));
+            match (placed(name, "", overrides, fault), own) {
+                (fault, Some((file, at))) if fault.set.is_none() => SceneError {
+                    file,
+                    at: Some(at),
+                    ..fault
+                },
+                (fault, _) => fault,
+            }
+        };
+        let (spec, overrides) = changed(name, read.spec.clone(), overrides, Vec::new())?;
+        let mut scene = Scene::compiled(name, "", spec, overrides, place)?;
+        scene.remarks = read.remarks;
+        Ok(scene)
     }
 
     fn from_siconos(
@@ -144,6 +176,7 @@ impl Scene {
             text: String::new(),
             spec,
             model,
+            remarks: Vec::new(),
             names,
             overrides: Vec::new(),
         })
@@ -155,13 +188,17 @@ impl Scene {
     /// If there is no such path, or the value is unsound there.
     pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
         let change = [(path.to_owned(), value.to_owned())];
-        Scene::assemble(
+        let scene = Scene::assemble(
             &self.name,
             &self.text,
             self.spec.clone(),
             &change,
             self.overrides.clone(),
-        )
+        )?;
+        Ok(Scene {
+            remarks: self.remarks.clone(),
+            ..scene
+        })
     }
 
     /// The number of a node by any of its names: `ID.3`, `ID.end`, `ID@0.5`, or the id of a single node.
@@ -209,6 +246,7 @@ impl Scene {
             text: text.to_owned(),
             spec,
             model,
+            remarks: Vec::new(),
             names,
             overrides,
         })

@@ -150,7 +150,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("NODE OUTPUT", Ignored(OUTPUT)),
     (
         "NODE PRINT",
-        Read("U of a node, or of a set of at most 4, as monitors"),
+        Read("U of a set of at most 20 nodes, as monitors"),
     ),
     ("NSET", Read("")),
     ("ORIENTATION", Refused(FRAMES)),
