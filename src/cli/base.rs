@@ -15,7 +15,7 @@ use std::process::ExitCode;
 pub enum Exit {
     /// Converged, equal, or sound.
     Good = 0,
-    /// Snapshots differ.
+    /// Snapshots differ, or benchmarks do not hold.
     Differ = 1,
     /// Bad input or usage.
     Bad = 2,

@@ -5,6 +5,7 @@
 
 mod audit;
 mod base;
+mod benchmarks;
 mod chart;
 mod check;
 mod core;

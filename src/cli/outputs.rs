@@ -35,6 +35,11 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
+    /// Whether a picture is wanted.
+    pub fn draws(&self) -> bool {
+        self.svg.is_some() || self.png.is_some()
+    }
+
     /// Runs at the same time.
     pub fn jobs(&self) -> NonZeroUsize {
         let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
@@ -97,22 +102,31 @@ impl Outputs {
     /// # Errors
     /// If it cannot be written or drawn.
     pub fn write(
-        self,
+        mut self,
         table: &str,
         svg: impl FnOnce() -> Result<String, PlotError>,
         png: impl FnOnce() -> Result<Vec<u8>, PlotError>,
     ) -> Result<(), Error> {
         // The numbers first: they are kept even if a figure cannot be drawn.
-        if let Some(mut sink) = self.csv {
-            sink.send(table)?;
-            sink.finish()?;
-        }
+        self.write_table(table)?;
         let undrawn = |e: PlotError| Error::Usage(e.to_string());
         if let Some(output) = self.svg {
             write(output, svg().map_err(undrawn)?.as_bytes())?;
         }
         if let Some(output) = self.png {
             write(output, &png().map_err(undrawn)?)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the table, where that is wanted.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write_table(&mut self, table: &str) -> Result<(), Error> {
+        if let Some(mut sink) = self.csv.take() {
+            sink.send(table)?;
+            sink.finish()?;
         }
         Ok(())
     }

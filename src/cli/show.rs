@@ -4,7 +4,7 @@ use super::base::{Error, Exit, say, tell};
 use crate::format::error::did_you_mean;
 use crate::outside::files;
 use crate::scene::builtin;
-use crate::study::{builtin as studies, chart_file};
+use crate::study::{benchmarks, builtin as studies, chart_file};
 use crate::teach;
 use std::path::PathBuf;
 
@@ -41,11 +41,13 @@ fn find(name: &str, chart: bool) -> Result<&'static str, String> {
         false => builtin::find(name)
             .map(|scene| scene.text)
             .or_else(|| studies::find(name).map(|study| study.text))
+            .or_else(|| (name == benchmarks::BUILTIN).then_some(benchmarks::BUILTIN_TEXT))
             .or_else(|| teach::find(name).map(|lesson| lesson.text)),
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);
         let others = studies::list().iter().map(|study| study.name);
+        let others = others.chain([benchmarks::BUILTIN]);
         let lessons = teach::list().iter().map(|lesson| lesson.name);
         let (what, near) = match chart {
             true => ("chart", did_you_mean(name, chart_file::names())),

@@ -1,9 +1,11 @@
 //! `stickslip study`: a scene with many settings, as a table and as a figure.
 
 use super::base::{Error, Exit, SetArgs, tell};
+use super::benchmarks;
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
 use crate::explain::number::six;
+use crate::study::benchmarks::Benchmarks;
 use crate::study::figure;
 use crate::study::{self, AxisQuantity, CaseEnd, Plan, Run, Study, Vary, Watch, csv, plot};
 
@@ -16,6 +18,10 @@ A study file is RON, (title: \"...\", scene: \"...\", vary: [(\"history.incremen
 set: [...], x: \"u_x\", y: \"load\", about: \"...\"). Built in are fig-08-increment, fig-09-majors,
 fig-10-minors, fig-11-roles (the paper's), geometry-01, geometry-02, limit-point-02, residual-methods,
 t-max-friction and t-max-osc.
+
+benchmarks is a list of scenes whose answers are known from elsewhere; a file of such a list is RON,
+(title: \"...\", benchmarks: [(scene: \"...\", what: \"...\", of: \"MONITOR\", source: \"...\", value: 1.0,
+within: 0.01)]). Exit code 1 where one does not hold.
 
 Runs that fail are results: the exit code is 0 if the study was done, 2 for bad input or usage,
 and 130 if it was interrupted; files are whole then and have what was done.")]
@@ -39,6 +45,10 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    if let Some(list) = Benchmarks::open(&args.study)? {
+        refuse_changes(args)?;
+        return benchmarks::main(&list, &args.out);
+    }
     let interrupt = Interrupt::listen();
     let plan = plan(args)?;
     // Before the runs, so that nobody waits for a result that then has no place to go.
@@ -64,6 +74,23 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         true => Exit::Good,
         false => Exit::Interrupted,
     })
+}
+
+/// Benchmarks are run as they stand: what is changed has no value elsewhere.
+fn refuse_changes(args: &Args) -> Result<(), Error> {
+    let given = [
+        ("--vary", !args.vary.is_empty()),
+        ("--set", !args.set.set.is_empty()),
+        ("--x", args.x.is_some()),
+        ("--y", args.y.is_some()),
+    ];
+    match given.iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((option, _)) => Err(Error::Usage(format!(
+            "{}: benchmarks are run as they stand; {option} is for studies and scenes",
+            args.study
+        ))),
+    }
 }
 
 fn plan(args: &Args) -> Result<Plan, Error> {

@@ -75,13 +75,14 @@ impl FileKind {
         let whole = locate(text, &Path::default());
         let has = |field: &str| locate(text, &Path(vec![Step::from(field)])) != whole;
         let all = |fields: &[&str]| fields.iter().all(|field| has(field));
-        let kinds: [(&[&str], FileKind); 6] = [
+        let kinds: [(&[&str], FileKind); 7] = [
             (&["format", "began", "scene"], FileKind::Journal),
             (&["format", "state", "scene"], FileKind::Snapshot),
             (&["scene", "steps"], FileKind::Lesson),
             (&["scene", "series"], FileKind::Chart),
             (&["nodes", "bodies"], FileKind::Scene),
             (&["vary"], FileKind::Study),
+            (&["benchmarks"], FileKind::Study),
         ];
         let found = kinds.into_iter().find(|(fields, _)| all(fields));
         let found = found.map(|(_, kind)| kind);
@@ -125,6 +126,12 @@ impl FileKind {
     }
 }
 
+/// Whether the value in RON that a text holds has a field; the text need not be sound.
+pub(crate) fn has_field(text: &str, field: &str) -> bool {
+    let whole = || locate(text, &Path::default());
+    too_deep(text).is_none() && locate(text, &Path(vec![Step::from(field)])) != whole()
+}
+
 /// The message where a text is of another kind than `wanted`: ``this is a snapshot; `stickslip replay FILE` reads it``.
 pub fn mistaken(file: &str, text: &str, wanted: FileKind) -> Option<String> {
     let kind = FileKind::of(text).filter(|kind| *kind != wanted)?;
@@ -156,6 +163,7 @@ mod tests {
             ),
             ("(title: \"a\", scene: \"b\", vary: [])", FileKind::Study),
             ("(title: \"a\", scenes: [\"b\"])", FileKind::Study),
+            ("(title: \"a\", benchmarks: [])", FileKind::Study),
             ("(scene: \"b\", series: [])", FileKind::Chart),
             ("(title: \"a\", nodes: [], bodies: [])", FileKind::Scene),
             ("Contacts(title: \"a\")", FileKind::Scene),

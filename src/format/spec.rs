@@ -656,6 +656,11 @@ described! {
             /// Along which degree of freedom.
             component: Component,
         },
+        /// How many slave nodes have a mode.
+        Modes {
+            /// The mode: free, sliding or fixed.
+            mode: Mode,
+        },
         /// How far one slave node that sticks has gone along its surface from the point where it stuck (length, with the
         /// sign of slip; 0 where it slides or is free), or that of all which has gone furthest.
         Drift {

@@ -1,10 +1,8 @@
 //! Groups of unknowns, and which of them see each other: the graph that an order of elimination is found in.
 
 use super::check::SolveError;
-use super::pattern::Pattern;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
+use super::order::least_fill;
+use super::pattern::{Pattern, lists};
 use std::collections::HashMap;
 
 /// Marks what has no number yet.
@@ -108,33 +106,7 @@ impl Graph {
             seen[start..].sort_unstable();
             starts.push(seen.len());
         }
-        let count = groups.len();
-        let view = SymbolicSparseColMatRef::new_checked(count, count, &starts, None, &seen);
-        let (mut order, mut place) = (vec![0; count], vec![0; count]);
-        let request = amd::order_scratch::<usize>(count, seen.len());
-        let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
-        let stack = MemStack::new(&mut memory);
-        amd::order(&mut order, &mut place, view, Default::default(), stack)
-            .map_err(|_| SolveError::OutOfMemory)?;
+        let order = least_fill(&starts, &seen)?;
         Ok(order.iter().map(|&k| groups[k]).collect())
     }
-}
-
-/// Lists of values by number, one after the other, each in the order in which they come; and where each list starts.
-pub(super) fn lists<P: Iterator<Item = (usize, usize)>>(
-    count: usize,
-    pairs: impl Fn() -> P,
-) -> (Vec<usize>, Vec<usize>) {
-    let mut starts = vec![0; count + 1];
-    pairs().for_each(|(number, _)| starts[number + 1] += 1);
-    for number in 0..count {
-        starts[number + 1] += starts[number];
-    }
-    let mut next = starts.clone();
-    let mut values = vec![0; starts[count]];
-    for (number, value) in pairs() {
-        values[next[number]] = value;
-        next[number] += 1;
-    }
-    (starts, values)
 }

@@ -28,19 +28,20 @@ pub(super) fn order(pattern: &Pattern, last: &[usize]) -> Result<Vec<usize>, Sol
         rows.extend(entries.filter(|&row| row != LAST));
         starts.push(rows.len());
     }
-    let m = inner.len();
-    let graph = SymbolicSparseColMatRef::new_checked(m, m, &starts, None, &rows);
-    let (mut forward, mut inverse) = (vec![0; m], vec![0; m]);
-    let request = amd::order_scratch::<usize>(m, rows.len());
-    let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
-    amd::order(
-        &mut forward,
-        &mut inverse,
-        graph,
-        Default::default(),
-        MemStack::new(&mut memory),
-    )
-    .map_err(|_| SolveError::OutOfMemory)?;
+    let forward = least_fill(&starts, &rows)?;
     let reduced = forward.iter().map(|&k| inner[k]);
     Ok(reduced.chain(last.iter().copied()).collect())
+}
+
+/// An order with little fill of a symmetric graph, by the neighbours of each of its places and where they start.
+pub(super) fn least_fill(starts: &[usize], neighbours: &[usize]) -> Result<Vec<usize>, SolveError> {
+    let count = starts.len() - 1;
+    let graph = SymbolicSparseColMatRef::new_checked(count, count, starts, None, neighbours);
+    let (mut order, mut place) = (vec![0; count], vec![0; count]);
+    let request = amd::order_scratch::<usize>(count, neighbours.len());
+    let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
+    let stack = MemStack::new(&mut memory);
+    amd::order(&mut order, &mut place, graph, Default::default(), stack)
+        .map_err(|_| SolveError::OutOfMemory)?;
+    Ok(order)
 }

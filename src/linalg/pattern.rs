@@ -82,10 +82,11 @@ impl Pattern {
         let entries = || self.iter().map(|(i, j)| (place[i], place[j]));
         let lower = || entries().map(|(i, j)| (i.max(j), i.min(j)));
         // By rows, and then by columns: rows ascend in each.
-        let (_, by_rows) = sorted(self.n, lower().map(|(row, _)| row).enumerate());
+        let rows = || lower().map(|(row, _)| row).zip(0..);
+        let (_, by_rows) = lists(self.n, rows);
         let places: Vec<(usize, usize)> = lower().collect();
-        let columns = by_rows.iter().map(|&entry| (entry, places[entry].1));
-        let (col_ptr, from) = sorted(self.n, columns);
+        let columns = || by_rows.iter().map(|&entry| (places[entry].1, entry));
+        let (col_ptr, from) = lists(self.n, columns);
         let pattern = Pattern {
             n: self.n,
             col_ptr,
@@ -96,8 +97,8 @@ impl Pattern {
 
     /// The pattern of the transposed matrix.
     pub(super) fn transposed(&self) -> Pattern {
-        let rows = self.iter().map(|(row, _)| row).enumerate();
-        let (col_ptr, from) = sorted(self.n, rows);
+        let rows = || self.iter().map(|(row, _)| row).zip(0..);
+        let (col_ptr, from) = lists(self.n, rows);
         let columns: Vec<usize> = self.iter().map(|(_, column)| column).collect();
         Pattern {
             n: self.n,
@@ -181,28 +182,23 @@ impl Pattern {
     }
 }
 
-/// Entries with a number below n each, sorted by it; those of the same number stay in their order. Where each number begins, and
-/// the entries.
-fn sorted(
-    n: usize,
-    entries: impl Iterator<Item = (usize, usize)> + Clone,
+/// Lists of values by number, one after the other, each in the order in which they come; and where each list starts.
+pub(super) fn lists<P: Iterator<Item = (usize, usize)>>(
+    count: usize,
+    pairs: impl Fn() -> P,
 ) -> (Vec<usize>, Vec<usize>) {
-    let mut starts = vec![0; n + 1];
-    let mut count = 0;
-    for (_, number) in entries.clone() {
-        starts[number + 1] += 1;
-        count += 1;
-    }
-    for number in 0..n {
+    let mut starts = vec![0; count + 1];
+    pairs().for_each(|(number, _)| starts[number + 1] += 1);
+    for number in 0..count {
         starts[number + 1] += starts[number];
     }
     let mut next = starts.clone();
-    let mut sorted = vec![0; count];
-    for (entry, number) in entries {
-        sorted[next[number]] = entry;
+    let mut values = vec![0; starts[count]];
+    for (number, value) in pairs() {
+        values[next[number]] = value;
         next[number] += 1;
     }
-    (starts, sorted)
+    (starts, values)
 }
 
 /// The pattern as faer takes it.

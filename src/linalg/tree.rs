@@ -13,8 +13,8 @@
 
 use super::check::SolveError;
 use super::dissection;
-use super::graph::{Graph, NONE, lists};
-use super::pattern::Pattern;
+use super::graph::{Graph, NONE};
+use super::pattern::{Pattern, lists};
 
 /// A child is joined where the two eliminate at most so many unknowns, and not more than this part of their front is zero.
 const JOINED: [(usize, f64); 4] = [(8, 0.8), (24, 0.4), (64, 0.15), (usize::MAX, 0.03)];

@@ -9,14 +9,19 @@ pub struct Builtin {
     pub text: &'static str,
 }
 
+/// A scene by its name, and its folder below `problems`.
 macro_rules! scenes {
-    ($($name:literal),* $(,)?) => {
-        &[$(Builtin { name: $name, text: include_str!(concat!("../../problems/", $name, ".ron")) }),*]
+    ($($folder:literal: $($name:literal),+;)+) => {
+        &[$($(Builtin {
+            name: $name,
+            text: include_str!(concat!("../../problems/", $folder, $name, ".ron")),
+        }),+),+]
     };
 }
 
 /// In the order in which they are offered.
 const SCENES: &[Builtin] = scenes![
+    "":
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
     "02-two-cantilevers-rough",
@@ -44,7 +49,12 @@ const SCENES: &[Builtin] = scenes![
     "osc-snap",
     "osc-block-free",
     "osc-block-slide",
-    "osc-p5-slow",
+    "osc-p5-slow";
+    "benchmarks/":
+    "bench-wedge",
+    "bench-pad",
+    "bench-belt",
+    "bench-ssnv128";
 ];
 
 /// All built-in scenes, in the order in which they are offered.

@@ -144,7 +144,7 @@ impl Ended {
         let differences = reference
             .monitors
             .iter()
-            .filter(|m| m.kind != MonitorKind::Drift)
+            .filter(|m| m.kind.is_compared())
             .map(|theirs| {
                 let ours = self.monitors.iter().find(|m| m.name == theirs.name);
                 let difference = ours.map_or(f64::INFINITY, |ours| {
@@ -197,7 +197,7 @@ pub fn run(
             return Ok(Some(ended.value.clone()));
         }
         let model = Arc::new(case.model()?);
-        let ended = Ended::of(&one(case, model.clone(), &spare, watch), &model);
+        let ended = Ended::of(&one(case.increments, model.clone(), &spare, watch), &model);
         if let (Some((log, _)), Some(ended)) = (&opened, &ended) {
             log.keep(&key, ended)?;
         }

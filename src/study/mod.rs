@@ -7,6 +7,8 @@
 //! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG;
 //!   [`bitmap`]: the letters of the latter; [`placing`]: places for labels; [`log_axis`]: an axis in powers of ten.
 //!
+//! Values that are known from elsewhere: [`benchmarks`].
+//!
 //! Stability maps:
 //!
 //! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, judged; [`survey`]: all of them.
@@ -21,6 +23,7 @@
 //!
 //! Nothing here knows a command line.
 
+pub mod benchmarks;
 pub mod bitmap;
 pub mod builtin;
 pub mod chart_file;

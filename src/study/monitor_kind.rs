@@ -13,8 +13,17 @@ pub enum MonitorKind {
     Rotation,
     /// A force.
     Force,
+    /// A number of nodes, which is not compared.
+    Count,
     /// A length that is a measure of error, and is not compared.
     Drift,
+}
+
+impl MonitorKind {
+    /// Whether runs are told apart by it.
+    pub fn is_compared(self) -> bool {
+        !matches!(self, MonitorKind::Drift | MonitorKind::Count)
+    }
 }
 
 /// What a monitor is.
@@ -29,6 +38,7 @@ pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
             }
         }
         Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
+        Watched::Modes { .. } => MonitorKind::Count,
         Watched::Drift { .. } => MonitorKind::Drift,
         Watched::Arc => MonitorKind::Length,
     }

@@ -260,7 +260,7 @@ fn measured(
     let (mut times, mut last) = (Vec::new(), None);
     while times.len() < repeats.max(1) {
         let start = thread_seconds();
-        let run = one(case, model.clone(), &Spare::default(), &quiet);
+        let run = one(case.increments, model.clone(), &Spare::default(), &quiet);
         times.push(thread_seconds() - start);
         if matches!(run.end, CaseEnd::Interrupted | CaseEnd::NotRun) {
             return Ok(None);
@@ -340,7 +340,12 @@ fn truth(
                 .cases
                 .first()
                 .ok_or_else(|| wrong("nothing was run".to_owned()))?;
-            let run = one(case, Arc::new(case.model()?), &Spare::default(), watch);
+            let run = one(
+                case.increments,
+                Arc::new(case.model()?),
+                &Spare::default(),
+                watch,
+            );
             let names: Vec<String> = settings
                 .iter()
                 .map(|(path, value)| format!("{path}={value}"))

@@ -1,7 +1,7 @@
 //! The cases of a plan, side by side: each on one thread, so that its bits are those of a run alone.
 
 use super::log::LogError;
-use super::plan::{Case, Plan};
+use super::plan::Plan;
 use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
 use super::verdict::RunVerdict;
@@ -72,7 +72,7 @@ pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, R
         // One by one: cases differ much in what they cost, and the first ones are to be done first.
         let cases = plan.cases.par_iter().with_max_len(1);
         cases
-            .map(|case| Ok(one(case, Arc::new(case.model()?), &spare, watch)))
+            .map(|case| Ok(one(case.increments, Arc::new(case.model()?), &spare, watch)))
             .collect()
     });
     Ok(runs?)
@@ -89,8 +89,8 @@ pub(super) fn pool(
         .build()
 }
 
-/// Runs one case, whose model this is, to the end of its history, to its first failure, or to where it is stopped.
-pub fn one(case: &Case, model: Arc<Model>, spare: &Spare, watch: &Watch) -> Run {
+/// Runs a model to the end of its history, which has so many increments, to its first failure, or to where it is stopped.
+pub fn one(increments: u64, model: Arc<Model>, spare: &Spare, watch: &Watch) -> Run {
     let monitors = model.monitors.iter().map(|m| m.name.clone()).collect();
     let mut stepper = spare.take(model);
     let mut run = Run {
@@ -139,7 +139,7 @@ pub fn one(case: &Case, model: Arc<Model>, spare: &Spare, watch: &Watch) -> Run 
         RunEnd::Finished | RunEnd::Spent => CaseEnd::Finished,
         RunEnd::Stopped(never) => match never {},
     };
-    (watch.done)(case.increments.saturating_sub(run.rows.len() as u64));
+    (watch.done)(increments.saturating_sub(run.rows.len() as u64));
     spare.give(stepper);
     run
 }

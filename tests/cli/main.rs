@@ -9,6 +9,8 @@ mod run;
 mod study;
 // Stability maps count honestly, and a kill loses nothing.
 mod map;
+// What is known from elsewhere is found.
+mod benchmarks;
 // Work-precision charts draw what they measured, failures too.
 mod chart;
 // One thread or two, one job or two: the same bytes.

@@ -12,7 +12,7 @@ use stickslip::action::{self, Colours};
 use stickslip::manual::render::{WIDTH, render};
 use stickslip::manual::{self, PAGES};
 use stickslip::scene::{Scene, builtin};
-use stickslip::study::{builtin as studies, chart_file};
+use stickslip::study::{benchmarks, builtin as studies, chart_file};
 use stickslip::teach::play::play;
 use stickslip::teach::{self, Lesson};
 use stickslip::tui::{Debugger, theme::Theme};
@@ -300,12 +300,20 @@ fn a_reader_that_has_seen_enough_of_a_page_is_no_error() {
 #[test]
 fn show_prints_what_is_built_in_byte_for_byte() {
     for scene in builtin::list() {
-        let file = format!("{}/problems/{}.ron", env!("CARGO_MANIFEST_DIR"), scene.name);
+        let folder = match scene.name.starts_with("bench-") {
+            true => "problems/benchmarks",
+            false => "problems",
+        };
+        let file = format!("{}/{folder}/{}.ron", env!("CARGO_MANIFEST_DIR"), scene.name);
         assert_eq!(
             stickslip(&["show", scene.name]).stdout,
             fs::read(file).unwrap()
         );
     }
+    assert_eq!(
+        out(&stickslip(&["show", benchmarks::BUILTIN])),
+        benchmarks::BUILTIN_TEXT
+    );
     let study = studies::list()[0];
     assert_eq!(out(&stickslip(&["show", study.name])), study.text);
     let lesson = teach::list()[0];

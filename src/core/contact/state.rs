@@ -109,3 +109,18 @@ impl ContactState {
         [c * self.f_n - s * self.f_t, s * self.f_n + c * self.f_t]
     }
 }
+
+/// How many of these contacts, by number, have a mode.
+pub fn in_mode(contacts: &[ContactState], of: &[usize], mode: Mode) -> f64 {
+    let has = |contact: &&usize| contacts[**contact].mode == mode;
+    of.iter().filter(has).count() as f64
+}
+
+/// The largest drift of these contacts, by number, with its sign.
+pub fn largest_drift(contacts: &[ContactState], of: &[usize]) -> f64 {
+    let drifts = of.iter().map(|&contact| contacts[contact].drift);
+    drifts.fold(
+        0.0,
+        |most: f64, d| if d.abs() > most.abs() { d } else { most },
+    )
+}

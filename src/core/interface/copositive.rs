@@ -88,29 +88,25 @@ impl Copositive {
         };
         // (I + R / k) F − R v = start + (I + R / k) F_0, a column at a time.
         let columns = Columns { relation, force };
-        let of_force =
-            |j: usize, times: f64, column: &mut [f64]| columns.add_force(j, times, column);
-        let of_motion =
-            |j: usize, times: f64, column: &mut [f64]| columns.add_motion(j, times, column);
         let mut rhs = columns.start(rows);
         let mut basis = Vec::with_capacity(rows);
         let mut extra = count;
         for (place, node) in problem.nodes.iter().enumerate() {
             let (n, t) = (2 * place, 2 * place + 1);
-            of_force(n, node.state.f_n, &mut rhs);
-            of_force(t, node.state.f_t, &mut rhs);
+            columns.add_force(n, node.state.f_n, &mut rhs);
+            columns.add_force(t, node.state.f_t, &mut rhs);
             let first = path.owners.len();
             let presses = node.kinematics.filter(|over| over.moves[0]);
             if let Some(over) = presses {
-                of_motion(n, -(over.gap - node.prescribed[0]), &mut rhs);
-                path.add(place, FORCE, |column| of_force(n, force, column));
-                path.add(place, GAP, |column| of_motion(n, -length, column));
+                columns.add_motion(n, -(over.gap - node.prescribed[0]), &mut rhs);
+                path.add(place, FORCE, |column| columns.add_force(n, force, column));
+                path.add(place, GAP, |column| columns.add_motion(n, -length, column));
                 basis.push(first + GAP);
             } else {
-                basis.push(path.loose(place, |column| of_motion(n, length, column)));
+                basis.push(path.loose(place, |column| columns.add_motion(n, length, column)));
             }
             if !rough(place) {
-                basis.push(path.loose(place, |column| of_motion(t, length, column)));
+                basis.push(path.loose(place, |column| columns.add_motion(t, length, column)));
                 path.nodes.push(match presses {
                     Some(_) => Held::Smooth(first),
                     None => Held::No,
@@ -119,26 +115,26 @@ impl Copositive {
             }
             let (coefficient, cohesion) = (node.friction.coefficient(), node.friction.cohesion);
             let slipped = node.state.slipped(&problem.settings) + node.prescribed[1];
-            of_motion(t, slipped, &mut rhs);
+            columns.add_motion(t, slipped, &mut rhs);
             // slip = λ − (λ − slip); the two rows beside the node's own say that the two rests add up to 2 λ, and what room is.
             let (sum, room) = (extra, extra + 1);
             extra += 2;
             path.tableau.column(first + FORCE)[room] = -coefficient;
             path.add(place, PLUS, |column| {
-                of_force(t, force, column);
+                columns.add_force(t, force, column);
                 column[room] = 1.0;
             });
             path.add(place, PLUS_REST, |column| {
-                of_motion(t, -length, column);
+                columns.add_motion(t, -length, column);
                 column[sum] = 1.0;
             });
             path.add(place, MINUS, |column| {
-                of_force(t, -force, column);
+                columns.add_force(t, -force, column);
                 column[room] = 1.0;
             });
             path.add(place, MINUS_REST, |column| column[sum] = 1.0);
             path.add(place, SPEED, |column| {
-                of_motion(t, length, column);
+                columns.add_motion(t, length, column);
                 column[sum] = -2.0;
             });
             path.add(place, ROOM, |column| column[room] = 1.0);

@@ -85,54 +85,50 @@ impl Lemke {
         let (force, length) = (lemke.force, lemke.length);
         // (I + R / k) ΔF − R v = start, a column at a time.
         let columns = Columns { relation, force };
-        let of_force =
-            |j: usize, times: f64, column: &mut [f64]| columns.add_force(j, times, column);
-        let of_motion =
-            |j: usize, times: f64, column: &mut [f64]| columns.add_motion(j, times, column);
         let mut rhs = columns.start(rows);
         let mut extra = count;
         for (place, node) in problem.nodes.iter().enumerate() {
             let (n, t) = (2 * place, 2 * place + 1);
-            of_force(n, node.state.f_n, &mut rhs);
-            of_force(t, node.state.f_t, &mut rhs);
+            columns.add_force(n, node.state.f_n, &mut rhs);
+            columns.add_force(t, node.state.f_t, &mut rhs);
             if let Some(over) = node.kinematics.filter(|k| k.moves[0]) {
-                of_motion(n, -(over.gap - node.prescribed[0]), &mut rhs);
+                columns.add_motion(n, -(over.gap - node.prescribed[0]), &mut rhs);
                 lemke.add(place, VariableKind::Force, |column| {
-                    of_force(n, force, column)
+                    columns.add_force(n, force, column)
                 });
                 lemke.add(place, VariableKind::Gap, |column| {
-                    of_motion(n, -length, column)
+                    columns.add_motion(n, -length, column)
                 });
             } else {
                 lemke.add(place, VariableKind::Loose, |column| {
-                    of_motion(n, length, column)
+                    columns.add_motion(n, length, column)
                 });
             }
             let Some((coefficient, cohesion)) = lemke.friction[place] else {
                 lemke.add(place, VariableKind::Loose, |column| {
-                    of_motion(t, length, column)
+                    columns.add_motion(t, length, column)
                 });
                 continue;
             };
-            of_force(t, -cohesion, &mut rhs);
+            columns.add_force(t, -cohesion, &mut rhs);
             let slipped = node.state.slipped(&problem.settings) + node.prescribed[1];
-            of_motion(t, slipped, &mut rhs);
+            columns.add_motion(t, slipped, &mut rhs);
             // F_t = tan φ F_n + c − φ+ acts through the columns of F_n and φ+.
             let of_normal = lemke.tableau.column(lemke.variables.len() - 2);
-            of_force(t, coefficient * force, of_normal);
+            columns.add_force(t, coefficient * force, of_normal);
             of_normal[extra] = -2.0 * coefficient;
             lemke.add(place, VariableKind::Slack { plus: true }, |column| {
-                of_force(t, -force, column);
+                columns.add_force(t, -force, column);
                 column[extra] = 1.0;
             });
             lemke.add(place, VariableKind::Slip { plus: true }, |column| {
-                of_motion(t, length, column);
+                columns.add_motion(t, length, column);
             });
             lemke.add(place, VariableKind::Slack { plus: false }, |column| {
                 column[extra] = 1.0;
             });
             lemke.add(place, VariableKind::Slip { plus: false }, |column| {
-                of_motion(t, -length, column);
+                columns.add_motion(t, -length, column);
             });
             rhs[extra] = 2.0 * cohesion / force;
             extra += 1;

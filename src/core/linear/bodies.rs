@@ -4,7 +4,7 @@ use crate::contact::balance::{self, Forces};
 use crate::contact::judge::{Judge, Seen};
 use crate::contact::laws::{Law, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::state::ContactState;
+use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::contact::stick_point::pierced;
 use crate::contact::tracking::Ground;
 use crate::executor::{Executor, InTurn};
@@ -439,14 +439,8 @@ impl Source for Bodies {
                 let k = if *axis == Axis::X { 0 } else { 1 };
                 slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
             }
-            Watched::Drift { slaves } => slaves.iter().fold(0.0, |largest: f64, &s| {
-                let drift = at.contacts[s].drift;
-                if drift.abs() > largest.abs() {
-                    drift
-                } else {
-                    largest
-                }
-            }),
+            Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+            Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
             Watched::Arc => at.arc,
             // The load is that of the displacements at hand, not the one that is aimed at next.
             Watched::Reaction { dof } => {

@@ -11,7 +11,7 @@
 
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::state::ContactState;
+use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::interface::response::InterfaceResponse;
@@ -411,15 +411,10 @@ impl Source for ConstantSource {
                 };
                 slaves.iter().map(of).sum()
             }
-            Watched::Drift { slaves } => {
-                let drifts = slaves.iter().map(|&s| at.contacts[s].drift);
-                drifts.fold(
-                    0.0,
-                    |most: f64, d| if d.abs() > most.abs() { d } else { most },
-                )
-            }
-            // Nothing is supported here.
+            Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+            Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
             Watched::Arc => at.arc,
+            // Nothing is supported here.
             Watched::Reaction { .. } => 0.0,
         }
     }

@@ -247,21 +247,11 @@ impl System {
             self.stiffness.copy_from_slice(&self.plain);
         }
         if at.factored.is_some() {
-            let moved = Moved {
-                u: at.u,
-                step: &self.step,
-                before: at.accepted.u,
-                history: at.accepted.history,
-            };
+            let moved = moved(at.u, &self.step, at);
             self.assembly.resist(moved, &mut self.force, &mut self.size);
         }
         if self.stands {
-            let moved = Moved {
-                u: about,
-                step: &self.step,
-                before: at.accepted.u,
-                history: at.accepted.history,
-            };
+            let moved = moved(about, &self.step, at);
             self.assembly.couple(&model.dofs, moved, &mut self.coupling);
         }
     }
@@ -284,12 +274,7 @@ impl System {
 
     /// Finds anew what they do through the stiffness of the last linearisation.
     pub(super) fn couple(&mut self, model: &Model, at: &At<'_>) {
-        let moved = Moved {
-            u: at.factored.unwrap_or(at.u),
-            step: &self.step,
-            before: at.accepted.u,
-            history: at.accepted.history,
-        };
+        let moved = moved(at.factored.unwrap_or(at.u), &self.step, at);
         self.assembly.couple(&model.dofs, moved, &mut self.coupling);
         self.turn_into(model, at, Turned::Coupling);
     }
@@ -302,12 +287,7 @@ impl System {
             values: &mut self.stiffness,
             coupling: &mut self.coupling,
         };
-        let moved = Moved {
-            u: at.u,
-            step: &self.step,
-            before: at.accepted.u,
-            history: at.accepted.history,
-        };
+        let moved = moved(at.u, &self.step, at);
         self.assembly.assemble(&model.dofs, moved, out);
         self.done.assemblies += 1;
         self.drag(model, at);
@@ -563,6 +543,16 @@ impl System {
     /// Increment of a degree of freedom in the last solve.
     pub fn increment(&self, model: &Model, dof: usize) -> f64 {
         model.dofs.equation[dof].map_or(self.step[dof], |e| self.x[e])
+    }
+}
+
+/// Displacements `u` in the present increment, and what those that are prescribed do in it.
+fn moved<'a>(u: &'a [f64], step: &'a [f64], at: &At<'a>) -> Moved<'a> {
+    Moved {
+        u,
+        step,
+        before: at.accepted.u,
+        history: at.accepted.history,
     }
 }
 

@@ -114,6 +114,13 @@ pub enum Watched {
         /// Number of the degree of freedom.
         dof: usize,
     },
+    /// How many slaves have a mode.
+    Modes {
+        /// Slave numbers.
+        slaves: Vec<usize>,
+        /// The mode.
+        mode: Mode,
+    },
     /// Largest drift of slaves (by slave number).
     Drift {
         /// Slave numbers.

@@ -29,7 +29,11 @@ impl Stepper {
     /// where the limit of minor iterations was accepted.
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
         let held = self.hold();
-        let (asked, before) = (self.source.asked(), self.state.correction);
+        let before = self.state.correction;
+        let asked = match self.keeps_factors() {
+            true => self.source.asked(),
+            false => f64::INFINITY,
+        };
         if self.source.recover() == Solved::Not {
             let singular = self.explain();
             return self.fail(Failure::Singular(singular));
@@ -92,13 +96,18 @@ impl Stepper {
         Outcome::Major { after, settled }
     }
 
-    /// Lets the next major iteration go on with the stiffness in use, where the settings want that.
-    fn keep_factors(&mut self) {
+    /// Whether the settings want old factors kept where they serve. They serve where the load is given, and nothing is damped.
+    fn keeps_factors(&self) -> bool {
         let state = &self.state;
         let loaded = state.way.is_none() && state.motion.is_none();
-        if !loaded || state.controls.settings.factor == Refactor::Each {
+        loaded && state.controls.settings.factor == Refactor::Needed
+    }
+
+    /// Lets the next major iteration go on with the stiffness in use, where the settings want that.
+    fn keep_factors(&mut self) {
+        if !self.keeps_factors() {
             self.drop_factors();
-        } else if state.factored.is_none() {
+        } else if self.state.factored.is_none() {
             let mut about = self.room.take().unwrap_or_default();
             Arc::make_mut(&mut about).clone_from(&self.state.u);
             self.state.factored = Some(about);
@@ -156,10 +165,7 @@ impl Stepper {
     fn is_balanced(&self, after: &Norms) -> bool {
         let tolerance = self.state.controls.settings.tolerance;
         let exact = after.relative <= tolerance;
-        // Old factors come nearer step by step, so that small forces alone do not tell how far the displacements have still to go.
-        let near =
-            self.state.factored.is_none() || after.correction <= (tolerance / ENOUGH).max(STILL);
-        near && self.state.last_target == self.state.load_factor
+        self.state.last_target == self.state.load_factor
             && (exact || (after.relative <= after.limit && after.correction <= STILL))
             && after.interface <= after.limit.max(tolerance)
     }

@@ -120,6 +120,10 @@ fn watched(
             slaves: slave_numbers(here, node.as_deref(), "contact force", names, slaves)?,
             axis: *component,
         }),
+        Quantity::Modes { mode } => Ok(Watched::Modes {
+            slaves: slave_numbers(here, None, "mode", names, slaves)?,
+            mode: *mode,
+        }),
         Quantity::Drift { node } => Ok(Watched::Drift {
             slaves: slave_numbers(here, node.as_deref(), "drift", names, slaves)?,
         }),

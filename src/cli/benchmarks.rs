@@ -1,0 +1,76 @@
+//! `stickslip study benchmarks`: scenes whose answers are known from elsewhere ([`crate::study::benchmarks`]).
+
+use super::base::{Error, Exit, tell};
+use super::interrupt::Interrupt;
+use super::outputs::{OutputArgs, Outputs, aligned};
+use crate::explain::number::six;
+use crate::study::Watch;
+use crate::study::benchmarks::{Benchmark, Benchmarks, Compared, Standing, table};
+
+/// Runs a list, and tells how near each value came.
+pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
+    if out.draws() {
+        let name = &list.name;
+        let told = format!("{name}: a list of benchmarks has a table, and no figure to draw");
+        return Err(Error::Usage(told));
+    }
+    let interrupt = Interrupt::listen();
+    let mut outputs = Outputs::open(out)?;
+    let watch = Watch {
+        stop: &|| interrupt.came(),
+        done: &|_| {},
+    };
+    let compared = list.run(out.jobs(), &watch);
+    let compared = compared.map_err(|e| Error::Usage(e.to_string()))?;
+    outputs.write_table(&table(list, &compared))?;
+    if !out.quiet {
+        tell_table(list, &compared);
+    }
+    let all = compared.len();
+    let count = |is: fn(&Standing) -> bool| compared.iter().filter(|c| is(&c.standing)).count();
+    let good = count(|standing| *standing == Standing::Good);
+    tell(&format!("{}: {good} of {all} hold", list.name));
+    Ok(match count(|standing| *standing == Standing::NotRun) {
+        0 if good == all => Exit::Good,
+        0 => Exit::Differ,
+        _ => Exit::Interrupted,
+    })
+}
+
+fn tell_table(list: &Benchmarks, compared: &[Compared]) {
+    tell(&list.title);
+    if !list.about.is_empty() {
+        tell(&list.about);
+    }
+    let header = [
+        "benchmark",
+        "what",
+        "source's",
+        "ours",
+        "error",
+        "allowed",
+        "drift",
+        "standing",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    let pairs = list.list.iter().zip(compared);
+    rows.extend(pairs.map(|(benchmark, compared)| row(benchmark, compared)));
+    for line in aligned(&rows, 2) {
+        tell(&line);
+    }
+}
+
+fn row(benchmark: &Benchmark, compared: &Compared) -> Vec<String> {
+    let some = |value: Option<f64>, show: fn(f64) -> String| value.map_or_else(String::new, show);
+    let small = |value: f64| format!("{value:.1e}");
+    vec![
+        benchmark.case(),
+        benchmark.what.clone(),
+        six(benchmark.value),
+        some(compared.ours, six),
+        some(compared.error, small),
+        small(benchmark.within),
+        some(compared.drift, small),
+        compared.standing.to_string(),
+    ]
+}

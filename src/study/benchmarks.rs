@@ -1,0 +1,461 @@
+//! Benchmarks: scenes whose answers are known from elsewhere, and how far ours are from them.
+//!
+//! ```ron
+//! (
+//!     title: "What others have found",
+//!     benchmarks: [
+//!         (
+//!             scene: "bench-wedge", set: [("friction.angle", 11.3)],
+//!             what: "push over weight",
+//!             of: "push", over: "weight",                 // monitors of the scene; over is left out where nothing divides
+//!             at: 1.0,                                    // load factor; default: the end of the history
+//!             source: "NAFEMS CGS-4", value: 0.3061224, within: 1e-6,
+//!             own: 0.306122448979592, drift: 1e-9,
+//!         ),
+//!     ],
+//! )
+//! ```
+//!
+//! Two tolerances, both relative, as Code_Aster's tests have them: `within` says how near the source's value ours must be, which
+//! has the errors of both in it; `drift` how near our own last value, so that a change is seen that the source would forgive.
+//! What is 0 by the source is measured by `scale`.
+
+use super::read::Word;
+use super::result::{CaseEnd, Row, Run};
+use super::run::{RunError, Spare, Watch, one, pool};
+use crate::format::error::{SceneError, did_you_mean};
+use crate::format::read::{text as file_text, value as from_ron};
+use crate::scene::{Scene, increments};
+use rayon::prelude::*;
+use serde::Deserialize;
+use std::fmt;
+use std::fmt::Write;
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Name of the list that the program carries.
+pub const BUILTIN: &str = "benchmarks";
+/// Its text.
+pub const BUILTIN_TEXT: &str = include_str!("../../problems/benchmarks/table.ron");
+/// Default of [`Benchmark::drift`]: other processors round otherwise.
+const DRIFT: f64 = 1e-8;
+/// How near the end of an increment must be to a load factor that is named.
+const NEAR: f64 = 1e-9;
+
+/// A list of benchmarks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Benchmarks {
+    /// Path of the file, or [`BUILTIN`].
+    pub name: String,
+    /// What the list is called.
+    pub title: String,
+    /// What it shows, for the reader.
+    pub about: String,
+    /// The benchmarks, in the order of the table.
+    pub list: Vec<Benchmark>,
+}
+
+/// One value that is known from elsewhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Benchmark {
+    /// As [`Scene::open`] takes it.
+    pub scene: String,
+    /// What is set for it: path and value.
+    pub set: Vec<(String, String)>,
+    /// What is compared, in words.
+    pub what: String,
+    /// The monitor that has it.
+    pub of: String,
+    /// A monitor by which that is divided.
+    pub over: Option<String>,
+    /// Load factor at which it is taken. `None`: the last.
+    pub at: Option<f64>,
+    /// Where the value comes from.
+    pub source: String,
+    /// The source's value.
+    pub value: f64,
+    /// How near ours must be to it, relative to it.
+    pub within: f64,
+    /// What `within` and `drift` are relative to. `None`: the value itself.
+    pub scale: Option<f64>,
+    /// Our own value when it was last looked at. `None`: nobody has.
+    pub own: Option<f64>,
+    /// How near ours must be to that.
+    pub drift: f64,
+}
+
+/// What came of a benchmark.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Our value; none where the run did not come so far.
+    pub ours: Option<f64>,
+    /// (ours − source) / scale.
+    pub error: Option<f64>,
+    /// (ours − own) / scale.
+    pub drift: Option<f64>,
+    /// What that is worth.
+    pub standing: Standing,
+}
+
+/// What a comparison is worth.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Standing {
+    /// Near the source, and where it was.
+    Good,
+    /// Near the source, but not where it was.
+    Drifted,
+    /// Too far from the source.
+    Off,
+    /// There is no value, since the run failed; the reason in a word.
+    Failed(String),
+    /// Somebody wanted the run to end before.
+    NotRun,
+}
+
+impl fmt::Display for Standing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Standing::Good => f.write_str("good"),
+            Standing::Drifted => f.write_str("drifted"),
+            Standing::Off => f.write_str("off"),
+            Standing::Failed(why) => write!(f, "failed: {why}"),
+            Standing::NotRun => f.write_str("not run"),
+        }
+    }
+}
+
+impl Benchmarks {
+    /// Reads a list from a file or, by its name, the list that the program carries; `None` where a file is something else.
+    ///
+    /// # Errors
+    /// If it is such a list and cannot be read, with line and column.
+    pub fn open(name: &str) -> Result<Option<Benchmarks>, SceneError> {
+        let path = Path::new(name);
+        if !path.is_file() {
+            let own = name.strip_suffix(".ron").unwrap_or(name) == BUILTIN;
+            return own
+                .then(|| Benchmarks::from_text(BUILTIN, BUILTIN_TEXT))
+                .transpose();
+        }
+        let text = file_text(name)?;
+        if !is_list(&text) {
+            return Ok(None);
+        }
+        let mut list = Benchmarks::from_text(name, &text)?;
+        for benchmark in &mut list.list {
+            // Scenes that lie beside the file are found from everywhere.
+            let beside = path.with_file_name(&benchmark.scene);
+            if beside.is_file() {
+                benchmark.scene = beside.to_string_lossy().into_owned();
+            }
+        }
+        Ok(Some(list))
+    }
+
+    /// Reads a list; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// If it cannot be read, with line and column, or what it says makes no sense.
+    pub fn from_text(name: &str, text: &str) -> Result<Benchmarks, SceneError> {
+        let file: File = from_ron(name, text, "list of benchmarks")?;
+        let list: Vec<Benchmark> = file.benchmarks.into_iter().map(Benchmark::from).collect();
+        for (k, benchmark) in list.iter().enumerate() {
+            benchmark.check().map_err(|message| SceneError {
+                path: format!("benchmarks[{k}]"),
+                ..SceneError::whole(name, message)
+            })?;
+        }
+        Ok(Benchmarks {
+            name: name.to_owned(),
+            title: file.title,
+            about: file.about,
+            list,
+        })
+    }
+
+    /// Runs every scene, once for all benchmarks that want it with the same settings, and compares.
+    ///
+    /// # Errors
+    /// If a scene or a setting will not do, or a scene has no such monitor. What fails in a run is its result.
+    pub fn run(&self, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Compared>, RunError> {
+        let mut posed: Vec<(&Benchmark, Scene)> = Vec::new();
+        let mut of = Vec::with_capacity(self.list.len());
+        for benchmark in &self.list {
+            let same = |(other, _): &(&Benchmark, Scene)| {
+                (&other.scene, &other.set) == (&benchmark.scene, &benchmark.set)
+            };
+            let place = match posed.iter().position(same) {
+                Some(place) => place,
+                None => {
+                    posed.push((benchmark, Scene::open(&benchmark.scene, &benchmark.set)?));
+                    posed.len() - 1
+                }
+            };
+            self.check_monitors(benchmark, &posed[place].1)?;
+            of.push(place);
+        }
+        let spare = Spare::default();
+        let runs: Vec<Run> = pool(jobs, posed.len())?.install(|| {
+            let all = posed.par_iter().with_max_len(1);
+            all.map(|(_, scene)| {
+                let model = &scene.model;
+                let count = increments(&model.path, model.increment) as u64;
+                one(count, Arc::new(model.clone()), &spare, watch)
+            })
+            .collect()
+        });
+        let pairs = self.list.iter().zip(of);
+        Ok(pairs.map(|(b, place)| b.compare(&runs[place])).collect())
+    }
+
+    fn check_monitors(&self, benchmark: &Benchmark, scene: &Scene) -> Result<(), SceneError> {
+        let names = || scene.model.monitors.iter().map(|m| m.name.as_str());
+        for wanted in [Some(&benchmark.of), benchmark.over.as_ref()] {
+            let Some(wanted) = wanted.filter(|wanted| !names().any(|own| own == *wanted)) else {
+                continue;
+            };
+            return Err(SceneError::whole(
+                &self.name,
+                format!(
+                    "the scene {} has no monitor {wanted:?}{} (monitors: {})",
+                    benchmark.scene,
+                    did_you_mean(wanted, names()),
+                    names().collect::<Vec<_>>().join(", ")
+                ),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a text is such a list, sound or not.
+fn is_list(text: &str) -> bool {
+    crate::format::kind::has_field(text, "benchmarks")
+}
+
+impl Benchmark {
+    /// What its errors are relative to.
+    fn unit(&self) -> f64 {
+        self.scale.unwrap_or(self.value).abs()
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let numbers = [self.value, self.within, self.drift, self.unit()];
+        if numbers.iter().any(|x| !x.is_finite()) || self.own.is_some_and(|own| !own.is_finite()) {
+            return Err("every number must be finite".into());
+        }
+        if self.within <= 0.0 || self.drift <= 0.0 {
+            return Err("within and drift are tolerances; they must be above 0".into());
+        }
+        if self.unit() == 0.0 {
+            return Err("the value is 0; name a scale that its error is relative to".into());
+        }
+        Ok(())
+    }
+
+    /// Compares what a run came to.
+    fn compare(&self, run: &Run) -> Compared {
+        let none = |standing| Compared {
+            ours: None,
+            error: None,
+            drift: None,
+            standing,
+        };
+        let Some(ours) = self.row(run).and_then(|row| self.taken(run, row)) else {
+            return none(match &run.end {
+                CaseEnd::Failed(failed) => Standing::Failed(failed.reason.to_string()),
+                CaseEnd::Interrupted | CaseEnd::NotRun => Standing::NotRun,
+                CaseEnd::Finished => Standing::Failed("no increment ends at that load".into()),
+            });
+        };
+        let from = |value: f64| (ours - value) / self.unit();
+        let (error, drift) = (from(self.value), self.own.map(from));
+        let within = |off: f64, most: f64| off.abs() <= most;
+        let standing = match (within(error, self.within), drift) {
+            (false, _) => Standing::Off,
+            (true, Some(drift)) if !within(drift, self.drift) => Standing::Drifted,
+            (true, _) => Standing::Good,
+        };
+        Compared {
+            ours: Some(ours),
+            error: Some(error),
+            drift,
+            standing,
+        }
+    }
+
+    /// The increment at whose end the value is taken.
+    fn row<'a>(&self, run: &'a Run) -> Option<&'a Row> {
+        match self.at {
+            None => (run.end == CaseEnd::Finished).then(|| run.last()),
+            Some(at) => {
+                let near = |row: &&Row| (row.load - at).abs() <= NEAR * at.abs().max(1.0);
+                run.rows.iter().find(near)
+            }
+        }
+    }
+
+    fn taken(&self, run: &Run, row: &Row) -> Option<f64> {
+        let value = |name: &String| {
+            let k = run.monitors.iter().position(|own| own == name)?;
+            row.monitors.get(k).copied()
+        };
+        let of = value(&self.of)?;
+        Some(match &self.over {
+            Some(over) => of / value(over)?,
+            None => of,
+        })
+    }
+
+    /// Scene and settings in one text.
+    pub fn case(&self) -> String {
+        let settings = self
+            .set
+            .iter()
+            .map(|(path, value)| format!(" {path}={value}"));
+        self.scene.clone() + &settings.collect::<String>()
+    }
+}
+
+/// The comparison as CSV: `case,what,source,value,ours,error,within,own,drift,allowed,standing`. Floats read back to the same bits;
+/// what there is none of is empty.
+pub fn table(list: &Benchmarks, compared: &[Compared]) -> String {
+    use super::csv::field;
+    let mut text =
+        String::from("case,what,source,value,ours,error,within,own,drift,allowed,standing\n");
+    let some = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
+    for (benchmark, compared) in list.list.iter().zip(compared) {
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{},{},{},{:?},{},{},{:?},{},{},{:?},{}",
+            field(&benchmark.case()),
+            field(&benchmark.what),
+            field(&benchmark.source),
+            benchmark.value,
+            some(compared.ours),
+            some(compared.error),
+            benchmark.within,
+            some(benchmark.own),
+            some(compared.drift),
+            benchmark.drift,
+            field(&compared.standing.to_string()),
+        );
+    }
+    text
+}
+
+/// The file, field by field.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    title: String,
+    #[serde(default)]
+    about: String,
+    benchmarks: Vec<Entry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    scene: String,
+    #[serde(default)]
+    set: Vec<(String, Word)>,
+    what: String,
+    of: String,
+    #[serde(default)]
+    over: Option<String>,
+    #[serde(default)]
+    at: Option<f64>,
+    source: String,
+    value: f64,
+    within: f64,
+    #[serde(default)]
+    scale: Option<f64>,
+    #[serde(default)]
+    own: Option<f64>,
+    #[serde(default)]
+    drift: Option<f64>,
+}
+
+impl From<Entry> for Benchmark {
+    fn from(entry: Entry) -> Benchmark {
+        let set = entry.set.into_iter().map(|(path, word)| (path, word.0));
+        Benchmark {
+            scene: entry.scene,
+            set: set.collect(),
+            what: entry.what,
+            of: entry.of,
+            over: entry.over,
+            at: entry.at,
+            source: entry.source,
+            value: entry.value,
+            within: entry.within,
+            scale: entry.scale,
+            own: entry.own,
+            drift: entry.drift.unwrap_or(DRIFT),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn benchmark() -> Benchmark {
+        let text = "(title: \"t\", benchmarks: [(scene: \"a\", what: \"w\", of: \"m\", source: \"s\", value: 2.0, within: 0.1, \
+                    own: 2.1, drift: 1e-3)])";
+        Benchmarks::from_text("t", text).unwrap().list.remove(0)
+    }
+
+    fn run(value: f64) -> Run {
+        let row = |increment, load, value| Row {
+            increment,
+            load,
+            majors: 1,
+            minors: 1,
+            unsettled: 0,
+            jumped: false,
+            monitors: vec![value],
+        };
+        Run {
+            monitors: vec!["m".into()],
+            start: row(0, 0.0, 0.0),
+            rows: vec![row(1, 0.5, 7.0), row(2, 1.0, value)],
+            begun: 2,
+            factorizations: 2,
+            end: CaseEnd::Finished,
+        }
+    }
+
+    #[test]
+    fn a_value_is_off_drifted_or_good() {
+        let standing = |value| benchmark().compare(&run(value)).standing;
+        assert_eq!(standing(2.1), Standing::Good);
+        assert_eq!(standing(2.15), Standing::Drifted);
+        assert_eq!(standing(2.3), Standing::Off);
+        assert_eq!(standing(f64::NAN), Standing::Off);
+    }
+
+    #[test]
+    fn a_value_is_taken_where_it_is_asked_for() {
+        let mut at = benchmark();
+        at.at = Some(0.5);
+        assert_eq!(at.compare(&run(2.0)).ours, Some(7.0));
+        at.at = Some(0.6);
+        let missing = at.compare(&run(2.0)).standing;
+        assert!(matches!(missing, Standing::Failed(_)), "{missing}");
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_refused() {
+        for wrong in ["value: 0.0, within: 0.1", "value: 1.0, within: 0.0"] {
+            let text = format!(
+                "(title: \"t\", benchmarks: [(scene: \"a\", what: \"w\", of: \"m\", source: \"s\", {wrong})])"
+            );
+            let error = Benchmarks::from_text("t", &text).unwrap_err().to_string();
+            assert!(error.starts_with("t: benchmarks[0]: "), "{error}");
+        }
+    }
+}
