@@ -19,6 +19,8 @@ impl Made<'_> {
     /// The mesh, its bodies and their materials.
     pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), Fault> {
         let section_of = self.sections()?;
+        let material = |&section: &usize| self.deck.sections[section].material;
+        self.material_of = section_of.iter().map(material).collect();
         let parts = self.parts(&section_of);
         let cells = self.solids(&parts, nlgeom)?;
         if cells.is_empty() {
@@ -101,6 +103,9 @@ impl Made<'_> {
             let name = self.free.take(&deck.element_sets[section.set].name);
             self.origin
                 .note(at!["bodies", self.spec.bodies.len()], section.place);
+            for &element in elements {
+                self.body_of[element] = Some(self.spec.bodies.len());
+            }
             self.spec.bodies.push(BodySpec::Solid {
                 id: name.clone(),
                 mesh: format!("{MESH}.{name}"),

@@ -106,21 +106,11 @@ impl Made<'_> {
                 continue;
             }
             let surface = &deck.surfaces[touching.master];
-            let ids = self.pieces(touching.master).into_iter().map(|sides| {
-                let id = self.free.take(&surface.name);
-                let labels = |side: Vec<usize>| {
-                    side.into_iter()
-                        .map(|n| deck.nodes[n].label as usize)
-                        .collect()
-                };
-                if let Some(Nodes::Given { sides: sets, .. }) = self.spec.nodes.first_mut() {
-                    self.origin
-                        .note(at!["nodes", 0, "sides", sets.len()], surface.place);
-                    sets.push(SideSet {
-                        name: id.clone(),
-                        sides: sides.into_iter().map(labels).collect(),
-                    });
-                }
+            let Faces::Elements(sides) = &surface.of else {
+                continue;
+            };
+            let ids: Vec<String> = self.lines(sides, &surface.name, surface.place);
+            for id in &ids {
                 self.origin
                     .note(at!["surfaces", self.spec.surfaces.len()], surface.place);
                 self.spec.surfaces.push(SurfaceSpec {
@@ -130,33 +120,47 @@ impl Made<'_> {
                     endless: false,
                     smooth: false,
                 });
-                id
-            });
-            let ids: Vec<String> = ids.collect();
+            }
             made.insert(touching.master, ids);
         }
         made
     }
 
-    /// The sides of a surface, those together that hang together.
-    fn pieces(&self, surface: usize) -> Vec<Vec<Vec<usize>>> {
-        let Faces::Elements(sides) = &self.deck.surfaces[surface].of else {
-            return Vec::new();
-        };
-        let mut groups = Groups::of(self.deck.nodes.len());
-        let sides: Vec<Vec<usize>> = sides
-            .iter()
-            .map(|&(e, side)| self.deck.side(e, side))
-            .collect();
+    /// Enters sides of elements as lines of the mesh, one for those that hang together; their names.
+    pub(super) fn lines(
+        &mut self,
+        sides: &[(usize, usize)],
+        name: &str,
+        place: Place,
+    ) -> Vec<String> {
+        let deck = self.deck;
+        let mut groups = Groups::of(deck.nodes.len());
+        let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
         for side in &sides {
             side.windows(2)
                 .for_each(|pair| groups.join(pair[0], pair[1]));
         }
         let mut pieces: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
         for side in sides {
-            pieces.entry(groups.root(side[0])).or_default().push(side);
+            let labels = side
+                .iter()
+                .map(|&node| deck.nodes[node].label as usize)
+                .collect();
+            pieces.entry(groups.root(side[0])).or_default().push(labels);
         }
-        pieces.into_values().collect()
+        let enter = |sides: Vec<Vec<usize>>| {
+            let name = self.free.take(name);
+            if let Some(Nodes::Given { sides: sets, .. }) = self.spec.nodes.first_mut() {
+                self.origin
+                    .note(at!["nodes", 0, "sides", sets.len()], place);
+                sets.push(SideSet {
+                    name: name.clone(),
+                    sides,
+                });
+            }
+            name
+        };
+        pieces.into_values().map(enter).collect()
     }
 
     /// Slave nodes by what they may touch and how.

@@ -1,14 +1,14 @@
 //! Supports, motions and loads of a deck, its increments, and what it prints.
 
 use super::curves::{Clock, Given, curve, scaled};
-use super::{Fault, Made};
+use super::{Fault, MESH, Made};
 use crate::format::error::at;
 use crate::format::given::NodeSet;
 use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
 use crate::model::{Axis, Component};
 use std::collections::{BTreeMap, HashMap};
 use stickslip_exchange::inp::Place;
-use stickslip_exchange::inp::deck::{Direction, Family, Step, Value};
+use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
 
 /// Most nodes of a printed set whose displacements become monitors.
 const PRINTED: usize = 20;
@@ -17,6 +17,15 @@ const PRINTED: usize = 20;
 struct Course {
     place: Place,
     given: Vec<Given>,
+}
+
+/// A value, and the scale by which it acts.
+type Acts = (f64, Vec<(f64, f64)>);
+
+/// Values of nodes as [`Made::courses`] takes them.
+fn listed(values: &[Value]) -> Vec<((usize, Direction), f64, Option<usize>, Place)> {
+    let one = |value: &Value| (value.target(), value.value, value.amplitude, value.place);
+    values.iter().map(one).collect()
 }
 
 /// Points of a curve to compare by.
@@ -31,17 +40,20 @@ impl Made<'_> {
     pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), Fault> {
         self.motions(clock)?;
         self.forces(clock)?;
+        self.pressures(clock);
+        self.weights(clock)?;
         self.monitors();
         Ok(())
     }
 
-    /// The courses of what steps give to components of nodes.
-    fn courses(
+    /// The courses of what steps give to targets: `values` lists target, value, amplitude and place; where `adds` does not hold, a
+    /// later value of a step stands for an earlier one.
+    fn courses<T: Ord>(
         &self,
-        values: impl Fn(&Step) -> &[Value],
+        values: impl Fn(&Step) -> Vec<(T, f64, Option<usize>, Place)>,
         new: impl Fn(&Step) -> bool,
         adds: bool,
-    ) -> BTreeMap<(usize, Direction), Course> {
+    ) -> BTreeMap<T, Course> {
         let steps = &self.deck.steps;
         let empty = || -> Vec<Given> {
             let of = |step: &Step| Given {
@@ -53,16 +65,16 @@ impl Made<'_> {
         };
         let mut courses = BTreeMap::new();
         for (k, step) in steps.iter().enumerate() {
-            for value in values(step) {
-                let course = courses.entry(value.target()).or_insert_with(|| Course {
-                    place: value.place,
+            for (target, value, amplitude, place) in values(step) {
+                let course = courses.entry(target).or_insert_with(|| Course {
+                    place,
                     given: empty(),
                 });
                 let here = &mut course.given[k].values;
                 if !adds {
                     here.clear();
                 }
-                here.push((value.value, value.amplitude));
+                here.push((value, amplitude));
             }
         }
         courses
@@ -82,7 +94,8 @@ impl Made<'_> {
     }
 
     fn motions(&mut self, clock: &Clock) -> Result<(), Fault> {
-        let mut courses = self.courses(|step| &step.motions, |step| step.new_motions, false);
+        let mut courses =
+            self.courses(|step| listed(&step.motions), |step| step.new_motions, false);
         let mut from_model: BTreeMap<(usize, Direction), Place> = BTreeMap::new();
         for support in &self.deck.supports {
             from_model.entry(support.target()).or_insert(support.place);
@@ -226,7 +239,7 @@ impl Made<'_> {
     }
 
     fn forces(&mut self, clock: &Clock) -> Result<(), Fault> {
-        let courses = self.courses(|step| &step.forces, |step| step.new_forces, true);
+        let courses = self.courses(|step| listed(&step.forces), |step| step.new_forces, true);
         let on_beam = self.is_beam_node();
         for ((node, direction), course) in courses {
             let label = self.deck.nodes[node].label;
@@ -274,6 +287,117 @@ impl Made<'_> {
             });
         }
         Ok(())
+    }
+
+    /// Pressures: sides that are pressed alike are one load.
+    fn pressures(&mut self, clock: &Clock) {
+        let listed = |step: &Step| {
+            let pressed = step.pressures.iter();
+            pressed
+                .map(|p| ((p.element, p.side), p.value, p.amplitude, p.place))
+                .collect()
+        };
+        let courses = self.courses(listed, |step| step.new_pressures, true);
+        let mut alike: Vec<(Vec<(usize, usize)>, Acts, Place)> = Vec::new();
+        let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+        for (side, course) in courses {
+            let points = curve(clock, &self.deck.amplitudes, &course.given);
+            let Some(acts) = scaled(&points) else {
+                continue;
+            };
+            let group = *known.entry(bits(&points)).or_insert(alike.len());
+            if group == alike.len() {
+                alike.push((Vec::new(), acts, course.place));
+            }
+            alike[group].0.push(side);
+        }
+        for (sides, (value, scale), place) in alike {
+            for name in self.lines(&sides, "PRESSED", place) {
+                self.origin.note(at!["loads", self.spec.loads.len()], place);
+                self.spec.loads.push(LoadSpec::Pressure {
+                    along: format!("{MESH}.{name}"),
+                    value,
+                    scale: scale.clone(),
+                });
+            }
+        }
+    }
+
+    /// Forces by volume, one load for each component on each body.
+    fn weights(&mut self, clock: &Clock) -> Result<(), Fault> {
+        let deck = self.deck;
+        let listed = |step: &Step| {
+            let parts = step.weights.iter().flat_map(|weight| {
+                let (components, is_weight) = match weight.load {
+                    Volume::Gravity(components) => (components, true),
+                    Volume::Force(components) => (components, false),
+                };
+                let target = |axis: usize| (weight.element, axis, is_weight);
+                [0, 1].map(|axis| {
+                    (
+                        target(axis),
+                        components[axis],
+                        weight.amplitude,
+                        weight.place,
+                    )
+                })
+            });
+            parts.filter(|(_, value, ..)| *value != 0.0).collect()
+        };
+        let courses = self.courses(listed, |step| step.new_pressures, true);
+        let mut alike: BTreeMap<(usize, usize, bool, Vec<u64>), (usize, Acts, Place)> =
+            BTreeMap::new();
+        for ((element, axis, is_weight), course) in courses {
+            let points = curve(clock, &deck.amplitudes, &course.given);
+            let (Some(acts), Some(body)) = (scaled(&points), self.body_of[element]) else {
+                let label = deck.elements[element].label;
+                match self.body_of[element] {
+                    Some(_) => continue,
+                    None => {
+                        return Err(Fault::new(
+                            course.place,
+                            format!("element {label} is of a beam; only continua have weight here"),
+                        ));
+                    }
+                }
+            };
+            alike
+                .entry((body, axis, is_weight, bits(&points)))
+                .or_insert((0, acts, course.place))
+                .0 += 1;
+        }
+        for ((body, axis, is_weight, _), (count, (value, scale), place)) in alike {
+            let members = self.body_of.iter().filter(|of| **of == Some(body)).count();
+            let on = self.spec.bodies[body].id().to_owned();
+            if count < members {
+                let message = format!(
+                    "the load acts on {count} of the {members} elements of {on}, which hang together; it must act on all of them"
+                );
+                return Err(Fault::new(place, message));
+            }
+            let density = match is_weight {
+                false => 1.0,
+                true => self.density(body, place)?,
+            };
+            let part = |k: usize| if k == axis { value * density } else { 0.0 };
+            self.origin.note(at!["loads", self.spec.loads.len()], place);
+            self.spec.loads.push(LoadSpec::Volume {
+                on,
+                x: part(0),
+                y: part(1),
+                scale,
+            });
+        }
+        Ok(())
+    }
+
+    /// Density of the material of a body.
+    fn density(&self, body: usize, place: Place) -> Result<f64, Fault> {
+        let element = self.body_of.iter().position(|of| *of == Some(body));
+        let material = element.map(|element| &self.deck.materials[self.material_of[element]]);
+        material
+            .and_then(|material| material.density)
+            .ok_or_else(|| Fault::new(place, "the material that is to have weight has no *DENSITY"))
     }
 
     /// The increments, and the path of the load factor.

@@ -212,6 +212,10 @@ struct Made<'d> {
     origin: Origin,
     remarks: Vec<String>,
     free: Free,
+    /// The body of each element of a continuum.
+    body_of: Vec<Option<usize>>,
+    /// The material of each element in the deck.
+    material_of: Vec<usize>,
     /// Which nodes belong to an element.
     used: Vec<bool>,
     /// Which nodes stand still for ever, in x and in y.
@@ -276,6 +280,8 @@ impl<'d> Made<'d> {
             },
             remarks: deck.remarks.iter().map(remark).collect(),
             free: Free::default(),
+            body_of: vec![None; deck.elements.len()],
+            material_of: Vec::new(),
             still: vec![[false; 2]; deck.nodes.len()],
             used,
             deck,
