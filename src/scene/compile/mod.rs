@@ -64,7 +64,14 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         gaps::adjust(&mut names.nodes, &surfaces.made, &slaves, within);
         bodies::check_bodies(spec, &names, &bodies, length)?;
     }
-    if laws::tie(spec, &mut names, &surfaces.made, &pairs, &mut slaves, length)? {
+    if laws::tie(
+        spec,
+        &mut names,
+        &surfaces.made,
+        &pairs,
+        &mut slaves,
+        length,
+    )? {
         bodies::check_bodies(spec, &names, &bodies, length)?;
     }
     if spec.settings.initial_gaps == InitialGaps::Ramp {

@@ -40,10 +40,11 @@ impl Made<'_> {
                 Normal::Linear { stiffness } => ContactLaw::Penalty { stiffness },
                 Normal::Tied { .. } => ContactLaw::Tied,
             };
-            if law == ContactLaw::Tied {
+            let tied = law == ContactLaw::Tied;
+            if tied {
                 self.remark(
                     interaction.normal_place,
-                    "TIED holds rigidly: its stiffness is not read",
+                    "TIED holds rigidly: its stiffness and its stick slope are not read",
                 );
             }
             if pair.small_sliding {
@@ -57,8 +58,8 @@ impl Made<'_> {
                 master: pair.master,
                 laws: Laws {
                     law,
-                    friction: interaction.friction,
-                    stick: interaction.stick,
+                    friction: if tied { 0.0 } else { interaction.friction },
+                    stick: interaction.stick.filter(|_| !tied),
                 },
                 place: pair.place,
             });
@@ -231,7 +232,7 @@ impl Made<'_> {
             nodes: nodes.iter().map(|&node| self.node(node)).collect(),
             on,
             start: Mode::Free,
-            friction: Some(FrictionSpec {
+            friction: (laws.law != ContactLaw::Tied).then(|| FrictionSpec {
                 angle: laws.friction.atan().to_degrees(),
                 ..FrictionSpec::default()
             }),

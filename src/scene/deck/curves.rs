@@ -223,17 +223,16 @@ fn interpolated(points: &[(f64, f64)], time: f64) -> f64 {
 
 /// A curve as a value and a scale: the largest size that it has, and what part of it acts. `None` where nothing ever acts.
 pub(super) fn scaled(points: &[(f64, f64)]) -> Option<(f64, Vec<(f64, f64)>)> {
-    let largest = points
-        .iter()
-        .map(|p| p.1)
-        .max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+    let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+    let largest = points.iter().map(|p| p.1).fold(0.0, larger);
     if largest == 0.0 {
         return None;
     }
     match points {
         [(_, _), (end, value)] if *end == 1.0 => Some((*value, Vec::new())),
         _ => {
-            let part = |&(at, value): &(f64, f64)| (at, value / largest);
+            // No negative zeros.
+            let part = |&(at, value): &(f64, f64)| (at, value / largest + 0.0);
             Some((largest, points.iter().map(part).collect()))
         }
     }
