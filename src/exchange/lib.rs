@@ -6,6 +6,7 @@
 //! for.
 //!
 //! - [`broken`]: what is wrong with a file, and where.
+//! - [`inp`]: decks of CalculiX and Abaqus.
 //! - [`gmsh`]: meshes of Gmsh.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
 
@@ -13,4 +14,5 @@
 
 pub mod broken;
 pub mod gmsh;
+pub mod inp;
 pub mod mesh;

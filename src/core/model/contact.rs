@@ -1,6 +1,7 @@
 //! The interface: master surfaces, and the contacts that slave nodes may make with them.
 
 use super::friction::{Friction, InitialState, Mode};
+use serde::{Deserialize, Serialize};
 
 /// A master surface: a chain of m-node interface elements; the outward side is on the right of the walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +58,7 @@ pub struct Contact {
 
 /// What holds between a slave node and its surface where they touch, beside friction. The default is hard contact: g >= 0 and
 /// F_n >= 0, one of them zero, and sticking without any motion.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Bond {
     /// Nothing gives way.
     #[default]
@@ -85,6 +86,11 @@ impl Bond {
             Bond::Giving(give) => *give,
             Bond::Hard | Bond::Tied => [0.0; 2],
         }
+    }
+
+    /// Whether it is hard contact.
+    pub fn is_hard(&self) -> bool {
+        *self == Bond::Hard
     }
 
     /// Whether it holds the node for ever.
