@@ -4,6 +4,7 @@
 //!   is wrong.
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
+//! - [`import`]: meshes of other programs.
 //! - [`siconos`]: interface problems of another code.
 //! - [`builtin`]: the scenes that the program carries.
 
@@ -11,6 +12,7 @@ pub mod base;
 pub mod builtin;
 pub mod cost;
 pub mod gaps;
+pub mod import;
 pub mod limits;
 pub mod memory;
 pub mod nodes;
@@ -43,6 +45,7 @@ pub struct Scene {
     pub model: Model,
     names: Names,
     overrides: Vec<Override>,
+    imports: bool,
 }
 
 impl Scene {
@@ -57,6 +60,9 @@ impl Scene {
         {
             return Scene::from_text(builtin.name, builtin.text, overrides);
         }
+        if import::is_mesh(name) {
+            return Err(SceneError::whole(name, import::no_scene(name)));
+        }
         let text = read::text(name).map_err(|mut error| {
             if !std::path::Path::new(name).exists() {
                 error.message = no_such_scene(name);
@@ -66,7 +72,8 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// Reads a scene from a text, or what [`condensed`] and [`siconos`] make one of; `name` is what messages call it.
+    /// Reads a scene from a text, or what [`condensed`] and [`siconos`] make one of; `name` is what messages call it, and the
+    /// meshes that it imports lie beside a file of that name.
     ///
     /// # Errors
     /// If the scene is unsound.
@@ -92,7 +99,11 @@ impl Scene {
             return Scene::compiled(name, "", spec, overrides, place);
         }
         let spec = read::spec(name, text)?;
-        Scene::assemble(name, text, spec, overrides, Vec::new())
+        let (mut spec, overrides) = changed(name, spec, overrides, Vec::new())?;
+        let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
+        let imports = imported(&mut spec, name, |fault| place(&overrides, fault))?;
+        let scene = Scene::compiled(name, text, spec, overrides, place)?;
+        Ok(Scene { imports, ..scene })
     }
 
     fn from_siconos(
@@ -131,12 +142,13 @@ impl Scene {
         name: &str,
         text: &str,
         path: &error::Path,
-        spec: Spec,
+        mut spec: Spec,
     ) -> Result<Scene, SceneError> {
         let at = |fault: Fault| {
             let whole = error::Path(path.0.iter().chain(&fault.path.0).cloned().collect());
             placed(name, text, &[], Fault::new(whole, fault.message))
         };
+        imported(&mut spec, name, at)?;
         let (model, names) = compile::compile(&spec).map_err(at)?;
         Ok(Scene {
             name: name.to_owned(),
@@ -145,6 +157,7 @@ impl Scene {
             model,
             names,
             overrides: Vec::new(),
+            imports: false,
         })
     }
 
@@ -154,13 +167,17 @@ impl Scene {
     /// If there is no such path, or the value is unsound there.
     pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
         let change = [(path.to_owned(), value.to_owned())];
-        Scene::assemble(
+        let scene = Scene::assemble(
             &self.name,
             &self.text,
             self.spec.clone(),
             &change,
             self.overrides.clone(),
-        )
+        )?;
+        Ok(Scene {
+            imports: self.imports,
+            ..scene
+        })
     }
 
     /// The number of a node by any of its names: `ID.3`, `ID.end`, `ID@0.5`, or the id of a single node.
@@ -169,6 +186,11 @@ impl Scene {
     /// A message that tells which names there are.
     pub fn node(&self, name: &str) -> Result<usize, String> {
         self.names.node(name)
+    }
+
+    /// Whether its text names meshes in other files, which the spec has inside.
+    pub fn imports(&self) -> bool {
+        self.imports
     }
 
     /// All names by which nodes can be called, and what they stand for.
@@ -210,8 +232,21 @@ impl Scene {
             model,
             names,
             overrides,
+            imports: false,
         })
     }
+}
+
+/// Reads what a scene imports, and tells whether it imports anything; `name` is the scene's file, and `place` finds what is wrong in it.
+fn imported(
+    spec: &mut Spec,
+    name: &str,
+    place: impl Fn(Fault) -> SceneError,
+) -> Result<bool, SceneError> {
+    import::resolve(spec, name).map_err(|refused| match refused {
+        import::Refused::Here(fault) => place(fault),
+        import::Refused::There(error) => error,
+    })
 }
 
 /// A scene's file with more set from outside.

@@ -56,16 +56,16 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let mut slaves = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
-    interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
+    interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
     history::settings(&spec.settings)?;
     match spec.settings.initial_gaps {
         InitialGaps::Keep => {}
         InitialGaps::Adjust => {
             let within = spec.settings.adjust_gap;
-            gaps::adjust(&mut names.nodes, &surfaces, &slaves, within);
+            gaps::adjust(&mut names.nodes, &surfaces.made, &slaves, within);
             bodies::check_bodies(spec, &names, &bodies, length)?;
         }
-        InitialGaps::Ramp => gaps::ramp(&names.nodes, &surfaces, &mut slaves),
+        InitialGaps::Ramp => gaps::ramp(&names.nodes, &surfaces.made, &mut slaves),
     }
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
@@ -77,6 +77,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let dofs = layout.number(&mut bodies);
     loads.extend(linear::free_motions(spec, &bodies, &dofs));
     interface::find_rigid(&dofs, &mut surfaces)?;
+    let surfaces = surfaces.made;
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
