@@ -13,6 +13,8 @@ pub enum MonitorKind {
     Rotation,
     /// A force.
     Force,
+    /// A force by area.
+    Pressure,
     /// A length that is a measure of error, and is not compared.
     Drift,
 }
@@ -30,6 +32,7 @@ pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
         }
         Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
         Watched::Drift { .. } => MonitorKind::Drift,
+        Watched::Pressure { .. } => MonitorKind::Pressure,
         Watched::Arc => MonitorKind::Length,
     }
 }

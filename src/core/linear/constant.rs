@@ -422,6 +422,8 @@ impl Source for ConstantSource {
                 )
             }
             // Nothing is supported here.
+            // Its contacts have no areas.
+            Watched::Pressure { .. } => 0.0,
             Watched::Arc => at.arc,
             Watched::Reaction { .. } => 0.0,
         }

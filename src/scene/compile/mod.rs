@@ -74,6 +74,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     loads.extend(linear::free_motions(spec, &bodies, &dofs));
     interface::find_rigid(&dofs, &mut surfaces)?;
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
+    laws::stand_upright(&dofs, &surfaces, &mut slaves);
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
