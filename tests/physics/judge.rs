@@ -342,10 +342,7 @@ fn forces_out_of_balance_at_a_node_and_on_the_bodies_as_a_whole_are_refused() {
             load: &load,
             contact: &contact,
         };
-        let mut verdict = Verdict {
-            worst: [None; 8],
-            work: None,
-        };
+        let mut verdict = Verdict::default();
         balance::check(&model, &forces, &now, &scales, &mut verdict);
         let laws: Vec<Law> = verdict.broken().map(|finding| finding.law).collect();
         laws
