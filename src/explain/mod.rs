@@ -15,6 +15,7 @@
 pub mod advice;
 pub mod attempt;
 pub mod audit;
+pub mod bond;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;

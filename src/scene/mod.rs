@@ -9,6 +9,7 @@
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod base;
+pub mod bonds;
 pub mod builtin;
 pub mod cost;
 pub mod gaps;

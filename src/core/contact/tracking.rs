@@ -19,7 +19,7 @@ use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
 use crate::contact::table1::t_max;
 use crate::model::Mode;
-use crate::model::{Contact, Friction, Surface};
+use crate::model::{Bond, Contact, Friction, Surface};
 
 /// A node closer to a place where two sides meet than this part of the element's size stands there.
 const AT_VERTEX: f64 = 1e-9;
@@ -100,11 +100,15 @@ impl Ground<'_> {
             return;
         };
         let over = projection_at(self.surfaces, spot, self.positions, at);
-        let ([c, s], t, [f_x, f_y]) = (over.normal, tangent(over.normal), node.force());
-        if node.anchor.is_some() && node.normal != over.normal {
+        let normal = match slave.bond {
+            Bond::Tied { upright: true } => axis(over.normal),
+            _ => over.normal,
+        };
+        let ([c, s], t, [f_x, f_y]) = (normal, tangent(normal), node.force());
+        if node.anchor.is_some() && node.normal != normal {
             (node.f_n, node.f_t) = (c * f_x + s * f_y, c * f_y - s * f_x);
         }
-        (node.spot, node.anchor, node.normal) = (Some(spot), Some(spot), over.normal);
+        (node.spot, node.anchor, node.normal) = (Some(spot), Some(spot), normal);
         node.drift = (over.foot[0] - at[0]) * t[0] + (over.foot[1] - at[1]) * t[1];
     }
 
@@ -337,5 +341,14 @@ impl Ground<'_> {
         );
         node.anchor_at(there, slave.bond.give()[1]);
         self.find_anchor(node, slave);
+    }
+}
+
+/// The axis nearest to a direction.
+fn axis([x, y]: [f64; 2]) -> [f64; 2] {
+    if x.abs() > y.abs() {
+        [x.signum(), 0.0]
+    } else {
+        [0.0, y.signum()]
     }
 }

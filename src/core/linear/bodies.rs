@@ -110,6 +110,24 @@ impl Bodies {
     }
 }
 
+/// Pressure or shear of those of some contacts where it is largest in size.
+pub(super) fn pressure(
+    contacts: &[Contact],
+    states: &[ContactState],
+    slaves: &[usize],
+    shear: bool,
+) -> f64 {
+    let of = |&s: &usize| {
+        let both = contacts[s].pressure(states[s].f_n, states[s].f_t)?;
+        Some(both[usize::from(shear)])
+    };
+    let all = slaves.iter().filter_map(of);
+    all.fold(
+        0.0,
+        |most: f64, p| if p.abs() > most.abs() { p } else { most },
+    )
+}
+
 /// Whether the stresses tell the force of each contact: not where a support or a second contact shares its node's force, nor
 /// where the node is itself part of a master surface.
 fn stresses_tell(model: &Model) -> Vec<bool> {
@@ -468,6 +486,9 @@ impl Source for Bodies {
             }
             Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
             Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
+            Watched::Pressure { slaves, shear } => {
+                pressure(&self.model.contacts, at.contacts, slaves, *shear)
+            }
             Watched::Arc => at.arc,
             // The load is that of the displacements at hand, not the one that is aimed at next.
             Watched::Reaction { dof } => {

@@ -417,6 +417,8 @@ impl Source for ConstantSource {
             }
             Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
             Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
+            // Its contacts have no areas.
+            Watched::Pressure { .. } => 0.0,
             Watched::Arc => at.arc,
             // Nothing is supported here.
             Watched::Reaction { .. } => 0.0,

@@ -213,7 +213,7 @@ impl System {
             interface.projection = node.spot.map(over).map(|here| match node.second {
                 Some(_) => here.along(node.normal, point),
                 // A tied node does not travel over its surface.
-                None if slave.bond.is_tied() => here.along(here.normal, point),
+                None if slave.bond.is_tied() => here.along(node.normal, point),
                 None => here,
             });
         }
