@@ -93,6 +93,30 @@ pub(crate) fn mesh(file: &str) -> Result<Mesh, NoMesh> {
     })
 }
 
+/// Parts of a mesh that have no element in common, and are bodies together: those first named.
+///
+/// # Errors
+/// If the file gives no mesh.
+pub fn bodies(file: &str) -> Result<Vec<String>, SceneError> {
+    let mesh = mesh(file).map_err(|error| match error {
+        NoMesh::Unread(message) => SceneError::whole(file, message),
+        NoMesh::Broken(error) => error,
+    })?;
+    let lists = elements(&mesh).map_err(|(_, message)| SceneError::whole(file, message))?;
+    let names = |cells: &Cells| [std::slice::from_ref(&cells.part), &cells.also].concat();
+    let mut chosen: Vec<String> = Vec::new();
+    for cells in &lists {
+        let part = &cells.part;
+        let shares = |cells: &&Cells| {
+            names(cells).contains(part) && names(cells).iter().any(|n| chosen.contains(n))
+        };
+        if !lists.iter().any(|cells| shares(&cells)) {
+            chosen.push(part.clone());
+        }
+    }
+    Ok(chosen)
+}
+
 /// Whether a file says that it is a mesh.
 pub fn is_mesh(file: &str) -> bool {
     let start = input::start(std::path::Path::new(file), 64);

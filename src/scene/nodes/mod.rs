@@ -2,13 +2,14 @@
 //!
 //! `checks` refuses what cannot be laid out before any is made; `layout` makes nodes and chains, `joints` meshes of
 //! several blocks, `given` meshes that are given node by node, of whose parts `elements` and `sides` make sure; `lookup` finds
-//! nodes by their names.
+//! nodes by their names, `lines` tells what the sides of a mesh are.
 
 pub(crate) mod checks;
 mod elements;
 mod given;
 mod joints;
 mod layout;
+mod lines;
 mod lookup;
 mod sides;
 
@@ -19,7 +20,8 @@ use crate::format::spec::{Nodes, Spec};
 use crate::model::{ElementKind, Node};
 use checks::{check_ids, check_total};
 use elements::Element;
-use sides::Line;
+pub use lines::Line;
+use sides::Line as Sides;
 use std::collections::HashMap;
 
 /// All nodes of a scene, and every name by which they can be called.
@@ -46,7 +48,7 @@ pub(crate) struct Entry {
     /// Of a given mesh and its parts.
     elements: Vec<Element>,
     /// Of sides of a given mesh.
-    line: Line,
+    line: Sides,
 }
 
 /// What a solid is made on.
@@ -106,7 +108,7 @@ impl Entry {
             parts: Vec::new(),
             labels: Vec::new(),
             elements: Vec::new(),
-            line: Line::default(),
+            line: Sides::default(),
         }
     }
 
