@@ -4,9 +4,6 @@
 //! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP give it back, stop the process as the shell
 //! expects, and take it again with a full redraw when the process goes on.
 
-use crate::tui::app::App;
-use crate::tui::screen;
-use crate::tui::view::View;
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
@@ -16,6 +13,7 @@ use crossterm::terminal::{
 };
 use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
+use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
 use signal_hook::iterator::Handle;
@@ -78,11 +76,11 @@ impl Terminal {
 
     /// Draws what changed, in one go where the terminal can do that.
     /// Returns its size.
-    pub fn draw(&mut self, app: &App, view: Option<&View>) -> io::Result<Rect> {
+    pub fn draw(&mut self, screen: impl FnOnce(&mut Buffer, Rect)) -> io::Result<Rect> {
         queue!(stdout(), BeginSynchronizedUpdate)?;
         let drawn = self.screen.draw(|frame| {
             let area = frame.area();
-            screen::draw(frame.buffer_mut(), area, app, view);
+            screen(frame.buffer_mut(), area);
         });
         let drawn = drawn.map(|frame| frame.area);
         execute!(stdout(), EndSynchronizedUpdate)?;

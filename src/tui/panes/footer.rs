@@ -4,6 +4,7 @@ use crate::action::{ACTIONS, Entry, Group};
 use crate::tui::app::{App, Overlay, Tone};
 use crate::tui::layout::{Pane, Places};
 use crate::tui::paint;
+use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -146,14 +147,17 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
 }
 
 fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {
-    let spans = keys.iter().flat_map(|(key, label)| hint(key, label, app));
+    let spans = keys
+        .iter()
+        .flat_map(|(key, label)| hint(key, label, &app.theme));
     Line::from(spans.collect::<Vec<_>>())
 }
 
-fn hint(key: &str, label: &str, app: &App) -> [Span<'static>; 2] {
+/// A key and what it does, as the footer shows them.
+pub fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
     [
-        Span::styled(format!(" {key}"), app.theme.key),
-        Span::styled(format!(" {label} "), app.theme.faint),
+        Span::styled(format!(" {key}"), theme.key),
+        Span::styled(format!(" {label} "), theme.faint),
     ]
 }
 
@@ -184,7 +188,7 @@ fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
             }
             left -= width;
         }
-        spans.extend(hint(key, label, app));
+        spans.extend(hint(key, label, &app.theme));
     }
     Line::from(spans)
 }
