@@ -75,8 +75,12 @@ pub enum End {
 pub struct Iteration {
     /// Its number in the attempt, from 1.
     pub number: u32,
-    /// Its part of [`PastRun::closed`]; `None` where the .cvg counts contact elements and the .cel has none of them.
+    /// Its part of [`PastRun::closed`]; `None` where the .cvg counts contact elements that the .cel does not have.
     pub closed: Option<Range<usize>>,
+    /// Whether it kept the contact elements of the iteration before: node-to-surface contact holds them fixed after iteration 8
+    /// of an attempt, with SMALL SLIDING after the first (CalculiX's nonlingeo.c), and then they do not stand in the .cel. The
+    /// .cvg counts as many.
+    pub kept: bool,
     /// Its row of the .cvg.
     pub norms: Option<Norms>,
 }
@@ -114,7 +118,6 @@ impl PastRun {
         let rows = rows.map(|row| ((row.step, row.increment, row.attempt), row));
         let mut rows: BTreeMap<(u32, u32, u32), Ended> = rows.collect();
         for (at, (closed, norms)) in all {
-            run.differs = told_differently(&run, at, closed.as_ref(), norms.as_ref());
             let key = (at.step, at.increment, at.attempt);
             run.add_rows_before(&mut rows, key);
             let last = run.attempts.last().map(Attempt::key);
@@ -122,14 +125,8 @@ impl PastRun {
                 let row = rows.remove(&key);
                 run.begin(key, row);
             }
-            // What the .cvg counts no contact element in has none: it does not stand in the .cel.
-            let none = norms.filter(|norms| norms.elements == 0);
-            let closed = closed.or(none.map(|_| 0..0));
-            run.iterations.push(Iteration {
-                number: at.iteration,
-                closed,
-                norms,
-            });
+            run.differs = run.told_differently(at, closed.as_ref(), norms.as_ref());
+            run.add(at.iteration, closed, norms);
             if let Some(attempt) = run.attempts.last_mut() {
                 attempt.iterations.end = run.iterations.len();
             }
@@ -145,6 +142,65 @@ impl PastRun {
     pub fn closed(&self, iteration: usize) -> Option<&[Closed]> {
         let range = self.iterations.get(iteration)?.closed.clone()?;
         self.closed.get(range)
+    }
+
+    /// An iteration of the last attempt. One that has no contact element does not stand in the .cel, nor does one that kept
+    /// those before it: the .cvg tells which.
+    fn add(&mut self, number: u32, listed: Option<Range<usize>>, norms: Option<Norms>) {
+        let counted = norms
+            .filter(|_| listed.is_none())
+            .map(|norms| norms.elements);
+        let none = counted.filter(|count| *count == 0).map(|_| 0..0);
+        let before = self.before().filter(|before| {
+            let count = self.elements(before);
+            counted.is_some_and(|counted| u64::from(counted) == count)
+        });
+        let kept = listed.is_none() && none.is_none() && before.is_some();
+        self.iterations.push(Iteration {
+            number,
+            closed: listed.or(none).or(before),
+            kept,
+            norms,
+        });
+    }
+
+    /// The part of the iteration before the next one, in the same attempt.
+    fn before(&self) -> Option<Range<usize>> {
+        let attempt = self
+            .attempts
+            .last()
+            .filter(|last| !last.iterations.is_empty())?;
+        self.iterations
+            .get(attempt.iterations.end - 1)?
+            .closed
+            .clone()
+    }
+
+    /// Number of contact elements in a part.
+    fn elements(&self, part: &Range<usize>) -> u64 {
+        let closed = self.closed[part.clone()].iter();
+        closed.map(|closed| u64::from(closed.elements)).sum()
+    }
+
+    /// Iterations that are told differently, with the next one.
+    fn told_differently(
+        &self,
+        at: At,
+        listed: Option<&Range<usize>>,
+        norms: Option<&Norms>,
+    ) -> Option<(At, usize)> {
+        let counted = norms.map(|norms| u64::from(norms.elements));
+        let listed = listed.map(|part| self.elements(part));
+        let kept = self.before().map(|before| self.elements(&before));
+        let fits = |counted: u64| match listed {
+            Some(listed) => listed == counted,
+            None => counted == 0 || kept == Some(counted),
+        };
+        match (counted.is_none_or(fits), self.differs) {
+            (true, before) => before,
+            (false, None) => Some((at, 1)),
+            (false, Some((first, count))) => Some((first, count + 1)),
+        }
     }
 
     /// Attempts of which nothing but a row of the .sta tells.
@@ -194,26 +250,6 @@ impl PastRun {
 impl Attempt {
     fn key(&self) -> (u32, u32, u32) {
         (self.step, self.increment, self.attempt)
-    }
-}
-
-/// Iterations that are told differently, with this one.
-fn told_differently(
-    run: &PastRun,
-    at: At,
-    closed: Option<&Range<usize>>,
-    norms: Option<&Norms>,
-) -> Option<(At, usize)> {
-    let counted = norms.map(|norms| u64::from(norms.elements));
-    let listed = closed.map_or(&[][..], |range| &run.closed[range.clone()]);
-    let listed: u64 = listed.iter().map(|closed| u64::from(closed.elements)).sum();
-    match (
-        counted.is_some_and(|counted| counted != listed),
-        run.differs,
-    ) {
-        (true, None) => Some((at, 1)),
-        (true, Some((first, count))) => Some((first, count + 1)),
-        (false, before) => before,
     }
 }
 
@@ -301,6 +337,30 @@ mod tests {
         let (first, count) = run.differs.unwrap();
         assert_eq!((first.iteration, count), (2, 1));
         assert_eq!(run.closed(1), None);
+    }
+
+    #[test]
+    fn contact_elements_that_calculix_held_fixed_are_those_of_the_iteration_before() {
+        let cel = element(1, 1, 8, 9) + &element(1, 1, 8, 7) + &element(1, 2, 1, 9);
+        let rows = [(1, 8, 2), (1, 9, 2), (1, 10, 3), (2, 1, 1)];
+        let rows = rows
+            .map(|(attempt, k, count)| norms(1, attempt, k, count))
+            .concat();
+        let cvg = format!("SUMMARY OF C0NVERGENCE INFORMATION\n{rows}");
+        let run = read(cel.as_bytes(), None, Some(cvg.as_bytes())).unwrap();
+        let told: Vec<_> = (0..4)
+            .map(|k| (run.closed(k).map(<[Closed]>::len), run.iterations[k].kept))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (Some(2), false),
+                (Some(2), true),
+                (None, false),
+                (Some(1), false)
+            ]
+        );
+        assert_eq!(run.differs.unwrap().0.iteration, 10);
     }
 
     #[test]

@@ -71,7 +71,7 @@ pub fn notes(past: &Past) -> Vec<String> {
         )
     });
     let sta = "times are unknown, and how an attempt ended is told by what follows it";
-    let cvg = "there are no residuals, and iterations without any contact element are left out";
+    let cvg = "there are no residuals, and iterations that have no contact element, or keep those before, are left out";
     let notes = [
         stopped("cel", run.cel),
         beside("sta", run.sta, sta),
@@ -114,15 +114,17 @@ pub fn ended(past: &Past, attempt: usize) -> String {
     match (this.end, follows(past, attempt)) {
         (End::Converged, _) => format!("converged after {iterations}"),
         (End::NotConverged, true) => {
-            let next = attempts[attempt + 1].row;
-            let next = next.map_or(String::new(), |row| format!(" of {}", plain(row.size)));
+            let next = &attempts[attempt + 1];
+            let size = next
+                .row
+                .map_or(String::new(), |row| format!(" with {}", plain(row.size)));
             format!(
-                "did not converge in {iterations}, and was cut: attempt {} has an increment{next}",
-                attempts[attempt + 1].attempt
+                "not converged in {iterations}, and cut: attempt {} goes on{size}",
+                next.attempt
             )
         }
         (End::NotConverged, false) => {
-            format!("did not converge in {iterations}, and the run ends there")
+            format!("not converged in {iterations}, and the run ends there")
         }
         (End::Unknown, _) => format!(
             "{iterations} are told, and not how it ended: the run was stopped there, or goes on"
@@ -148,11 +150,9 @@ pub fn cycle(past: &Past, attempt: usize) -> Option<String> {
     let named: Vec<String> = named.map(|slave| past.slave(*slave)).collect();
     let more = round.members.len() - named.len();
     let members = match (named.is_empty(), more) {
-        (true, _) => format!(
-            "no contact element comes or goes in it: what changes is not told, since {NO_MODES}"
-        ),
-        (false, 0) => format!("{} come and go", named.join(", ")),
-        (false, more) => format!("{} and {more} more come and go", named.join(", ")),
+        (true, _) => format!("no contact element changes in it, and {NO_MODES}"),
+        (false, 0) => format!("{} change", named.join(", ")),
+        (false, more) => format!("{} and {more} more change", named.join(", ")),
     };
     Some(format!(
         "{}-cycle from iteration {number} on{residuals}; {members}",
@@ -198,7 +198,13 @@ fn rounded(time: f64) -> f64 {
 /// How many contacts are closed in an iteration, of all that ever were.
 pub fn closed(past: &Past, iteration: usize) -> String {
     match past.closed(iteration) {
-        Some(closed) => format!("closed {closed} of {}", past.run.slaves.len()),
+        Some(closed) => {
+            let held = match past.run.iterations[iteration].kept {
+                true => ", held fixed",
+                false => "",
+            };
+            format!("closed {closed} of {}{held}", past.run.slaves.len())
+        }
         None => "who is in contact is not told".into(),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::actions;
 use super::app::{App, Overlay, Pane};
+use crate::action::Entry;
 use crate::explain::number::plain;
 use crate::explain::past::run::{Touch, limits};
 use crate::explain::past::{summary, words};
@@ -11,7 +12,7 @@ use crate::tui::app::Tone;
 use crate::tui::columns::{self, Column};
 use crate::tui::convergence::{self, Point};
 use crate::tui::paint;
-use crate::tui::panes::footer::hint;
+use crate::tui::panes::footer::{fitted, is_always};
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -19,13 +20,18 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
-/// Rows of the timeline that are no contacts, its border included.
+/// Rows of the timeline that are no contacts, its border included: increments, attempts, the cursor's mark, what each attempt
+/// led to, brackets, and what the letters mean.
 pub const FRAME: u16 = 8;
+/// Rows without which it shows nothing, inside the border.
+const LEAST: u16 = 5;
 /// Width of the contacts' names, and of what stands before them.
 const NAME: usize = 11;
+/// Height from which on the numbers over a chart have two lines.
+const ROOMY: u16 = 9;
 
 /// The marks of the timeline.
-const MARKS: [(&str, &str); 11] = [
+const MARKS: &[(&str, &str)] = &[
     (
         "C ·",
         "closed: it has contact elements in this iteration; open: it has none",
@@ -37,6 +43,14 @@ const MARKS: [(&str, &str); 11] = [
     (
         "1 to 9",
         "a slave face with so many tenths of the integration points in contact that it ever had there",
+    ),
+    (
+        "bold",
+        "its contact elements are others than in the iteration before",
+    ),
+    (
+        "held fixed",
+        "dim: after iteration 8 of an attempt, or with SMALL SLIDING after the first, CalculiX keeps the contact elements of nodes",
     ),
     (
         "?",
@@ -113,13 +127,15 @@ pub fn status(app: &App, width: usize) -> Vec<Line<'static>> {
 fn timeline(buffer: &mut Buffer, area: Rect, app: &App) {
     let (past, theme) = (&app.past, &app.theme);
     let count = past.run.slaves.len();
-    let rows = usize::from(area.height.saturating_sub(FRAME));
+    // A low screen does without the marks of ends, and of cycles.
+    let spare = area.height.saturating_sub(2 + LEAST).min(2);
+    let rows = usize::from(area.height.saturating_sub(LEAST + 1 + spare));
     let mut title = format!("Timeline  iteration {} of {}", app.cursor + 1, past.len());
     if rows < count {
         title += &format!("  contact {} of {count}", app.selected + 1);
     }
     let inner = paint::frame(buffer, area, &title, app.focus == Pane::Timeline, theme);
-    if inner.height < FRAME - 1 || usize::from(inner.width) < NAME + 6 {
+    if inner.height < LEAST || usize::from(inner.width) < NAME + 6 {
         return;
     }
     let left = inner.x + NAME as u16;
@@ -174,11 +190,19 @@ fn timeline(buffer: &mut Buffer, area: Rect, app: &App) {
             };
             buffer.set_string(column.x, first + row as u16, letter, style);
         }
-        let (end, style) = end(app, column.at);
-        buffer.set_string(column.x, below, end, style);
+        if spare > 0 {
+            let (end, style) = end(app, column.at);
+            buffer.set_string(column.x, below, end, style);
+        }
     }
-    rounds(buffer, inner, below + 1, &shown, app);
-    let legend = format!("C closed  · open   {}", words::NO_MODES);
+    if spare > 1 {
+        rounds(buffer, inner, below + 1, &shown, app);
+    }
+    let letters = match past.corners(app.selected) {
+        None => "C closed  · open  M on another face",
+        Some(_) => "C closed  · open  1-9 tenths of its points",
+    };
+    let legend = format!("{}   {letters}", words::NO_MODES);
     let legend = paint::cut(&legend, usize::from(inner.width) - 1);
     buffer.set_string(inner.x + 1, inner.bottom() - 1, legend, theme.warning);
 }
@@ -206,9 +230,11 @@ fn cell(app: &App, at: usize, slave: usize) -> (&'static str, Style) {
         Touch::Moved => ("M", app.theme.mode(Mode::Sliding)),
         Touch::Part(tenths) => (PARTS[usize::from(tenths) % 10], app.theme.mode(Mode::Fixed)),
     };
-    match app.past.switches(at, slave) {
-        true => (letter, style.add_modifier(Modifier::BOLD)),
-        false => (letter, style),
+    let kept = app.past.run.iterations[at].kept;
+    match (app.past.switches(at, slave), kept) {
+        (true, _) => (letter, style.add_modifier(Modifier::BOLD)),
+        (false, true) => (letter, style.add_modifier(Modifier::DIM)),
+        (false, false) => (letter, style),
     }
 }
 
@@ -269,22 +295,33 @@ fn residual(buffer: &mut Buffer, area: Rect, app: &App) {
         let told = " No file tells the residuals of this attempt.";
         return paint::lines(buffer, inner, &[Line::styled(told, theme.faint)]);
     }
-    let mut caption = vec![
-        Span::styled(" ● residual ", theme.faint),
-        Span::styled("  ○ correction ", theme.faint),
-        Span::styled(" ┄ limits 0.5 %, 1 %", theme.faint),
+    let last = past.norms(app.cursor);
+    let number =
+        |value: Option<f64>| value.map_or("-".into(), |value| format!("{} %", plain(value)));
+    let residual = number(last.map(|norms| norms.residual));
+    let correction = number(last.map(|norms| norms.correction));
+    let [limit, other] = limits(past.run.iterations[app.cursor].number);
+    let part = |what: &str, value: String, limit: f64| {
+        [
+            Span::styled(format!(" {what} "), theme.faint),
+            Span::styled(value, theme.strong),
+            Span::styled(format!("  ┄ limit {limit} % "), theme.faint),
+        ]
+    };
+    let parts = [
+        part("● residual", residual, limit),
+        part("○ correction", correction, other),
     ];
-    if let Some(norms) = past.norms(app.cursor) {
-        caption.insert(
-            1,
-            Span::styled(format!("{} %", plain(norms.residual)), theme.strong),
-        );
-        caption.insert(3, Span::raw(format!("{} % ", plain(norms.correction))));
-    }
-    paint::lines(buffer, inner, &[Line::from(caption)]);
+    // A low pane has both in one line.
+    let caption: Vec<Line> = match inner.height < ROOMY {
+        true => vec![Line::from(parts.concat())],
+        false => parts.map(|part| Line::from(part.to_vec())).to_vec(),
+    };
+    let above = caption.len() as u16;
+    paint::lines(buffer, inner, &caption);
     let plot = Rect {
-        y: inner.y + 1,
-        height: inner.height.saturating_sub(1),
+        y: inner.y + above.min(inner.height),
+        height: inner.height.saturating_sub(above),
         ..inner
     };
     if convergence::fits(plot) {
@@ -327,10 +364,7 @@ fn contacts(buffer: &mut Buffer, area: Rect, app: &App) {
         lines.push(Line::styled(paint::cut(none, width), theme.faint));
         return paint::lines(buffer, inner, &lines);
     }
-    lines.push(Line::styled(
-        "  contact      here  all most  in",
-        theme.faint,
-    ));
+    lines.push(Line::styled("  contact    here  all most  in", theme.faint));
     let rows = usize::from(inner.height).saturating_sub(lines.len());
     let at = past
         .chatter
@@ -353,10 +387,10 @@ fn contacts(buffer: &mut Buffer, area: Rect, app: &App) {
             true => ("▸", theme.selected),
             false => (" ", theme.text),
         };
-        let name = paint::cut(&past.slave(chatter.slave), NAME);
+        let name = paint::cut(&past.slave(chatter.slave), NAME - 2);
         let (all, most) = (chatter.switches, chatter.most());
         let row = format!(
-            "{mark} {name:<NAME$} {here:>5} {all:>4} {most:>4}  {}",
+            "{mark} {name:<9} {here:>5} {all:>4} {most:>4}  {}",
             places.join(" ")
         );
         lines.push(Line::styled(paint::cut(&row, width), style));
@@ -369,7 +403,7 @@ fn attempts(buffer: &mut Buffer, area: Rect, app: &App) {
     let all = &past.run.attempts;
     let title = format!("Attempts: {}", all.len());
     let inner = paint::frame(buffer, area, &title, app.focus == Pane::Attempts, theme);
-    let mut lines = vec![Line::styled("  attempt    iterations  ended", theme.faint)];
+    let mut lines = vec![Line::styled("  attempt   iter  ended", theme.faint)];
     let rows = usize::from(inner.height).saturating_sub(1);
     let here = past.attempt(app.cursor);
     for index in columns::rows_shown(rows, here, all.len()) {
@@ -386,7 +420,7 @@ fn attempts(buffer: &mut Buffer, area: Rect, app: &App) {
             (false, "converged") => (" ", theme.text),
             (false, _) => (" ", theme.strong),
         };
-        let row = format!("{mark} {place:<11} {count:>9}  {word}{cycle}");
+        let row = format!("{mark} {place:<8} {count:>5}  {word}{cycle}");
         lines.push(Line::styled(
             paint::cut(&row, usize::from(inner.width)),
             style,
@@ -427,25 +461,24 @@ pub fn footer(app: &App, width: usize) -> (Vec<Line<'static>>, Vec<Line<'static>
     let told = told
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect();
-    let keys: Vec<(String, &str)> = match app.overlay {
+    let keys: Vec<(bool, String, String)> = match app.overlay {
         Overlay::Help(..) => [
             ("↑↓", "scroll"),
             ("/", "search"),
             ("n N", "again"),
             ("Esc", "back"),
         ]
-        .map(|(key, label)| (key.to_owned(), label))
+        .map(|(key, label)| (true, key.into(), label.into()))
         .to_vec(),
         _ => {
             let labelled = actions::all().filter(|(entry, _)| !entry.label.is_empty());
             let key = |entry| app.keymap.keys(entry).next().map(str::to_owned);
-            labelled
-                .filter_map(|(entry, _)| Some((key(entry)?, entry.label)))
-                .collect()
+            let hint =
+                |entry: &'static Entry| Some((is_always(entry), key(entry)?, entry.label.into()));
+            labelled.filter_map(|(entry, _)| hint(entry)).collect()
         }
     };
-    let spans = keys.iter().flat_map(|(key, label)| hint(key, label, theme));
-    (told, vec![Line::from(spans.collect::<Vec<_>>())])
+    (told, vec![fitted(&keys, width, theme)])
 }
 
 /// Width of the columns of keys and of names.

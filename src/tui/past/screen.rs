@@ -7,7 +7,8 @@ use crate::tui::screen::{harmless, plain};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Rows of the status: the run, the place, the iteration, and how the attempt ended with its cycle.
+/// Rows of the status: the run, the place, the iteration, and two of how the attempt ended with its cycle. That takes a row more
+/// on a narrow screen.
 const STATUS: u16 = 5;
 /// Fewest rows of a pane under the timeline.
 const PAGE: u16 = 6;
@@ -22,7 +23,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     let status = match area.height {
         0..=5 => area.height.min(1),
         6..=15 => 2,
-        _ => STATUS,
+        _ => STATUS + u16::from(area.width < WIDE && area.height > 20),
     };
     let (message, keys) = panes::footer(app, width);
     let footer = u16::from(area.height > 6);
@@ -79,7 +80,7 @@ fn places(body: Rect, app: &App) -> Vec<(Pane, Rect)> {
     if !is_large {
         return vec![(Pane::Timeline, above), (app.page, below)];
     }
-    let columns: [Rect; 3] = Layout::horizontal([Constraint::Fill(1); 3]).areas(below);
+    let columns: [Rect; 3] = Layout::horizontal([2, 3, 2].map(Constraint::Fill)).areas(below);
     let others = [Pane::Residual, Pane::Contacts, Pane::Attempts];
     let mut all = vec![(Pane::Timeline, above)];
     all.extend(others.into_iter().zip(columns));
