@@ -7,7 +7,6 @@ use crate::scene::Scene;
 use crate::session::Session;
 use crate::teach::Lesson;
 use crate::tui::debugger::{Debugger, Outside, offers};
-use crate::tui::screen::draw;
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
 use crossterm::event;
@@ -152,10 +151,8 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             }
         }
         if std::mem::take(&mut changed) {
-            let (app, view) = (&debugger.app, debugger.view());
-            debugger.app.area = terminal.draw(|buffer, area| {
-                draw(buffer, area, app, view.as_ref());
-            })?;
+            let app = &debugger.app;
+            debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
         }
         let works = debugger.is_busy() || debugger.loading.is_some() || debugger.looking.is_busy();
         let wait = if works { BUSY } else { IDLE };

@@ -4,6 +4,9 @@
 //! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP give it back, stop the process as the shell
 //! expects, and take it again with a full redraw when the process goes on.
 
+use crate::tui::app::App;
+use crate::tui::screen;
+use crate::tui::view::View;
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
@@ -74,9 +77,13 @@ impl Terminal {
         }
     }
 
-    /// Draws what changed, in one go where the terminal can do that.
-    /// Returns its size.
-    pub fn draw(&mut self, screen: impl FnOnce(&mut Buffer, Rect)) -> io::Result<Rect> {
+    /// Draws what changed of the debugger's screen; returns its size.
+    pub fn draw(&mut self, app: &App, view: Option<&View>) -> io::Result<Rect> {
+        self.show(|buffer, area| screen::draw(buffer, area, app, view))
+    }
+
+    /// Draws what changed of any screen, in one go where the terminal can do that; returns its size.
+    pub fn show(&mut self, screen: impl FnOnce(&mut Buffer, Rect)) -> io::Result<Rect> {
         queue!(stdout(), BeginSynchronizedUpdate)?;
         let drawn = self.screen.draw(|frame| {
             let area = frame.area();

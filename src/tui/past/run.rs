@@ -33,7 +33,7 @@ fn events(app: &mut App, terminal: &mut Terminal, signals: &Signals) -> io::Resu
     let mut changed = true;
     while signals.end().is_none() {
         if std::mem::take(&mut changed) {
-            let area = terminal.draw(|buffer, area| screen::draw(buffer, area, app))?;
+            let area = terminal.show(|buffer, area| screen::draw(buffer, area, app))?;
             if matches!(app.overlay, Overlay::Help(..)) {
                 let help = panes::help(app, usize::from(area.width.saturating_sub(2)));
                 app.shows_help(help.iter().map(ToString::to_string).collect());
