@@ -2,6 +2,7 @@
 //! `tests/calculix`, which `tests/peers/past.py` makes.
 
 use crate::terminal::*;
+use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -311,3 +312,57 @@ fn the_text_tells_attempts_cycles_and_who_chatters() {
     insta::assert_snapshot!("text-pinned-beam", own(&beam));
     insta::assert_snapshot!("text-two-blocks", own(&text("show", "two-blocks")));
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn no_keys_make_it_panic(typed in prop::collection::vec(prop::sample::select(KEYS), 0..60), size in (1_u16..130, 1_u16..50)) {
+        let mut app = app("two-blocks");
+        for name in typed {
+            app.type_keys(name);
+            prop_assert!(app.cursor < app.past.len() && app.selected < app.past.run.slaves.len());
+        }
+        screen::text(&app, size.0, size.1);
+    }
+}
+
+/// All keys that there are here, and letters for lines.
+const KEYS: &[&str] = &[
+    "s",
+    "n",
+    "f",
+    "c",
+    "S",
+    "N",
+    "F",
+    "C",
+    "Enter",
+    "Up",
+    "Down",
+    "Left",
+    "Right",
+    "PageUp",
+    "PageDown",
+    "g",
+    "G",
+    "/",
+    "t",
+    "Tab",
+    "Shift-Tab",
+    "z",
+    ":",
+    "?",
+    "Esc",
+    "Ctrl-c",
+    "Ctrl-l",
+    "Y",
+    "0",
+    "1",
+    "9",
+    "m",
+    "o",
+    "e",
+    "Backspace",
+    "Space",
+];

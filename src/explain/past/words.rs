@@ -114,20 +114,15 @@ pub fn ended(past: &Past, attempt: usize) -> String {
     match (this.end, follows(past, attempt)) {
         (End::Converged, _) => format!("converged after {iterations}"),
         (End::NotConverged, true) => {
-            let next = &attempts[attempt + 1];
-            let size = next
-                .row
-                .map_or(String::new(), |row| format!(" with {}", plain(row.size)));
-            format!(
-                "not converged in {iterations}, and cut: attempt {} goes on{size}",
-                next.attempt
-            )
+            let next = attempts[attempt + 1].row;
+            let size = next.map_or(String::new(), |row| format!(" to {}", plain(row.size)));
+            format!("not converged in {iterations}, and cut{size}")
         }
         (End::NotConverged, false) => {
             format!("not converged in {iterations}, and the run ends there")
         }
         (End::Unknown, _) => format!(
-            "{iterations} are told, and not how it ended: the run was stopped there, or goes on"
+            "{iterations}, and no file tells how it ended: the run was stopped there, or goes on"
         ),
     }
 }
@@ -205,7 +200,7 @@ pub fn closed(past: &Past, iteration: usize) -> String {
             };
             format!("closed {closed} of {}{held}", past.run.slaves.len())
         }
-        None => "who is in contact is not told".into(),
+        None => "contacts are not told".into(),
     }
 }
 

@@ -10,4 +10,4 @@ pub mod panes;
 pub mod run;
 pub mod screen;
 
-pub use run::run;
+pub use run::{picture, run};

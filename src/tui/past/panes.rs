@@ -85,8 +85,8 @@ pub fn draw(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App) {
     }
 }
 
-/// Which run, where in it, and how its attempt went.
-pub fn status(app: &App, width: usize) -> Vec<Line<'static>> {
+/// Which run, where in it, and how its attempt went, in so many rows.
+pub fn status(app: &App, width: usize, rows: usize) -> Vec<Line<'static>> {
     let (past, theme) = (&app.past, &app.theme);
     let attempt = past.attempt(app.cursor);
     let tells = format!("  {}", words::READ_ONLY);
@@ -116,11 +116,14 @@ pub fn status(app: &App, width: usize) -> Vec<Line<'static>> {
         "converged" => theme.text,
         _ => theme.strong,
     };
-    let told = paint::wrap(&format!("{ended}{cycle}"), width.saturating_sub(2));
-    lines.extend(
-        told.into_iter()
-            .map(|line| Line::styled(format!(" {line}"), style)),
-    );
+    let room = rows.saturating_sub(lines.len());
+    let mut told = paint::wrap(&format!("{ended}{cycle}"), width.saturating_sub(3));
+    if told.len() > room {
+        told.truncate(room);
+        told.last_mut().into_iter().for_each(|last| last.push('…'));
+    }
+    let told = told.into_iter();
+    lines.extend(told.map(|line| Line::styled(format!(" {line}"), style)));
     lines
 }
 
@@ -200,7 +203,7 @@ fn timeline(buffer: &mut Buffer, area: Rect, app: &App) {
     }
     let letters = match past.corners(app.selected) {
         None => "C closed  · open  M on another face",
-        Some(_) => "C closed  · open  1-9 tenths of its points",
+        Some(_) => "C closed  · open  1-9 tenths of it",
     };
     let legend = format!("{}   {letters}", words::NO_MODES);
     let legend = paint::cut(&legend, usize::from(inner.width) - 1);

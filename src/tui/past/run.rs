@@ -2,6 +2,7 @@
 
 use super::app::{App, Overlay};
 use super::{panes, screen};
+use crate::action::Keymap;
 use crate::action::config::Config;
 use crate::explain::past::run::Past;
 use crate::tui::keys;
@@ -65,4 +66,12 @@ fn events(app: &mut App, terminal: &mut Terminal, signals: &Signals) -> io::Resu
         }
     }
     Ok(())
+}
+
+/// The screen of a run after some keys, as plain text: the program's own picture of itself. Keys are named as in the table and
+/// parted by blanks.
+pub fn picture(past: Past, keys: &str, width: u16, height: u16) -> String {
+    let mut app = App::new(past, Theme::mono(), Keymap::default());
+    app.type_keys(keys);
+    screen::text(&app, width, height)
 }

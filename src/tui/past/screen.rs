@@ -7,11 +7,10 @@ use crate::tui::screen::{harmless, plain};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// Rows of the status: the run, the place, the iteration, and two of how the attempt ended with its cycle. That takes a row more
-/// on a narrow screen.
+/// Rows of the status: the run, the place, the iteration, and two of how the attempt ended with its cycle.
 const STATUS: u16 = 5;
 /// Fewest rows of a pane under the timeline.
-const PAGE: u16 = 6;
+const PAGE: u16 = 7;
 /// Size from which on all panes are seen at once.
 const WIDE: u16 = 110;
 const HIGH: u16 = 24;
@@ -23,7 +22,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     let status = match area.height {
         0..=5 => area.height.min(1),
         6..=15 => 2,
-        _ => STATUS + u16::from(area.width < WIDE && area.height > 20),
+        _ => STATUS,
     };
     let (message, keys) = panes::footer(app, width);
     let footer = u16::from(area.height > 6);
@@ -38,8 +37,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
         }
     }
     // The place is what a screen of one line must show.
-    let told = panes::status(app, width);
     let skipped = usize::from(status.height < 3);
+    let told = panes::status(app, width, usize::from(status.height) + skipped);
     paint::over(buffer, status, &told[skipped..], &app.theme);
     // A message of several lines begins further up, over the panes.
     let most = usize::from(area.height / 2).max(1);
