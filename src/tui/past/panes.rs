@@ -150,15 +150,21 @@ fn timeline(buffer: &mut Buffer, area: Rect, app: &App) {
     for (y, text) in [(0, "increment"), (1, "attempt")] {
         buffer.set_string(inner.x + 1, inner.y + y, text, theme.faint);
     }
+    let leftmost = shown.first().map(|column| column.at);
     columns::headings(buffer, inner, &shown, theme.heading, |at| {
         let attempt = &past.run.attempts[past.attempt(at)];
-        let increment = (attempt.step, attempt.increment);
+        let (step, increment) = (attempt.step, attempt.increment);
+        // A step is told where it begins, and on the left.
+        let name = match increment == 1 || leftmost == Some(at) {
+            true => format!("{step}.{increment}"),
+            false => increment.to_string(),
+        };
         [
+            ((step, increment, 0), name),
             (
-                (increment, 0),
-                format!("{}.{}", attempt.step, attempt.increment),
+                (step, increment, attempt.attempt),
+                attempt.attempt.to_string(),
             ),
-            ((increment, attempt.attempt), attempt.attempt.to_string()),
         ]
     });
     for (row, slave) in contacts.clone().enumerate() {
