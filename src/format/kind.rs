@@ -53,7 +53,7 @@ impl FileKind {
         if first.starts_with("stickslip ") && first.contains(" results, ") {
             return Some(FileKind::Results);
         }
-        if first.starts_with("*ELEMENT") && first.contains("=contactelements_st") {
+        if is_contacts(first) {
             return Some(FileKind::Contacts);
         }
         if PROGRESS.contains(&first) {
@@ -152,6 +152,12 @@ impl FileKind {
 pub(crate) fn has_field(text: &str, field: &str) -> bool {
     let whole = || locate(text, &Path::default());
     too_deep(text).is_none() && locate(text, &Path(vec![Step::from(field)])) != whole()
+}
+
+/// Whether a text begins as the contact elements of a CalculiX run do.
+pub fn is_contacts(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    first.starts_with("*ELEMENT") && first.contains("=contactelements_st")
 }
 
 /// The message where a text is of another kind than `wanted`: ``this is a snapshot; `stickslip replay FILE` reads it``.

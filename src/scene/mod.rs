@@ -27,6 +27,7 @@ mod curves;
 mod deck;
 mod geometry;
 
+use crate::format::kind;
 use crate::format::paths::Override;
 use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read};
 use crate::model::Model;
@@ -87,7 +88,8 @@ impl Scene {
         text: &str,
         overrides: &[(String, String)],
     ) -> Result<Scene, SceneError> {
-        if deck::is_one(text) {
+        // The contact elements of a run begin as a deck does.
+        if deck::is_one(text) && !kind::is_contacts(text) {
             return Scene::from_deck(name, text, overrides);
         }
         if siconos::is_one(text) {

@@ -20,3 +20,6 @@ pub enum Stop {
     /// A whole number had no room in its column, so that it is not known which iterations follow.
     NoRoom(usize),
 }
+
+/// The rows of a table, in its order, and where it breaks off, if it does.
+pub type Table<T> = (Vec<T>, Option<Stop>);
