@@ -59,6 +59,7 @@
 //!         inner: 0,
 //!     },
 //!     loads: vec![load(0, push), load(1, -press)],
+//!     pressures: Vec::new(),
 //!     prescribed: Vec::new(),
 //!     path: vec![0.0, 1.0],
 //!     increment: 0.5,

@@ -4,8 +4,9 @@
 use super::names::slave;
 use super::number::four;
 use crate::contact::projection::projection_at;
+use crate::fem::pressure::Pressures;
 use crate::linear::singular::{Motion, RigidMotion, Singular};
-use crate::model::{Mode, Model};
+use crate::model::{Factor, Mode, Model};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use std::collections::HashSet;
@@ -118,7 +119,16 @@ impl<'a> Moving<'a> {
             };
             Some(load.value * load.scale.at(state.load_factor) * rate)
         };
-        model.loads.iter().filter_map(of).sum()
+        let dead: f64 = model.loads.iter().filter_map(of).sum();
+        let mut following = 0.0;
+        let factor = |scale: &Factor| scale.at(state.load_factor);
+        Pressures::new(model).each(model, &state.u, factor, |dof, force| {
+            let on = |node: &&usize| (dofs.first[**node]..dofs.first[**node] + 2).contains(&dof);
+            if let Some(&node) = nodes.iter().find(on) {
+                following += force * self.velocity(self.places[node])[dof - dofs.first[node]];
+            }
+        });
+        dead + following
     }
 
     fn pushed(&self, state: &State) -> String {

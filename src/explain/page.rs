@@ -438,6 +438,7 @@ fn stiffest(model: &Model) -> Option<String> {
             let largest = solid.materials.iter().map(|m| m.young).fold(0.0, f64::max);
             Some(("E", largest))
         }
+        BodyKind::Truss(truss) => Some(("EA", truss.ea)),
         BodyKind::Linear(_) => None,
     };
     let all = model

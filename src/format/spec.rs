@@ -330,7 +330,7 @@ described! {
             /// Default: strain.
             #[serde(default)]
             plane: Plane,
-            /// Thickness across the plane, of the undeformed body. Default: 1.
+            /// Thickness across the plane, of the undeformed body; none in axisymmetry. Default: 1.
             #[serde(default = "unit")]
             thickness: f64,
             /// Default: total.
@@ -357,6 +357,7 @@ described! {
     /// A deformable body.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
+    #[allow(non_snake_case)]
     pub enum BodySpec {
         /// A geometrically exact planar beam along a chain of nodes.
         Beam {
@@ -397,7 +398,19 @@ described! {
             #[serde(default)]
             free: Vec<f64>,
         },
-        /// Linear bars, their directions fixed: small displacements.
+        /// Elastic bars, hinged at both ends, that turn as far as they like: N = EA (l - L) / L.
+        Truss {
+            /// Name of the body.
+            id: String => name,
+            /// Pairs of nodes, a bar between each.
+            bars: Vec<(String, String)>,
+            /// Axial stiffness of every bar, a force; in axisymmetry of all bars around together.
+            EA: f64,
+            /// Displacements are small: each bar keeps its direction. Default: false.
+            #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+            small: bool,
+        },
+        /// Linear bars, their directions fixed: small displacements. In axisymmetry stiffnesses are of the whole circumference.
         Springs {
             /// Name of the body.
             id: String => name,
@@ -409,14 +422,15 @@ described! {
 
 described! {
     /// A linear bar between two nodes, or from one node to the ground. It resists motion (of one node against the other)
-    /// along its angle alone.
+    /// along its angle alone, both ways and from the start: there is no dead band.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Bar {
         /// One node or two.
         pub nodes: Vec<String>,
-        /// Degrees from +x, anticlockwise.
-        pub angle: f64,
+        /// Degrees from +x, anticlockwise. Default: along the line between the two undeformed nodes.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub angle: Option<f64> => given,
         /// Force by length.
         pub stiffness: f64,
     }
@@ -442,6 +456,7 @@ impl BodySpec {
         match self {
             BodySpec::Beam { id, .. }
             | BodySpec::Solid { id, .. }
+            | BodySpec::Truss { id, .. }
             | BodySpec::Matrix { id, .. }
             | BodySpec::Springs { id, .. } => id,
         }
@@ -549,17 +564,44 @@ described! {
             #[serde(default)]
             scale: Scale,
         },
-        /// A uniform dead load along a chain: on each unit of its undeformed length.
+        /// A uniform dead load along a chain: on each unit of its undeformed length; in axisymmetry on each unit of undeformed
+        /// area, all around (2 pi x).
         Traction {
             /// Id of the chain, or name of the edge.
             along: String,
             /// Along the outward normal of the undeformed chain, to the right of its walk. Default: 0.
             #[serde(default)]
             normal: f64,
-            /// Component along x, force by length. Default: 0.
+            /// Component along x, force by length (axisymmetry: by area). Default: 0.
             #[serde(default)]
             x: f64,
-            /// Component along y, force by length. Default: 0.
+            /// Component along y, force by length (axisymmetry: by area). Default: 0.
+            #[serde(default)]
+            y: f64,
+            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
+            #[serde(default)]
+            scale: Scale,
+        },
+        /// A pressure on the faces of solids along a chain, which follows them: force by current area (times the thickness, or
+        /// the circumference 2 pi x in axisymmetry), along the current normal. On a solid with `update: small` it stays as it is
+        /// on the undeformed face.
+        Pressure {
+            /// Id of the chain, or name of the edge.
+            along: String,
+            /// Force by area; positive pushes into the body, whichever way the chain is walked.
+            value: f64,
+            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
+            #[serde(default)]
+            scale: Scale,
+        },
+        /// A dead load on each unit of undeformed volume of a solid, as its weight: density times gravity.
+        Volume {
+            /// Id of the solid, or of a block or mesh that solids stand on.
+            on: String,
+            /// Component along x, force by volume. Default: 0.
+            #[serde(default)]
+            x: f64,
+            /// Component along y, force by volume. Default: 0.
             #[serde(default)]
             y: f64,
             /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.

@@ -110,6 +110,15 @@ fn body_line(body: &Body) -> String {
     match &body.kind {
         BodyKind::Beam(beam) => beam_line(&body.name, beam),
         BodyKind::Solid(solid) => solid_line(&body.name, solid),
+        BodyKind::Truss(truss) => {
+            let bars = plural(truss.bars.len(), "bar");
+            let small = if truss.small {
+                ", small displacements"
+            } else {
+                ""
+            };
+            format!("{}: truss, {bars}, EA {}{small}", body.name, truss.ea)
+        }
         BodyKind::Linear(linear) => linear_line(body, linear),
     }
 }
@@ -328,7 +337,7 @@ fn without(model: &Model) -> Vec<String> {
             "no cohesion: it is 0",
         ),
         (
-            model.loads.is_empty(),
+            model.loads.is_empty() && model.pressures.is_empty(),
             "no loads: no force and no moment is named",
         ),
         (

@@ -5,7 +5,7 @@
 //! same then holds for the reactions and the loads together.
 
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
-use crate::model::{BodyKind, Model};
+use crate::model::{Body, BodyKind, Model};
 
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +28,7 @@ pub fn check(
     verdict: &mut Verdict,
 ) {
     let dofs = &model.dofs;
+    let small = model.bodies.iter().all(Body::is_small);
     let (mut worst, mut total) = ((0.0_f64, None), Total::default());
     for (node, (&first, &count)) in dofs.first.iter().zip(&dofs.count).enumerate() {
         let mut bears = [0.0; 3];
@@ -43,7 +44,13 @@ pub fn check(
         }
         let at = |k: usize| forces.internal[first + k];
         let moment = if count > 2 { at(2) } else { 0.0 };
-        total.add(now[node], [at(0), at(1)], moment);
+        // Where displacements are small, forces are in balance on the undeformed shape.
+        let place = if small {
+            model.nodes[node].at
+        } else {
+            now[node]
+        };
+        total.add(place, [at(0), at(1)], moment);
     }
     let slave = |node| model.contacts.iter().position(|s| s.node == node);
     verdict.add(Finding {
@@ -53,18 +60,16 @@ pub fn check(
         allowed: scales.allowed(Law::Balance),
         numbers: Numbers::default(),
     });
-    // A body that is given by a matrix may be held by what the matrix stands for.
-    if model
-        .bodies
-        .iter()
-        .any(|body| matches!(body.kind, BodyKind::Linear(_)))
-    {
+    // A body that is given by a matrix may be held by what the matrix stands for. Of small displacements and large ones there is
+    // no common shape to take moments on.
+    let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
+    if model.bodies.iter().any(given) || (!small && model.bodies.iter().any(Body::is_small)) {
         return;
     }
     verdict.add(Finding {
         law: Law::Moments,
         slave: None,
-        amount: total.size(scales.length) / scales.force,
+        amount: total.size(scales.length, model.is_axisymmetric()) / scales.force,
         allowed: scales.allowed(Law::Moments),
         numbers: Numbers::default(),
     });
@@ -90,8 +95,12 @@ impl Total {
         self.count += 1.0;
     }
 
-    /// The larger of force, and moment about the middle over a length.
-    fn size(&self, length: f64) -> f64 {
+    /// The larger of force, and moment about the middle over a length; in axisymmetry the force along the axis alone, since
+    /// others are in balance around it.
+    fn size(&self, length: f64, axisymmetric: bool) -> f64 {
+        if axisymmetric {
+            return self.force[1].abs();
+        }
         let [x, y] = self.middle.map(|sum| sum / self.count.max(1.0));
         let moment = self.moment - (x * self.force[1] - y * self.force[0]);
         let [f_x, f_y] = self.force;

@@ -9,9 +9,11 @@ use crate::fem::continuum;
 use crate::fem::element::{Assembled, Element, Past};
 use crate::fem::material::Material;
 use crate::fem::matrix;
+use crate::fem::small;
+use crate::fem::truss;
 use crate::linalg::Pattern;
 use crate::model::Model;
-use crate::model::{Beam, Body, BodyKind, Dofs, Solid, SolidElement};
+use crate::model::{Beam, Body, BodyKind, Dofs, Solid, SolidElement, Truss};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -117,6 +119,7 @@ impl Assembly {
             match &body.kind {
                 BodyKind::Beam(beam) => assembly.add_beam(model, beam),
                 BodyKind::Solid(solid) => assembly.add_solid(model, solid),
+                BodyKind::Truss(truss) => assembly.add_truss(model, truss),
                 BodyKind::Linear(linear) => {
                     let element = matrix::Element::new(&model.dofs, body, linear);
                     assembly.matrices.push(element);
@@ -156,6 +159,18 @@ impl Assembly {
             let material = Material::new(elastic);
             let element = continuum::element(*kind, &positions, material, elastic.update);
             self.place(element, dofs_of(model, nodes, 2));
+        }
+    }
+
+    fn add_truss(&mut self, model: &Model, truss: &Truss) {
+        for bar in truss.bars.iter().filter(|bar| bar.len() == 2) {
+            let element = truss::Element::new([0, 1].map(|k| model.nodes[bar[k]].at), truss.ea);
+            let element: Box<dyn Element> = if truss.small {
+                Box::new(small::Element::new(&element))
+            } else {
+                Box::new(element)
+            };
+            self.place(element, dofs_of(model, bar, 2));
         }
     }
 
@@ -478,7 +493,7 @@ impl Room {
 /// How many numbers the elements of a scene remember from increment to increment.
 pub fn history_len(model: &Model) -> usize {
     let of = |body: &Body| match &body.kind {
-        BodyKind::Beam(_) | BodyKind::Linear(_) => 0,
+        BodyKind::Beam(_) | BodyKind::Truss(_) | BodyKind::Linear(_) => 0,
         BodyKind::Solid(solid) => {
             let of = |element: &SolidElement| {
                 continuum::history_len(element.kind, solid.materials[element.material].update)

@@ -5,6 +5,7 @@ use super::continuum;
 use super::element::{Element, Past};
 use super::lagrange::MAX_NODES;
 use super::material::Material;
+use super::{small, truss};
 use crate::model::{Elastic, ElementKind, Law, Plane, Update};
 
 /// An element in a shape that is nothing special.
@@ -40,6 +41,8 @@ fn specimens() -> Vec<Specimen> {
             all.push(beam(m, ga));
         }
     }
+    all.push(bar(false));
+    all.push(bar(true));
     for kind in ElementKind::ALL {
         for (law, plane, update) in choices() {
             all.push(solid(kind, law, plane, update));
@@ -60,6 +63,23 @@ fn choices() -> Vec<(Law, Plane, Update)> {
         ]
     };
     planes.into_iter().flat_map(of_plane).collect()
+}
+
+fn bar(small: bool) -> Specimen {
+    let at = [[0.3, -0.2], [1.5, 0.7]];
+    let element = truss::Element::new(at, 100.0);
+    Specimen {
+        name: format!("bar, small: {small}"),
+        element: if small {
+            Box::new(small::Element::new(&element))
+        } else {
+            Box::new(element)
+        },
+        at: at.to_vec(),
+        per_node: 2,
+        stiffness: 100.0,
+        free: if small { Free::Small } else { Free::Motions },
+    }
 }
 
 fn beam(m: usize, ga: Option<f64>) -> Specimen {

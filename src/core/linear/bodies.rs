@@ -20,7 +20,7 @@ use crate::linear::source::{At, Solved, Source, Work};
 use crate::linear::stability::Stability;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Axis, Contact, Friction, Mode, Model, Settings, Watched};
+use crate::model::{Axis, Contact, Factor, Friction, Mode, Model, Settings, Watched};
 use std::sync::Arc;
 
 /// What a relative amount against a law may be at least; more where the settings' tolerance or round-off is larger.
@@ -202,7 +202,9 @@ impl Source for Bodies {
     }
 
     fn aim(&mut self, at: &At<'_>) -> bool {
-        let holds = at.accepted.history.is_empty() && !self.system.is_dragged(at);
+        // A pressure that follows its faces has a stiffness that goes with the load.
+        let dead = self.system.pressures.is_empty();
+        let holds = dead && at.accepted.history.is_empty() && !self.system.is_dragged(at);
         if holds {
             self.system.aim(&self.model, at);
         }
@@ -378,6 +380,9 @@ impl Source for Bodies {
         for load in &model.loads {
             bench.load[load.dof] += load.value * load.scale.at(at.last_target);
         }
+        let factor = |scale: &Factor| scale.at(at.last_target);
+        let pressures = &self.system.pressures;
+        pressures.each(model, at.u, factor, |dof, part| bench.load[dof] += part);
         add_drag(model, at, &self.system.sizes, &mut bench.load);
         let forces = Forces {
             internal: self.system.internal(),
@@ -445,7 +450,12 @@ impl Source for Bodies {
             // The load is that of the displacements at hand, not the one that is aimed at next.
             Watched::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);
-                let load: f64 = loads.map(|l| l.value * l.scale.at(at.last_target)).sum();
+                let mut load: f64 = loads.map(|l| l.value * l.scale.at(at.last_target)).sum();
+                let (factor, own) = (|scale: &Factor| scale.at(at.last_target), *dof);
+                let pressures = &self.system.pressures;
+                pressures.each(&self.model, at.u, factor, |dof, part| {
+                    load += if dof == own { part } else { 0.0 };
+                });
                 self.system.internal()[*dof] - load - self.system.interaction(*dof)
             }
         }

@@ -21,7 +21,7 @@
 use super::source::{Along, At};
 use super::system::{System, dot};
 use crate::linalg::SolveError;
-use crate::model::Model;
+use crate::model::{Factor, Model};
 
 /// A border whose pivot is smaller than this part of its terms has none.
 const NO_PIVOT: f64 = 1e-13;
@@ -73,6 +73,12 @@ impl System {
                 border.rate[equation] += load.value * load.scale.slope(at.target);
             }
         }
+        let slope = |scale: &Factor| scale.slope(at.target);
+        self.pressures.each(model, at.u, slope, |dof, part| {
+            if let Some(equation) = model.dofs.equation[dof] {
+                border.rate[equation] += part;
+            }
+        });
         if model.prescribed.is_empty() {
             return;
         }

@@ -124,6 +124,7 @@ impl Constant {
             contacts: self.friction.iter().enumerate().map(contact).collect(),
             dofs: Dofs::default(),
             loads: Vec::new(),
+            pressures: Vec::new(),
             prescribed: Vec::new(),
             path,
             increment,

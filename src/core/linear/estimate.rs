@@ -245,7 +245,7 @@ fn factoring(body: &Body) -> (Factoring, Factoring) {
                 2.0,
             )
         }
-        BodyKind::Solid(_) => {
+        BodyKind::Solid(_) | BodyKind::Truss(_) => {
             let unknowns = 2.0 * body.nodes.len() as f64;
             let entries = MESH_ENTRIES * unknowns * unknowns.max(2.0).log2();
             let operations = MESH_OPERATIONS * unknowns.powf(1.5);
@@ -306,13 +306,14 @@ fn displacements(model: &Model) -> f64 {
 
 /// Whether all bodies of a scene have a stiffness that can be factored without pivoting. Shear-rigid beams have not:
 /// their shear forces are unknowns of a saddle point. So are the forces on a body that is given by its compliance, and a
-/// given stiffness may be unsymmetric.
+/// given stiffness may be unsymmetric, and that of a pressure that follows its faces is.
 pub fn condensable(model: &Model) -> bool {
-    model.bodies.iter().all(|body| match &body.kind {
+    let symmetric = |body: &Body| match &body.kind {
         BodyKind::Beam(beam) => beam.first_shear.is_none(),
-        BodyKind::Solid(_) => true,
+        BodyKind::Solid(_) | BodyKind::Truss(_) => true,
         BodyKind::Linear(linear) => linear.form == Form::Stiffness && linear.is_symmetric(),
-    })
+    };
+    model.pressures.is_empty() && model.bodies.iter().all(symmetric)
 }
 
 /// A number of bytes for a person.

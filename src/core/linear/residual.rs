@@ -6,7 +6,7 @@ use super::sizes::ROUND_OFF;
 use super::source::At;
 use super::system::{Layout, System};
 use super::violation::violation;
-use crate::model::Model;
+use crate::model::{Factor, Model};
 
 impl System {
     /// Out-of-balance force R − F of eqn (22) and its norms.
@@ -85,6 +85,9 @@ impl System {
         for load in &model.loads {
             self.external[load.dof] += load.value * load.scale.at(at.target);
         }
+        let (external, factor) = (&mut self.external, |scale: &Factor| scale.at(at.target));
+        self.pressures
+            .each(model, at.u, factor, |dof, part| external[dof] += part);
         add_drag(model, at, &self.sizes, &mut self.external);
     }
 

@@ -190,14 +190,17 @@ impl Frame<'_> {
         }
     }
 
-    /// What is given by a matrix has no rigid motion that could be told; nor, then, have bodies where they share its
+    /// What is given by a matrix, or made of bars, has no rigid motion that could be told; nor, then, have bodies where they share its
     /// nodes.
     fn linear(&self, conditions: &mut Vec<Vec<f64>>) {
         for (b, body) in self.model.bodies.iter().enumerate() {
-            if !matches!(body.kind, BodyKind::Linear(_)) {
-                continue;
-            }
-            for component in 0..3 {
+            // A ring can be shifted along the axis alone.
+            let stiff: &[usize] = match &body.kind {
+                BodyKind::Linear(_) | BodyKind::Truss(_) => &[0, 1, 2],
+                BodyKind::Solid(_) if body.is_axisymmetric() => &[0, 2],
+                BodyKind::Beam(_) | BodyKind::Solid(_) => &[],
+            };
+            for component in stiff.iter().copied() {
                 let mut row = self.row();
                 row[3 * b + component] = 1.0;
                 conditions.push(row);

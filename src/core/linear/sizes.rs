@@ -8,9 +8,10 @@
 //!   reactions of what is moved. A beam that is 1e16 times stiffer along its axis than across has axial forces that are
 //!   known to a few loads only; whatever the residual says, no digit of its contact forces is right.
 
+use crate::fem::pressure::Pressures;
 use crate::linear::source::At;
 use crate::model::Component;
-use crate::model::{Body, BodyKind, Form, Load, Model};
+use crate::model::{Body, BodyKind, Factor, Form, Model};
 
 /// Round-off of an internal force, or of a length, in units of the machine precision times the terms that it sums up.
 pub const ROUND_OFF: f64 = 8.0;
@@ -52,10 +53,19 @@ impl Sizes {
             kind,
         };
         for load in &model.loads {
-            let size = load.value.abs() * peak(&model.path, load);
+            let size = load.value.abs() * peak(&model.path, &load.scale);
             if let Some(lever) = sizes.lever(load.dof) {
                 sizes.reference = sizes.reference.max(size / lever);
             }
+        }
+        if !model.pressures.is_empty() {
+            let (mut force, rest) = (vec![0.0; model.dofs.len()], vec![0.0; model.dofs.len()]);
+            let peak = |scale: &Factor| peak(&model.path, scale);
+            Pressures::new(model).each(model, &rest, peak, |dof, part| force[dof] += part);
+            let largest = force
+                .iter()
+                .fold(0.0_f64, |most, force| most.max(force.abs()));
+            sizes.reference = sizes.reference.max(largest);
         }
         sizes
     }
@@ -134,14 +144,14 @@ fn coarse(size: f64) -> f64 {
 }
 
 /// Largest size of a load's factor over a path: at its corners, and where the factor itself turns between them.
-fn peak(path: &[f64], load: &Load) -> f64 {
+fn peak(path: &[f64], scale: &Factor) -> f64 {
     let (low, high) = path
         .iter()
         .fold((f64::INFINITY, -f64::INFINITY), |(l, h), &p| {
             (l.min(p), h.max(p))
         });
-    let corners = path.iter().map(|&p| load.scale.at(p));
-    let turns = load.scale.0.iter();
+    let corners = path.iter().map(|&p| scale.at(p));
+    let turns = scale.0.iter();
     let turns = turns.filter(|(at, _)| (low..=high).contains(at));
     corners
         .chain(turns.map(|(_, factor)| *factor))
@@ -168,9 +178,13 @@ fn softest_body(model: &Model) -> f64 {
     let of = |body: &Body| match &body.kind {
         BodyKind::Beam(beam) => beam.ei / model.length.powi(3),
         BodyKind::Solid(solid) => {
-            let stiffness = solid.materials.iter().map(|m| m.young * m.thickness);
+            let stiffness = solid
+                .materials
+                .iter()
+                .map(|m| m.young * m.width(model.length));
             stiffness.fold(f64::INFINITY, f64::min)
         }
+        BodyKind::Truss(truss) => truss.ea / model.length,
         BodyKind::Linear(linear) => {
             let largest = linear.entries.iter().fold(0.0_f64, |m, e| m.max(e.2.abs()));
             match linear.form {

@@ -12,6 +12,7 @@ use crate::contact::table1::Equation;
 use crate::executor::Executor;
 use crate::fem::assembly::{Assembly, Moved};
 use crate::fem::element::Assembled;
+use crate::fem::pressure::Pressures;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::rows;
 use crate::linalg::{Factors, Pattern, SolveError};
@@ -53,6 +54,9 @@ pub struct System {
     /// The elements, once they are laid out: a solver that only looks at contacts does without.
     assembly: Assembly,
     laid_out: bool,
+    /// Loads that follow the faces they act on; a scene that has any takes its stiffness anew in every major iteration, and is
+    /// solved with a whole, unsymmetric matrix.
+    pub(super) pressures: Pressures,
     /// What `stiffness` is laid out for.
     pub(super) layout: Option<Layout>,
     pub(super) whole: Option<Factors>,
@@ -120,6 +124,7 @@ impl System {
         System {
             assembly: Assembly::empty(executor.clone()),
             laid_out: false,
+            pressures: Pressures::new(model),
             layout: None,
             whole: None,
             taken: Vec::new(),
@@ -289,6 +294,10 @@ impl System {
         };
         let moved = moved(at.u, &self.step, at);
         self.assembly.assemble(&model.dofs, moved, out);
+        let place = (at.u, at.target);
+        let (values, coupling) = (&mut self.stiffness, &mut self.coupling);
+        self.pressures
+            .stiffen(model, place, &self.step, values, coupling);
         self.done.assemblies += 1;
         self.drag(model, at);
     }
@@ -329,6 +338,7 @@ impl System {
             let size = factors.pattern().size();
             self.taken.clear();
             self.assembly.bind(&model.dofs, factors.pattern(), false);
+            self.pressures.bind(&model.dofs, factors.pattern());
             self.stiffness.resize(factors.pattern().entries(), 0.0);
             self.values.resize(factors.pattern().entries(), 0.0);
             for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
@@ -393,6 +403,7 @@ impl System {
     fn analyse(&mut self, model: &Model) -> Result<(), SolveError> {
         let equations = model.dofs.equations;
         let mut entries = self.assembly.entries(&model.dofs);
+        entries.extend(self.pressures.entries(&model.dofs));
         for (s, interface) in self.interfaces.iter().enumerate() {
             let row = equations + 2 * s;
             let linked = || {

@@ -13,7 +13,7 @@ use crate::contact::geometric_tangent::{Variation, geometric_tangent};
 use crate::fem::assembly::{Assembly, Moved};
 use crate::fem::element::Assembled;
 use crate::linalg::{Pattern, SymmetricFactors};
-use crate::model::{BodyKind, Form, Mode, Model};
+use crate::model::{Body, BodyKind, Form, Mode, Model};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
@@ -171,10 +171,11 @@ impl Tangent {
 }
 
 fn is_symmetric(model: &Model) -> bool {
-    model.bodies.iter().all(|body| match &body.kind {
-        BodyKind::Beam(_) | BodyKind::Solid(_) => true,
+    let symmetric = |body: &Body| match &body.kind {
+        BodyKind::Beam(_) | BodyKind::Solid(_) | BodyKind::Truss(_) => true,
         BodyKind::Linear(linear) => linear.is_symmetric(),
-    })
+    };
+    model.pressures.is_empty() && model.bodies.iter().all(symmetric)
 }
 
 /// The equations of bodies with equations of lengths.
@@ -184,7 +185,7 @@ fn pivoted(model: &Model, lengths: &[bool]) -> Vec<bool> {
         let saddle = match &body.kind {
             BodyKind::Beam(beam) => beam.first_shear.is_some(),
             BodyKind::Linear(linear) => linear.form != Form::Stiffness,
-            BodyKind::Solid(_) => false,
+            BodyKind::Solid(_) | BodyKind::Truss(_) => false,
         };
         for &node in body.nodes.iter().filter(|_| saddle) {
             let first = model.dofs.first[node];

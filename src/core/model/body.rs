@@ -22,8 +22,27 @@ pub enum BodyKind {
     Beam(Beam),
     /// A plane continuum.
     Solid(Solid),
+    /// Bars between nodes.
+    Truss(Truss),
     /// A body given by a stiffness or compliance matrix.
     Linear(Linear),
+}
+
+impl Body {
+    /// Whether it is a body of revolution.
+    pub fn is_axisymmetric(&self) -> bool {
+        let round = |m: &Elastic| m.plane == Plane::Axisymmetric;
+        matches!(&self.kind, BodyKind::Solid(solid) if solid.materials.iter().any(round))
+    }
+
+    /// Whether forces are in balance on its undeformed shape, all of it ([`Update::Small`]).
+    pub fn is_small(&self) -> bool {
+        match &self.kind {
+            BodyKind::Solid(solid) => solid.materials.iter().all(|m| m.update == Update::Small),
+            BodyKind::Truss(truss) => truss.small,
+            BodyKind::Beam(_) | BodyKind::Linear(_) => false,
+        }
+    }
 }
 
 impl BodyKind {
@@ -32,6 +51,7 @@ impl BodyKind {
         match self {
             BodyKind::Beam(beam) => &beam.elements,
             BodyKind::Solid(solid) => &solid.edges,
+            BodyKind::Truss(truss) => &truss.bars,
             BodyKind::Linear(linear) => &linear.bars,
         }
     }
@@ -51,6 +71,17 @@ pub struct Beam {
     /// First shear degree of freedom of a shear-rigid body; Gauss point p of element e has
     /// `first_shear + e * (m - 1) + p`. `None` if the body has a shear stiffness.
     pub first_shear: Option<usize>,
+}
+
+/// Bars between two nodes each, hinged at both.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Truss {
+    /// The two nodes of each bar.
+    pub bars: Vec<Vec<usize>>,
+    /// Axial stiffness of each bar (force).
+    pub ea: f64,
+    /// Whether displacements are small: each bar keeps its direction.
+    pub small: bool,
 }
 
 /// A continuum of elements, of one kind or of several.
@@ -90,6 +121,16 @@ pub struct Elastic {
     pub thickness: f64,
     /// What strains and stresses are referred to.
     pub update: Update,
+}
+
+impl Elastic {
+    /// Width across the plane at x: the thickness, or in axisymmetry the circumference 2π x.
+    pub fn width(&self, x: f64) -> f64 {
+        match self.plane {
+            Plane::Strain | Plane::Stress => self.thickness,
+            Plane::Axisymmetric => std::f64::consts::TAU * x,
+        }
+    }
 }
 
 documented! {

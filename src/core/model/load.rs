@@ -14,6 +14,26 @@ pub struct Load {
     pub scale: Factor,
 }
 
+/// A pressure on faces of solids, which follows them: a force by current area, into the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pressure {
+    /// The faces.
+    pub faces: Vec<PressedFace>,
+    /// Pressure (force by area) at a factor of 1; positive pushes into the body.
+    pub value: f64,
+    /// Factor of the value, as a function of the load factor.
+    pub scale: Factor,
+}
+
+/// A face under pressure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PressedFace {
+    /// Its nodes, walked with the body on the left.
+    pub nodes: Vec<usize>,
+    /// Thickness across the plane (length); `None` in axisymmetry, where it is a ring.
+    pub thickness: Option<f64>,
+}
+
 /// A prescribed value of one degree of freedom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prescribed {

@@ -20,13 +20,13 @@ mod mesh;
 mod settings;
 
 pub use body::{
-    Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Update,
+    Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
 pub use contact::{Bond, Contact, Piece, STENCIL, Surface};
 pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
-pub use load::{Factor, Jumps, Load, Prescribed, least};
+pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least};
 pub use mesh::{ElementKind, boundary};
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, Refactor, ResidualMethod, Settings,
@@ -52,6 +52,8 @@ pub struct Model {
     pub dofs: Dofs,
     /// Dead loads.
     pub loads: Vec<Load>,
+    /// Pressures that follow the faces they act on.
+    pub pressures: Vec<Pressure>,
     /// Prescribed motions other than zero.
     pub prescribed: Vec<Prescribed>,
     /// Corners of the path of the load factor, at least two.
@@ -131,6 +133,11 @@ pub enum Watched {
 }
 
 impl Model {
+    /// Whether x is a radius and y the axis: forces are then those of the whole circumference.
+    pub fn is_axisymmetric(&self) -> bool {
+        self.bodies.iter().any(Body::is_axisymmetric)
+    }
+
     /// Where a node is when all degrees of freedom have these values: its place in the reference shape, displaced.
     pub fn place(&self, u: &[f64], node: usize) -> [f64; 2] {
         let at = self.nodes[node].at;

@@ -253,8 +253,8 @@ documented! {
         Each,
         /// In the first of an increment, and where the out-of-balance force or the correction of the displacements fell by less
         /// than ten times. That force is always the true one and the interface's geometry that of the major iteration, so that
-        /// the answers are the same within the tolerance; there are more major iterations, and they cost less. With `history.control: arc` and in
-        /// damped motions as `each`.
+        /// the answers are the same within the tolerance; there are more major iterations, and they cost less. With `history.control: arc`, in
+        /// damped motions and under a following pressure as `each`.
         Needed,
     }
 }

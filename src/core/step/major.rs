@@ -100,7 +100,9 @@ impl Stepper {
     fn keeps_factors(&self) -> bool {
         let state = &self.state;
         let loaded = state.way.is_none() && state.motion.is_none();
-        loaded && state.controls.settings.factor == Refactor::Needed
+        // A pressure that follows its faces has a stiffness that goes with the load.
+        let dead = self.model.pressures.is_empty();
+        loaded && dead && state.controls.settings.factor == Refactor::Needed
     }
 
     /// Lets the next major iteration go on with the stiffness in use, where the settings want that.

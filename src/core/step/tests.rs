@@ -175,6 +175,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         loads: [(0, -15.0 * pressed[0]), (1, -15.0 * pressed[1])]
             .map(load)
             .into(),
+        pressures: Vec::new(),
         prescribed: Vec::new(),
         path: vec![0.0, 1.0],
         increment: 0.25,

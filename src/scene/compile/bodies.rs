@@ -9,7 +9,7 @@ use super::linear;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
 use crate::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
-use crate::model::{Law, Update};
+use crate::model::{Law, Plane, Update};
 use std::collections::HashSet;
 
 /// Refuses materials without usable stiffnesses.
@@ -50,9 +50,19 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
         let message = format!("the thickness is {thickness:?}; it must be positive");
         return Err(Fault::new(here.then("thickness"), message));
     }
-    if made.update == Update::Updated && made.law != Law::Svk {
-        let message = "the updated update has a law of its own, the moduli of svk for every increment; \
-                       take law: svk or update: total";
+    if made.plane == Plane::Axisymmetric && thickness != 1.0 {
+        let message = "a body of revolution has no thickness: forces are those of the whole circumference; leave it out";
+        return Err(Fault::new(here.then("thickness"), message));
+    }
+    let why = match made.update {
+        Update::Updated => {
+            "the updated update has a law of its own, the moduli of svk for every increment"
+        }
+        Update::Small => "small strains are those of linear elasticity, to which every law comes",
+        Update::Total => return Ok(()),
+    };
+    if made.law != Law::Svk {
+        let message = format!("{why}; take law: svk or update: total");
         return Err(Fault::new(here.then("update"), message));
     }
     Ok(())
@@ -125,9 +135,65 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
                 })
             }
             BodySpec::Matrix { .. } => linear::matrix(&at!["bodies", k], body, names),
+            BodySpec::Truss { .. } => linear::truss(&at!["bodies", k], body, names),
             BodySpec::Springs { id, bars } => linear::springs(&at!["bodies", k], id, bars, names),
         })
         .collect()
+}
+
+/// Refuses a scene that is axisymmetric in part, and bodies of revolution that reach over their axis; `length` is the scene's.
+pub(super) fn check_axis(
+    spec: &Spec,
+    names: &Names,
+    bodies: &[Body],
+    length: f64,
+) -> Result<(), Fault> {
+    let Some(round) = bodies.iter().find(|body| body.is_axisymmetric()) else {
+        return Ok(());
+    };
+    let name = &round.name;
+    for (k, body) in bodies.iter().enumerate() {
+        let plane = |m: &Elastic| m.plane != Plane::Axisymmetric;
+        let (field, what) = match &body.kind {
+            BodyKind::Beam(_) => ("along", "is a beam of the plane"),
+            BodyKind::Solid(solid) if solid.materials.iter().any(plane) => {
+                ("material", "is made of a material of the plane")
+            }
+            _ => continue,
+        };
+        let message = format!(
+            "body {:?} {what}, and body {name:?} is axisymmetric; a scene is axisymmetric as a whole or not at all",
+            body.name
+        );
+        return Err(Fault::new(at!["bodies", k, field], message));
+    }
+    let over = |node: &&usize| names.nodes[**node].at[0] < -limits::SHORTEST * length;
+    let nodes = bodies.iter().flat_map(|body| &body.nodes);
+    let Some(node) = nodes
+        .copied()
+        .collect::<Vec<_>>()
+        .iter()
+        .find(over)
+        .copied()
+    else {
+        return Ok(());
+    };
+    let Node { name, at } = &names.nodes[node];
+    let entry = spec.nodes.iter().position(|nodes| {
+        let id = nodes.id();
+        name == id
+            || name
+                .strip_prefix(id)
+                .is_some_and(|rest| rest.starts_with('.'))
+    });
+    let message = format!(
+        "node {name:?} is at x = {:?}; in axisymmetry x is the radius, which cannot be negative",
+        at[0]
+    );
+    Err(Fault::new(
+        entry.map_or_else(|| at!["nodes"], |k| at!["nodes", k]),
+        message,
+    ))
 }
 
 /// The elements along a chain; `total` counts their nodes.

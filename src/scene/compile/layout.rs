@@ -2,12 +2,23 @@
 
 use super::super::limits;
 use super::super::nodes::Names;
-use super::tractions;
+use super::{pressures, tractions, volumes};
 use crate::format::error::{Fault, Path, at};
 use crate::format::spec::{LoadSpec, Point, Spec};
 use crate::model::Component;
-use crate::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed};
+use crate::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed, Pressure};
 use std::collections::HashMap;
+
+/// What the loads of a scene make of a model's degrees of freedom.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Loads {
+    /// Loads that stay as they are.
+    pub dead: Vec<Load>,
+    /// Pressures that follow their faces.
+    pub pressures: Vec<Pressure>,
+    /// Motions.
+    pub prescribed: Vec<Prescribed>,
+}
 
 /// The degrees of freedom while it is found out which are held, and by what.
 pub(super) struct Layout {
@@ -81,10 +92,15 @@ impl Layout {
         &mut self,
         spec: &Spec,
         names: &Names,
-    ) -> Result<(Vec<Load>, Vec<Prescribed>), Fault> {
+        bodies: &[Body],
+    ) -> Result<Loads, Fault> {
         // Prescribed displacements first: a force on one of them acts on nothing.
-        let prescribed = self.prescribed(spec, names)?;
-        Ok((self.forces(spec, names)?, prescribed))
+        let mut loads = Loads {
+            prescribed: self.prescribed(spec, names)?,
+            ..Loads::default()
+        };
+        self.forces(spec, names, bodies, &mut loads)?;
+        Ok(loads)
     }
 
     fn prescribed(&mut self, spec: &Spec, names: &Names) -> Result<Vec<Prescribed>, Fault> {
@@ -120,8 +136,15 @@ impl Layout {
         Ok(made)
     }
 
-    fn forces(&self, spec: &Spec, names: &Names) -> Result<Vec<Load>, Fault> {
-        let mut made = Vec::new();
+    fn forces(
+        &self,
+        spec: &Spec,
+        names: &Names,
+        bodies: &[Body],
+        loads: &mut Loads,
+    ) -> Result<(), Fault> {
+        let made = &mut loads.dead;
+        let round = bodies.iter().any(Body::is_axisymmetric);
         for (k, load) in spec.loads.iter().enumerate() {
             let (node, parts, scale) = match load {
                 LoadSpec::Force { node, x, y, scale } => (
@@ -144,8 +167,39 @@ impl Layout {
                         along,
                         normal: *normal,
                         vector: [*x, *y],
+                        round,
                     };
-                    made.extend(self.traction(&at!["loads", k], names, &load, &scale)?);
+                    let here = at!["loads", k];
+                    let forces = tractions::forces(&here, names, &load)?;
+                    made.extend(self.acting(&here.then("along"), names, along, forces, &scale)?);
+                    continue;
+                }
+                LoadSpec::Volume { on, x, y, scale } => {
+                    let here = at!["loads", k];
+                    let scale = factor(&here.then("scale"), scale)?;
+                    let forces = volumes::forces(&here, names, bodies, on, [*x, *y])?;
+                    made.extend(self.acting(&here.then("on"), names, on, forces, &scale)?);
+                    continue;
+                }
+                LoadSpec::Pressure {
+                    along,
+                    value,
+                    scale,
+                } => {
+                    let here = at!["loads", k];
+                    let scale = factor(&here.then("scale"), scale)?;
+                    limits::finite(&here.then("value"), *value, "the pressure")?;
+                    let here = here.then("along");
+                    let pressed = pressures::faces(&here, names, bodies, along)?;
+                    let forces = pressures::dead(names, &pressed.small, *value);
+                    made.extend(self.acting(&here, names, along, forces, &scale)?);
+                    if !pressed.following.is_empty() {
+                        loads.pressures.push(Pressure {
+                            faces: pressed.following,
+                            value: *value,
+                            scale,
+                        });
+                    }
                     continue;
                 }
                 LoadSpec::Displacement { .. } => continue,
@@ -167,20 +221,20 @@ impl Layout {
                 }
             }
         }
-        Ok(made)
+        Ok(())
     }
 
-    /// Forces of a traction at all nodes of its chain. What falls on a held degree of freedom goes into the support,
-    /// where it counts for the reaction.
-    fn traction(
+    /// Loads of forces at the nodes of what has a name. What falls on a held degree of freedom goes into the support, where
+    /// it counts for the reaction.
+    fn acting(
         &self,
         here: &Path,
         names: &Names,
-        load: &tractions::Load<'_>,
+        on: &str,
+        forces: Vec<(usize, [f64; 2])>,
         scale: &Factor,
     ) -> Result<Vec<Load>, Fault> {
-        let fault = |message: String| Fault::new(here.then("along"), message);
-        let forces = tractions::forces(here, names, load)?;
+        let fault = |message: String| Fault::new(here.clone(), message);
         if let Some((node, _)) = forces.iter().find(|(node, _)| !self.on_body[*node]) {
             let name = &names.nodes[*node].name;
             return Err(fault(format!(
@@ -199,8 +253,7 @@ impl Layout {
         }
         if !made.is_empty() && made.iter().all(|load| self.held.contains_key(&load.dof)) {
             return Err(fault(format!(
-                "every node of {:?} is held where this load acts; it does nothing",
-                load.along
+                "every node of {on:?} is held where this load acts; it does nothing"
             )));
         }
         Ok(made)

@@ -4,7 +4,7 @@ use super::super::limits;
 use super::super::nodes::Names;
 use crate::format::error::{Fault, Path};
 use crate::format::spec::{Bar, BodySpec, Spec};
-use crate::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load};
+use crate::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// A body given by a stiffness or a compliance. Where the forces of a compliance stand is found later, with the other
@@ -121,14 +121,12 @@ pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Res
     for (k, bar) in bars.iter().enumerate() {
         let here = here.then("bars").then(k);
         limits::stiffness(&here.then("stiffness"), bar.stiffness, "the stiffness")?;
-        limits::finite(&here.then("angle"), bar.angle, "the angle")?;
         let ends = ends(&here.then("nodes"), bar, names)?;
+        let direction = direction(&here, bar, &ends, names)?;
         let numbers: Vec<usize> = ends
             .iter()
             .map(|&n| number(&mut nodes, &mut known, n))
             .collect();
-        let angle = bar.angle.to_radians();
-        let direction = [angle.cos(), angle.sin()];
         for (i, &row) in numbers.iter().enumerate() {
             for (j, &column) in numbers.iter().enumerate() {
                 let sign = if i == j { 1.0 } else { -1.0 };
@@ -150,6 +148,77 @@ pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Res
             bars: joined,
         }),
         nodes,
+    })
+}
+
+/// The direction of a bar: at its angle, or along the line between its nodes.
+fn direction(here: &Path, bar: &Bar, ends: &[usize], names: &Names) -> Result<[f64; 2], Fault> {
+    if let Some(angle) = bar.angle {
+        limits::finite(&here.then("angle"), angle, "the angle")?;
+        let angle = angle.to_radians();
+        return Ok([angle.cos(), angle.sin()]);
+    }
+    let &[a, b] = ends else {
+        let message = "a bar from one node to the ground needs an angle";
+        return Err(Fault::new(here.clone(), message));
+    };
+    along(here, names, a, b)
+}
+
+/// The direction from one node to another.
+fn along(here: &Path, names: &Names, a: usize, b: usize) -> Result<[f64; 2], Fault> {
+    let (a, b) = (&names.nodes[a], &names.nodes[b]);
+    let line = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
+    let length = line[0].hypot(line[1]);
+    if length == 0.0 {
+        let message = format!(
+            "nodes {:?} and {:?} are in one place, and no line leads from one to the other",
+            a.name, b.name
+        );
+        return Err(Fault::new(here.clone(), message));
+    }
+    Ok(line.map(|x| x / length))
+}
+
+/// Bars that turn with their nodes.
+pub(super) fn truss(here: &Path, body: &BodySpec, names: &Names) -> Result<Body, Fault> {
+    let BodySpec::Truss {
+        id,
+        bars,
+        EA,
+        small,
+    } = body
+    else {
+        return Err(Fault::new(here.clone(), "the body is no Truss"));
+    };
+    limits::stiffness(&here.then("EA"), *EA, "EA")?;
+    if bars.is_empty() {
+        let message = "the list is empty; name at least one bar";
+        return Err(Fault::new(here.then("bars"), message));
+    }
+    let (mut nodes, mut known, mut joined) = (Vec::new(), HashMap::new(), Vec::new());
+    for (k, (a, b)) in bars.iter().enumerate() {
+        let here = here.then("bars").then(k);
+        let find = |k: usize, name: &str| {
+            names
+                .node(name)
+                .map_err(|message| Fault::new(here.then(k), message))
+        };
+        let ends = [find(0, a)?, find(1, b)?];
+        along(&here, names, ends[0], ends[1])?;
+        for end in ends {
+            number(&mut nodes, &mut known, end);
+        }
+        joined.push(ends.to_vec());
+    }
+    Ok(Body {
+        name: id.clone(),
+        nodes,
+        kind: BodyKind::Truss(Truss {
+            bars: joined,
+            ea: *EA,
+            small: *small,
+        }),
     })
 }
 

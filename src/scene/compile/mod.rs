@@ -11,8 +11,10 @@ mod laws;
 mod layout;
 mod linear;
 mod monitors;
+mod pressures;
 mod renewed;
 mod tractions;
+mod volumes;
 
 use super::gaps;
 use super::geometry;
@@ -24,7 +26,8 @@ use crate::linear::estimate::Estimate;
 use crate::model::{InitialGaps, Model};
 pub(crate) use history::increments;
 use layout::Layout;
-pub(crate) use renewed::{Choices, Compiled, Groups, Loads, renewed};
+pub(crate) use layout::Loads;
+pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
@@ -45,6 +48,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         // Bodies that are given by matrices may have a single node, or all of them in one place.
         length = geometry::diagonal(names.nodes.iter());
     }
+    bodies::check_axis(spec, &names, &bodies, length)?;
     bodies::check_bodies(spec, &names, &bodies, length)?;
     if length == 0.0 {
         let message = "all nodes are in one place; the scene has no size to compare lengths with";
@@ -69,7 +73,11 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     laws::apply(spec, &names, &bodies, &pairs, &mut slaves)?;
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
-    let (mut loads, prescribed) = layout.loads(spec, &names)?;
+    let Loads {
+        dead: mut loads,
+        pressures,
+        prescribed,
+    } = layout.loads(spec, &names, &bodies)?;
     let dofs = layout.number(&mut bodies);
     loads.extend(linear::free_motions(spec, &bodies, &dofs));
     interface::find_rigid(&dofs, &mut surfaces)?;
@@ -88,6 +96,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         contacts: slaves,
         dofs,
         loads,
+        pressures,
         prescribed,
         path: spec.history.path.clone(),
         increment: spec.history.increment,

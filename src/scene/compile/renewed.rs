@@ -3,7 +3,7 @@
 //! Where this says nothing the way through [`compile`](super::compile) is left, and what is wrong is said there.
 
 use super::super::nodes::Names;
-use super::layout::Layout;
+use super::layout::{Layout, Loads};
 use super::linear::free_motions;
 use super::{history, interface};
 use crate::format::contact_law::FrictionSpec;
@@ -11,7 +11,7 @@ use crate::format::error::{Path, Step};
 use crate::format::paths::Found;
 use crate::format::spec::{History, SlaveSpec, Spec};
 use crate::linear::estimate::Estimate;
-use crate::model::{Control, Load, Model, Prescribed, Settings};
+use crate::model::{Control, Model, Settings};
 
 /// Settings that more than the solver reads: nodes are moved for them, or the scene is refused.
 const DEEP: [&str; 3] = ["initial_gaps", "adjust_gap", "memory"];
@@ -40,9 +40,6 @@ pub(crate) struct Compiled<'a> {
 /// The group of slaves of each contact.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Groups(Vec<usize>);
-
-/// What the loads of a scene make of a model's degrees of freedom.
-pub(crate) type Loads = (Vec<Load>, Vec<Prescribed>);
 
 impl Choices {
     /// Those of a scene.
@@ -116,7 +113,11 @@ impl Choices {
             && (solver == with.model.settings.solver || fits());
         match suit {
             true if self.loaded => self.other_loads(with),
-            true => Some((with.model.loads.clone(), with.model.prescribed.clone())),
+            true => Some(Loads {
+                dead: with.model.loads.clone(),
+                pressures: with.model.pressures.clone(),
+                prescribed: with.model.prescribed.clone(),
+            }),
             false => None,
         }
     }
@@ -129,9 +130,11 @@ impl Choices {
         nodes.for_each(|&node| on_body[node] = true);
         let mut layout = Layout::new(on_body, bodies);
         layout.supports(&self.spec, names).ok()?;
-        let (mut loads, prescribed) = layout.loads(&self.spec, names).ok()?;
-        loads.extend(free_motions(with.spec, bodies, &with.model.dofs));
-        Some((loads, prescribed))
+        let mut loads = layout.loads(&self.spec, names, bodies).ok()?;
+        loads
+            .dead
+            .extend(free_motions(with.spec, bodies, &with.model.dofs));
+        Some(loads)
     }
 
     /// Whether they are sound by themselves.
@@ -214,7 +217,8 @@ impl Groups {
 pub(crate) fn renewed(model: &Model, groups: &Groups, choices: &Choices, loads: Loads) -> Model {
     let spec = &choices.spec;
     let mut model = model.clone();
-    (model.loads, model.prescribed) = loads;
+    (model.loads, model.pressures) = (loads.dead, loads.pressures);
+    model.prescribed = loads.prescribed;
     model.path.clone_from(&spec.history.path);
     model.increment = spec.history.increment;
     model.least = spec.history.least;

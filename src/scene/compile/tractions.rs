@@ -6,14 +6,17 @@ use super::super::limits;
 use super::super::nodes::Names;
 use crate::format::error::{Fault, Path};
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
-/// A uniform load per unit of undeformed length.
+/// A uniform load per unit of undeformed length, or in axisymmetry of undeformed area.
 pub(super) struct Load<'a> {
     pub along: &'a str,
     /// Along the outward normal, to the right of the walk.
     pub normal: f64,
     /// Along x and y.
     pub vector: [f64; 2],
+    /// Whether the chain stands for a surface of revolution: the load is per area, all around.
+    pub round: bool,
 }
 
 /// Consistent forces ∫ N_i q ds at the nodes of a chain, in the order of the nodes' numbers.
@@ -35,13 +38,22 @@ pub(super) fn forces(
         .map_err(|message| Fault::new(here.then("along"), message))?;
     let mut forces = BTreeMap::new();
     for element in chain.elements() {
-        let at: Vec<[f64; 2]> = element.iter().map(|&n| names.nodes[n].at).collect();
-        for (node, force) in element.iter().zip(on_element(&at, load)) {
-            let sum = forces.entry(*node).or_insert([0.0; 2]);
+        for (node, force) in on_nodes(names, &element, load) {
+            let sum = forces.entry(node).or_insert([0.0; 2]);
             *sum = [sum[0] + force[0], sum[1] + force[1]];
         }
     }
     Ok(forces.into_iter().collect())
+}
+
+/// Those at the nodes of one element.
+pub(super) fn on_nodes(
+    names: &Names,
+    element: &[usize],
+    load: &Load<'_>,
+) -> Vec<(usize, [f64; 2])> {
+    let at: Vec<[f64; 2]> = element.iter().map(|&n| names.nodes[n].at).collect();
+    element.iter().copied().zip(on_element(&at, load)).collect()
 }
 
 /// Gauss-Legendre points and weights on −1 to 1, exact up to the ninth degree. Used from node to node, that makes
@@ -67,12 +79,17 @@ fn on_element(at: &[[f64; 2]], load: &Load<'_>) -> Vec<[f64; 2]> {
             };
             let (dx, dy) = (along(0), along(1));
             let length = dx.hypot(dy);
+            let width = if load.round {
+                TAU * (0..m).map(|i| shape(m, i, t) * at[i][0]).sum::<f64>()
+            } else {
+                1.0
+            };
             let q = [
                 load.normal * dy + load.vector[0] * length,
                 -load.normal * dx + load.vector[1] * length,
             ];
             for (i, force) in forces.iter_mut().enumerate() {
-                let share = 0.5 * weight * shape(m, i, t);
+                let share = 0.5 * weight * shape(m, i, t) * width;
                 *force = [force[0] + share * q[0], force[1] + share * q[1]];
             }
         }

@@ -231,7 +231,7 @@ fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view:
         let name = paint::cut(&body.name, 12);
         let wide = name.width() as u16;
         let (at, aside) = match &body.kind {
-            BodyKind::Solid(_) | BodyKind::Linear(_) => {
+            BodyKind::Solid(_) | BodyKind::Linear(_) | BodyKind::Truss(_) => {
                 (mean(&body.nodes, view), -i32::from(wide / 2))
             }
             BodyKind::Beam(_) => (view.place(body.nodes[body.nodes.len() / 2]), 2),

@@ -1,0 +1,267 @@
+//! Pressure on faces that follows them: a force by current area, along the current normal.
+//!
+//! Along a face with nodes x_i, walked with the body on the left, and w the width across the plane (the undeformed thickness,
+//! or the circumference 2π x in axisymmetry), a pressure p into the body gives
+//!
+//! ```text
+//! f_i = −p ∫ N_i w (y', −x') dξ,      x' = Σ N_j' x_j,
+//! ```
+//!
+//! and its exact derivative, which is not symmetric, is taken off the tangent (Bathe 2014, section 6.7; Schweizerhof and Ramm
+//! 1984). The rule is exact for it. What is `added` here is the load, on the other side of the balance.
+
+use super::lagrange::{self, MAX_NODES};
+use crate::linalg::Pattern;
+use crate::model::{Dofs, Factor, Model, PressedFace};
+use std::f64::consts::TAU;
+
+/// All pressures of a scene, face by face.
+pub struct Pressures {
+    faces: Vec<Placed>,
+}
+
+/// A face, and where it stands.
+struct Placed {
+    /// Undeformed places of its nodes.
+    at: Vec<[f64; 2]>,
+    /// Degrees of freedom, x and y of each node.
+    dofs: Vec<usize>,
+    thickness: Option<f64>,
+    /// Place of each entry of its stiffness among the values, row by row; `None` where a degree of freedom is held.
+    slots: Vec<Option<usize>>,
+    /// Which of the model's pressures it has.
+    pressure: usize,
+    points: Vec<Sample>,
+}
+
+/// Weight, shape functions and their slopes at a point.
+type Sample = (f64, [f64; MAX_NODES], [f64; MAX_NODES]);
+
+impl Pressures {
+    /// Those of a model.
+    pub fn new(model: &Model) -> Self {
+        let of = |(pressure, face): (usize, &PressedFace)| {
+            let m = face.nodes.len();
+            let xy = |&n: &usize| [model.dofs.first[n], model.dofs.first[n] + 1];
+            Placed {
+                at: face.nodes.iter().map(|&n| model.nodes[n].at).collect(),
+                dofs: face.nodes.iter().flat_map(xy).collect(),
+                thickness: face.thickness,
+                slots: Vec::new(),
+                pressure,
+                points: samples(m),
+            }
+        };
+        let all = model.pressures.iter().enumerate();
+        let faces = all.flat_map(|(k, pressure)| pressure.faces.iter().map(move |face| (k, face)));
+        Pressures {
+            faces: faces.map(of).collect(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.faces.is_empty()
+    }
+
+    /// Entries `(row, column)` of the tangent, in equations; some repeat.
+    pub fn entries<'a>(&'a self, dofs: &'a Dofs) -> impl Iterator<Item = (usize, usize)> + 'a {
+        self.faces.iter().flat_map(move |face| {
+            let equations = || face.dofs.iter().filter_map(|&d| dofs.equation[d]);
+            equations().flat_map(move |i| equations().map(move |j| (i, j)))
+        })
+    }
+
+    /// Finds the place of every entry in a pattern that has them all.
+    pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern) {
+        for face in &mut self.faces {
+            face.slots.clear();
+            for &row in &face.dofs {
+                for &column in &face.dofs {
+                    let pair = dofs.equation[row].zip(dofs.equation[column]);
+                    face.slots.push(pair.and_then(|(i, j)| pattern.slot(i, j)));
+                }
+            }
+        }
+    }
+
+    /// Calls `add` with degree of freedom and force of every node of every face at displacements u, where `factor` is what a
+    /// pressure is multiplied by.
+    pub fn each(
+        &self,
+        model: &Model,
+        u: &[f64],
+        factor: impl Fn(&Factor) -> f64,
+        mut add: impl FnMut(usize, f64),
+    ) {
+        for face in &self.faces {
+            let pressure = &model.pressures[face.pressure];
+            let size = pressure.value * factor(&pressure.scale);
+            let now = face.now(u);
+            for (weight, n, d) in &face.points {
+                let at = face.along(&now, n, d);
+                for (i, dofs) in face.dofs.chunks_exact(2).enumerate() {
+                    let share = size * weight * n[i] * at.width;
+                    add(dofs[0], -share * at.slope[1]);
+                    add(dofs[1], share * at.slope[0]);
+                }
+            }
+        }
+    }
+
+    /// Takes the derivative of the forces at displacements u off the tangent, and off the `coupling` what `step` of the held
+    /// degrees of freedom does through it.
+    pub fn stiffen(
+        &self,
+        model: &Model,
+        (u, load_factor): (&[f64], f64),
+        step: &[f64],
+        values: &mut [f64],
+        coupling: &mut [f64],
+    ) {
+        for face in &self.faces {
+            let pressure = &model.pressures[face.pressure];
+            let size = pressure.value * pressure.scale.at(load_factor);
+            let count = face.dofs.len();
+            face.each_entry(u, size, |row, column, value| {
+                if let Some(slot) = face.slots[row * count + column] {
+                    values[slot] -= value;
+                } else if let Some(equation) = model.dofs.equation[face.dofs[row]] {
+                    coupling[equation] -= value * step[face.dofs[column]];
+                }
+            });
+        }
+    }
+}
+
+/// What a face is at a point.
+struct Along {
+    slope: [f64; 2],
+    width: f64,
+}
+
+impl Placed {
+    /// Places of the nodes at displacements u.
+    fn now(&self, u: &[f64]) -> [[f64; 2]; MAX_NODES] {
+        let mut now = [[0.0; 2]; MAX_NODES];
+        for ((now, at), dofs) in now.iter_mut().zip(&self.at).zip(self.dofs.chunks_exact(2)) {
+            *now = [at[0] + u[dofs[0]], at[1] + u[dofs[1]]];
+        }
+        now
+    }
+
+    fn along(
+        &self,
+        now: &[[f64; 2]; MAX_NODES],
+        n: &[f64; MAX_NODES],
+        d: &[f64; MAX_NODES],
+    ) -> Along {
+        let sum = |w: &[f64; MAX_NODES], k: usize| -> f64 {
+            w.iter().zip(now).map(|(w, x)| w * x[k]).sum()
+        };
+        Along {
+            slope: [sum(d, 0), sum(d, 1)],
+            width: self.thickness.unwrap_or_else(|| TAU * sum(n, 0)),
+        }
+    }
+
+    /// Calls `add` with row, column (in the face's own order) and part of the derivative of the forces of a pressure.
+    fn each_entry(&self, u: &[f64], size: f64, mut add: impl FnMut(usize, usize, f64)) {
+        let (now, m) = (self.now(u), self.at.len());
+        let widening = if self.thickness.is_some() { 0.0 } else { TAU };
+        for (weight, n, d) in &self.points {
+            let Along { slope, width } = self.along(&now, n, d);
+            for i in 0..m {
+                let share = size * weight * n[i];
+                for j in 0..m {
+                    let (turned, wider) = (share * width * d[j], share * widening * n[j]);
+                    add(2 * i, 2 * j, -wider * slope[1]);
+                    add(2 * i, 2 * j + 1, -turned);
+                    add(2 * i + 1, 2 * j, turned + wider * slope[0]);
+                }
+            }
+        }
+    }
+}
+
+/// A rule that is exact for the derivative: a product of two shape functions, a slope and, in axisymmetry, the radius has a
+/// degree of 3 m − 4.
+fn samples(m: usize) -> Vec<Sample> {
+    let rule = lagrange::gauss((3 * m - 3).div_ceil(2).max(1));
+    let sample = |(xi, weight): (f64, f64)| {
+        let shape = lagrange::shape(m, xi);
+        (weight, shape.n, shape.d)
+    };
+    rule.into_iter().map(sample).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bent face of m nodes by itself.
+    fn face(m: usize, thickness: Option<f64>) -> Pressures {
+        let at = (0..m).map(|i| [2.0 + 0.7 * i as f64, 0.1 * (i * i) as f64 - 0.3]);
+        Pressures {
+            faces: vec![Placed {
+                at: at.collect(),
+                dofs: (0..2 * m).collect(),
+                thickness,
+                slots: vec![None; 4 * m * m],
+                pressure: 0,
+                points: samples(m),
+            }],
+        }
+    }
+
+    fn forces(all: &Pressures, u: &[f64], size: f64) -> Vec<f64> {
+        let face = &all.faces[0];
+        let (mut force, now) = (vec![0.0; u.len()], face.now(u));
+        for (weight, n, d) in &face.points {
+            let at = face.along(&now, n, d);
+            for i in 0..u.len() / 2 {
+                force[2 * i] -= size * weight * n[i] * at.width * at.slope[1];
+                force[2 * i + 1] += size * weight * n[i] * at.width * at.slope[0];
+            }
+        }
+        force
+    }
+
+    #[test]
+    fn the_derivative_of_a_following_pressure_is_that_of_its_forces() {
+        for m in 2..=3 {
+            for thickness in [Some(0.7), None] {
+                let all = face(m, thickness);
+                let u: Vec<f64> = (0..2 * m)
+                    .map(|k| 0.05 * ((k * 7 % 5) as f64 - 2.0))
+                    .collect();
+                let mut tangent = vec![0.0; 4 * m * m];
+                all.faces[0].each_entry(&u, 3.0, |i, j, v| tangent[i * 2 * m + j] += v);
+                let h = 1e-5;
+                for j in 0..2 * m {
+                    let moved = |by: f64| {
+                        let mut u = u.clone();
+                        u[j] += by;
+                        forces(&all, &u, 3.0)
+                    };
+                    let (plus, minus) = (moved(h), moved(-h));
+                    for i in 0..2 * m {
+                        let error = (plus[i] - minus[i]) / (2.0 * h) - tangent[i * 2 * m + j];
+                        assert!(error.abs() < 1e-8, "{m} {thickness:?} {i} {j}: {error:e}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_resultant_of_a_pressure_is_that_on_the_straight_line_between_the_ends() {
+        let all = face(3, Some(0.5));
+        let force = forces(&all, &[0.0; 6], 2.0);
+        let at = &all.faces[0].at;
+        let (dx, dy) = (at[2][0] - at[0][0], at[2][1] - at[0][1]);
+        let sum = |k: usize| force.iter().skip(k).step_by(2).sum::<f64>();
+        assert!((sum(0) + 2.0 * 0.5 * dy).abs() < 1e-14);
+        assert!((sum(1) - 2.0 * 0.5 * dx).abs() < 1e-14);
+    }
+}

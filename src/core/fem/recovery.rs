@@ -1,0 +1,185 @@
+//! Stresses for output: Cauchy stress at the points of every solid element, and at nodes.
+//!
+//! Stresses are `[σ11, σ22, σ33, σ12]`. From the points of an element they are taken to its nodes by the polynomial that fits them
+//! best: constant from one point, linear from three, bilinear (1, ξ, η, ξη) from four or nine. A node has the mean of the elements
+//! of its body that meet there, whatever they are made of. With `update: small` it is the stress of linear elasticity.
+
+use super::continuum;
+use super::element::Past;
+use super::material::Material;
+use crate::model::{Body, BodyKind, ElementKind, Model, Solid};
+use nalgebra::DMatrix;
+
+/// σ11, σ22, σ33, σ12.
+pub type Stress = [f64; 4];
+
+/// Displacements, and what the elements remember.
+#[derive(Debug, Clone, Copy)]
+pub struct Configuration<'a> {
+    /// Displacements at each degree of freedom.
+    pub u: &'a [f64],
+    /// Those of the last accepted increment; at an accepted state `u` itself.
+    pub before: &'a [f64],
+    /// What the elements remember of it ([`super::assembly::history_len`] numbers).
+    pub history: &'a [f64],
+}
+
+/// Stress at a point of an element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointStress {
+    /// Number of the body, and of the element in its solid.
+    pub body: usize,
+    /// Number of the element in its solid.
+    pub element: usize,
+    /// Place of the point in the undeformed shape.
+    pub at: [f64; 2],
+    /// The stress.
+    pub stress: Stress,
+}
+
+/// Stresses at the points of all solid elements, in the order of bodies, elements and points; a point where the material has no
+/// answer is left out.
+pub fn point_stresses(model: &Model, at: Configuration<'_>) -> Vec<PointStress> {
+    let mut all = Vec::new();
+    each_element(model, at, |body, element, _, points| {
+        let known = points.iter().filter_map(|(_, state)| *state);
+        all.extend(known.map(|(at, stress)| PointStress {
+            body,
+            element,
+            at,
+            stress,
+        }));
+    });
+    all
+}
+
+/// Stresses at the nodes of each body, in the order of [`Body::nodes`]; `None` at a node of no solid element that has an answer,
+/// and for all nodes of bodies that are no solids.
+pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<Stress>>> {
+    let fits: Vec<DMatrix<f64>> = ElementKind::ALL.iter().map(|kind| fit(*kind)).collect();
+    let mut sums = vec![([0.0; 4], 0_usize); model.nodes.len()];
+    let mut found: Vec<Vec<Option<Stress>>> = Vec::with_capacity(model.bodies.len());
+    let mut body_of = 0;
+    let mut finish = |body: &Body, sums: &mut [(Stress, usize)]| {
+        let of = |&node: &usize| {
+            let (sum, count) = std::mem::take(&mut sums[node]);
+            (count > 0).then(|| sum.map(|s| s / count as f64))
+        };
+        found.push(body.nodes.iter().map(of).collect());
+    };
+    each_element(model, at, |body, element, solid, points| {
+        while body_of < body {
+            finish(&model.bodies[body_of], &mut sums);
+            body_of += 1;
+        }
+        let element = &solid.elements[element];
+        let stresses: Option<Vec<Stress>> = points
+            .iter()
+            .map(|(_, state)| state.map(|(_, stress)| stress))
+            .collect();
+        let place = ElementKind::ALL
+            .iter()
+            .position(|kind| *kind == element.kind);
+        let (Some(stresses), Some(fit)) = (stresses, place.map(|k| &fits[k])) else {
+            return;
+        };
+        for (i, &node) in element.nodes.iter().enumerate() {
+            let (sum, count) = &mut sums[node];
+            for (p, stress) in stresses.iter().enumerate() {
+                for (sum, stress) in sum.iter_mut().zip(stress) {
+                    *sum += fit[(i, p)] * stress;
+                }
+            }
+            *count += 1;
+        }
+    });
+    while body_of < model.bodies.len() {
+        finish(&model.bodies[body_of], &mut sums);
+        body_of += 1;
+    }
+    found
+}
+
+/// Place and stress of a point, with its place in the parent element; none where the material has no answer.
+type Found = ([f64; 2], Option<([f64; 2], Stress)>);
+
+/// Calls a function with body, element, solid, and the points of each element.
+fn each_element(
+    model: &Model,
+    at: Configuration<'_>,
+    mut with: impl FnMut(usize, usize, &Solid, &[Found]),
+) {
+    let mut remembered = 0;
+    for (b, body) in model.bodies.iter().enumerate() {
+        let BodyKind::Solid(solid) = &body.kind else {
+            continue;
+        };
+        for (e, element) in solid.elements.iter().enumerate() {
+            let elastic = &solid.materials[element.material];
+            let places: Vec<[f64; 2]> = element.nodes.iter().map(|&n| model.nodes[n].at).collect();
+            let own = |u: &[f64]| -> Vec<f64> {
+                let first = element.nodes.iter().map(|&n| model.dofs.first[n]);
+                first.flat_map(|d| [u[d], u[d + 1]]).collect()
+            };
+            let count = continuum::history_len(element.kind, elastic.update);
+            let (u, before) = (own(at.u), own(at.before));
+            let past = Past {
+                u: &before,
+                history: &at.history[remembered..remembered + count],
+            };
+            remembered += count;
+            let made_of = (Material::new(elastic), elastic.update);
+            let states = continuum::states(element.kind, &places, made_of, &past, &u);
+            let points: Vec<Found> = states
+                .into_iter()
+                .map(|(parent, state)| {
+                    let stress =
+                        state.map(|s| (s.at, [s.cauchy.x, s.cauchy.y, s.across, s.cauchy.z]));
+                    (parent, stress)
+                })
+                .collect();
+            with(b, e, solid, &points);
+        }
+    }
+}
+
+/// What the value at each node has of the value at each point, by least squares.
+fn fit(kind: ElementKind) -> DMatrix<f64> {
+    let rule = continuum::rule(kind);
+    let terms = rule.len().min(4);
+    let term = |[xi, eta]: [f64; 2], k: usize| [1.0, xi, eta, xi * eta][k];
+    let at_points = DMatrix::from_fn(rule.len(), terms, |p, k| term(rule[p].at, k));
+    let places = continuum::places(kind);
+    let at_nodes = DMatrix::from_fn(places.len(), terms, |i, k| term(places[i], k));
+    // The points of no rule lie so that the terms depend on each other.
+    let normal = at_points.transpose() * &at_points;
+    let inverse = normal
+        .try_inverse()
+        .unwrap_or_else(|| DMatrix::zeros(terms, terms));
+    at_nodes * inverse * at_points.transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn linear_fields_are_taken_to_the_nodes_exactly_and_constant_ones_by_every_kind() {
+        for kind in ElementKind::ALL {
+            let (fit, rule, places) = (fit(kind), continuum::rule(kind), continuum::places(kind));
+            for (i, place) in places.iter().enumerate() {
+                let of = |field: &dyn Fn([f64; 2]) -> f64| -> f64 {
+                    rule.iter()
+                        .enumerate()
+                        .map(|(p, point)| fit[(i, p)] * field(point.at))
+                        .sum()
+                };
+                assert!((of(&|_| 1.0) - 1.0).abs() < 1e-14, "{kind:?}");
+                if kind != ElementKind::Triangle3 {
+                    let linear = |[x, y]: [f64; 2]| 0.3 + 2.0 * x - y;
+                    assert!((of(&linear) - linear(*place)).abs() < 1e-13, "{kind:?}");
+                }
+            }
+        }
+    }
+}

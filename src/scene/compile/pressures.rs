@@ -1,0 +1,100 @@
+//! Which faces of solids a pressure acts on, and what it is where displacements are small.
+
+use super::super::nodes::Names;
+use super::tractions;
+use crate::format::error::{Fault, Path};
+use crate::model::{Body, BodyKind, Elastic, Plane, PressedFace, Update};
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// Faces under a pressure, of bodies with large displacements and with small ones.
+#[derive(Default)]
+pub(super) struct Pressed {
+    pub following: Vec<PressedFace>,
+    pub small: Vec<PressedFace>,
+}
+
+/// The faces of solids along a chain.
+pub(super) fn faces(
+    here: &Path,
+    names: &Names,
+    bodies: &[Body],
+    along: &str,
+) -> Result<Pressed, Fault> {
+    let chain = names
+        .chain(along)
+        .map_err(|message| Fault::new(here.clone(), message))?;
+    let outer = outer_faces(bodies);
+    let mut pressed = Pressed::default();
+    for element in chain.elements() {
+        // Walked one way or the other, the body is where it is.
+        let ends = ends(&element);
+        let found = ends.and_then(|(a, b)| outer.get(&(a, b)).or_else(|| outer.get(&(b, a))));
+        let inner = |face: &[usize]| {
+            let own: HashSet<usize> = element.iter().copied().collect();
+            face.len() == element.len() && face.iter().all(|node| own.contains(node))
+        };
+        let Some((nodes, elastic)) = found.filter(|(nodes, _)| inner(nodes)) else {
+            let name = |node: Option<&usize>| node.map_or("", |&n| names.nodes[n].name.as_str());
+            let message = format!(
+                "the element {} to {} of {along:?} is no outer face of a solid, which is what a pressure acts on",
+                name(element.first()),
+                name(element.last())
+            );
+            return Err(Fault::new(here.clone(), message));
+        };
+        let face = PressedFace {
+            nodes: nodes.clone(),
+            thickness: (elastic.plane != Plane::Axisymmetric).then_some(elastic.thickness),
+        };
+        match elastic.update {
+            Update::Small => pressed.small.push(face),
+            Update::Total | Update::Updated => pressed.following.push(face),
+        }
+    }
+    Ok(pressed)
+}
+
+fn ends(face: &[usize]) -> Option<(usize, usize)> {
+    Some((*face.first()?, *face.last()?))
+}
+
+/// The outer faces of all solids by their ends, and what they are made of.
+fn outer_faces(bodies: &[Body]) -> HashMap<(usize, usize), (Vec<usize>, Elastic)> {
+    let mut outer = HashMap::new();
+    for body in bodies {
+        let BodyKind::Solid(solid) = &body.kind else {
+            continue;
+        };
+        let edges: HashSet<&Vec<usize>> = solid.edges.iter().collect();
+        for element in &solid.elements {
+            for face in element
+                .kind
+                .faces_of(&element.nodes)
+                .filter(|face| edges.contains(face))
+            {
+                if let Some(ends) = ends(&face) {
+                    outer.insert(ends, (face, solid.materials[element.material]));
+                }
+            }
+        }
+    }
+    outer
+}
+
+/// Nodal forces of a pressure on undeformed faces.
+pub(super) fn dead(names: &Names, faces: &[PressedFace], value: f64) -> Vec<(usize, [f64; 2])> {
+    let mut sums = BTreeMap::new();
+    for face in faces {
+        let load = tractions::Load {
+            along: "",
+            normal: -value * face.thickness.unwrap_or(1.0),
+            vector: [0.0; 2],
+            round: face.thickness.is_none(),
+        };
+        for (node, force) in tractions::on_nodes(names, &face.nodes, &load) {
+            let sum = sums.entry(node).or_insert([0.0; 2]);
+            *sum = [sum[0] + force[0], sum[1] + force[1]];
+        }
+    }
+    sums.into_iter().collect()
+}

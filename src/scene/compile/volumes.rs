@@ -1,0 +1,95 @@
+//! Nodal forces of loads that act on each unit of undeformed volume.
+
+use super::super::limits;
+use super::super::nodes::Names;
+use crate::fem::continuum::{self, Sample};
+use crate::format::error::{Fault, Path, did_you_mean, quoted, some_of};
+use crate::model::{Body, BodyKind, Elastic, ElementKind, Solid, SolidElement};
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// Consistent forces ∫ N_i b w dA of a force b by volume, in the order of the nodes' numbers, where w is the width across the
+/// plane; `on` names a solid, or a block or mesh that solids stand on.
+pub(super) fn forces(
+    here: &Path,
+    names: &Names,
+    bodies: &[Body],
+    on: &str,
+    vector: [f64; 2],
+) -> Result<Vec<(usize, [f64; 2])>, Fault> {
+    for (field, value) in ["x", "y"].into_iter().zip(vector) {
+        limits::finite(&here.then(field), value, "the load")?;
+    }
+    let parts = parts(names, bodies, on).map_err(|m| Fault::new(here.then("on"), m))?;
+    let mut rules: HashMap<ElementKind, Vec<Sample>> = HashMap::new();
+    let mut sums = BTreeMap::new();
+    for (element, elastic) in parts {
+        let rule = rules
+            .entry(element.kind)
+            .or_insert_with(|| continuum::rule(element.kind));
+        let at: Vec<[f64; 2]> = element.nodes.iter().map(|&n| names.nodes[n].at).collect();
+        for point in rule.iter() {
+            let volume = point.weight * jacobian(point, &at) * width(point, &at, elastic);
+            for (node, n) in element.nodes.iter().zip(&point.n) {
+                let sum = sums.entry(*node).or_insert([0.0; 2]);
+                *sum = [0, 1].map(|k| sum[k] + n * vector[k] * volume);
+            }
+        }
+    }
+    Ok(sums.into_iter().collect())
+}
+
+/// The elements that a name stands for, with their materials.
+fn parts<'b>(
+    names: &Names,
+    bodies: &'b [Body],
+    on: &str,
+) -> Result<Vec<(&'b SolidElement, &'b Elastic)>, String> {
+    let solids = || {
+        bodies.iter().filter_map(|body| match &body.kind {
+            BodyKind::Solid(solid) => Some((body, solid)),
+            _ => None,
+        })
+    };
+    let of = |solid: &'b Solid| {
+        let with = |element: &'b SolidElement| (element, &solid.materials[element.material]);
+        solid.elements.iter().map(with)
+    };
+    if let Some((_, solid)) = solids().find(|(body, _)| body.name == on) {
+        return Ok(of(solid).collect());
+    }
+    if bodies.iter().any(|body| body.name == on) {
+        return Err(format!(
+            "body {on:?} is no solid; only a solid has a volume"
+        ));
+    }
+    let Ok(mesh) = names.mesh(on) else {
+        let known = || solids().map(|(body, _)| body.name.as_str());
+        return Err(format!(
+            "no solid called {}{} (solids: {}), and no block or mesh",
+            quoted(on),
+            did_you_mean(on, known()),
+            some_of(known())
+        ));
+    };
+    let wanted: HashSet<Vec<usize>> = mesh.elements.into_iter().map(|(_, nodes)| nodes).collect();
+    let all = solids().flat_map(|(_, solid)| of(solid));
+    let found: Vec<_> = all
+        .filter(|(element, _)| wanted.contains(&element.nodes))
+        .collect();
+    if found.is_empty() {
+        return Err(format!(
+            "no solid stands on {on:?}; a load there would act on nothing"
+        ));
+    }
+    Ok(found)
+}
+
+fn jacobian(point: &Sample, at: &[[f64; 2]]) -> f64 {
+    let sum =
+        |k: usize, by: usize| -> f64 { at.iter().zip(&point.d).map(|(x, d)| x[k] * d[by]).sum() };
+    sum(0, 0) * sum(1, 1) - sum(0, 1) * sum(1, 0)
+}
+
+fn width(point: &Sample, at: &[[f64; 2]], elastic: &Elastic) -> f64 {
+    elastic.width(at.iter().zip(&point.n).map(|(x, n)| n * x[0]).sum())
+}
