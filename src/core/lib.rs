@@ -100,8 +100,9 @@
 //! - [`executor`]: work on bodies side by side, by whoever has threads to give.
 //! - [`linalg`]: patterns, factors, checked solves; a package of its own.
 //! - [`model`]: what is solved, as plain data: nodes, bodies, surfaces, contacts, loads, settings.
-//! - [`fem`]: an element is a small file here ([`fem::element`] says what it has to give): shape functions, internal forces
-//!   and their tangent. [`fem::assembly`] adds the elements of all bodies up.
+//! - [`fem`]: an element is a small file here: a kind of continuum element has places, shape functions and a rule
+//!   ([`fem::kinds`]), and [`fem::isoparametric`] the formulation of all; others give internal forces and their tangent themselves
+//!   ([`fem::element`]). [`fem::assembly`] adds the elements of all bodies up, [`fem::recovery`] gives stresses for output.
 //! - [`contact`]: one slave node: projection on its surface, Table 1's equations, Table 2's decision, and the judge of the
 //!   laws that every accepted state obeys.
 //! - [`interface`]: the interface problem of a major iteration, by itself: geometry and stiffness frozen, no bodies.

@@ -165,6 +165,10 @@ pub fn assert_usable(model: &Model) {
                 let nodes: HashSet<usize> = nodes.copied().collect();
                 assert_eq!(nodes, body.nodes.iter().copied().collect());
             }
+            BodyKind::Truss(truss) => {
+                let nodes: HashSet<usize> = truss.bars.iter().flatten().copied().collect();
+                assert_eq!(nodes, body.nodes.iter().copied().collect());
+            }
             BodyKind::Linear(linear) => {
                 let size = 2 * body.nodes.len();
                 let fits = |&(i, j, v): &(usize, usize, f64)| i < size && j < size && v.is_finite();

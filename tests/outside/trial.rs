@@ -189,7 +189,7 @@ fn stiffness(model: &Model) -> f64 {
             let each = solid.materials.iter().map(|m| m.young * m.thickness);
             each.fold(0.0, f64::max) * model.length
         }
-        BodyKind::Linear(_) => 0.0,
+        BodyKind::Linear(_) | BodyKind::Truss(_) => 0.0,
     };
     let all = model.bodies.iter().map(|body| of(&body.kind));
     all.fold(f64::MIN_POSITIVE, f64::max)

@@ -27,6 +27,8 @@ mod smooth;
 mod pairing;
 // Two sides of a surface at once: corners, vertices, steps.
 mod corners;
+// Elements of every kind in whole scenes: patches, closed forms, rates, locking, loads that follow.
+mod elements;
 // Stuck nodes stay where they stuck; without an anchor they drift in third order.
 mod drift;
 // Equilibrium, contact and friction hold in every accepted increment; turned scenes give turned results.

@@ -254,6 +254,8 @@ impl Assembly {
             let equation = placed.dofs.iter().find_map(|&d| dofs.equation[d]);
             let part = equation.map_or(Some(at), |e| parts.iter().position(|p| p.contains(&e)))?;
             if groups.is_empty() || part > at {
+                // There are no parts where every degree of freedom is held.
+                let start = parts.get(part)?.start;
                 if least < reach {
                     return None;
                 }
@@ -261,8 +263,8 @@ impl Assembly {
                     elements: k..k,
                     first: Places {
                         dof: if k == 0 { 0 } else { least },
-                        slot: pattern.block_start(parts[part].start),
-                        equation: parts[part].start,
+                        slot: pattern.block_start(start),
+                        equation: start,
                     },
                     room: self.room.clone(),
                 });

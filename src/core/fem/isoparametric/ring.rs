@@ -8,7 +8,8 @@
 //!
 //! add to the tangent, which stays symmetric.
 
-use super::{Hoop, Parent, Point, Reference};
+use crate::fem::kinds::Parent;
+use crate::fem::material::Hoop;
 
 /// The ring of a Gauss point.
 #[derive(Debug, Clone, Copy)]
@@ -35,16 +36,11 @@ pub(super) struct RingTerms<const N: usize> {
 }
 
 impl<const N: usize> Ring<N> {
-    /// The ring of a point of the parent element.
-    pub fn new(parent: &Parent<N>, reference: &Reference<N>) -> Self {
-        let radius: f64 = parent
-            .n
-            .iter()
-            .zip(&reference.at)
-            .map(|(n, x)| n * x[0])
-            .sum();
+    /// The ring of a point of the parent element, whose nodes are `at` in the reference and move by `u`.
+    pub fn new(parent: &Parent<N>, at: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> Self {
+        let radius: f64 = parent.n.iter().zip(at).map(|(n, x)| n * x[0]).sum();
         let share = parent.n.map(|n| n / radius);
-        let h = share.iter().zip(&reference.u).map(|(b, u)| b * u[0]).sum();
+        let h = share.iter().zip(u).map(|(b, u)| b * u[0]).sum();
         Ring {
             share,
             radius,
@@ -54,21 +50,17 @@ impl<const N: usize> Ring<N> {
     }
 }
 
-impl<const N: usize> Point<N> {
-    /// What its ring adds; none in the plane.
-    pub(super) fn ring_terms(&self) -> Option<RingTerms<N>> {
-        let ring = self.ring.as_ref()?;
-        let (v, hoop, f33) = (self.volume, &ring.hoop, 1.0 + ring.h);
+impl<const N: usize> Ring<N> {
+    /// What it adds, where the point has this volume and F in the plane.
+    pub fn terms(&self, volume: f64, deformation: [[f64; 2]; 2]) -> RingTerms<N> {
+        let (v, hoop, f33) = (volume, &self.hoop, 1.0 + self.h);
         let [xx, yy, xy] = [0, 1, 2].map(|k| v * f33 * hoop.coupling[k]);
-        let coupling = self
-            .deformation()
-            .map(|f| [f[0] * xx + f[1] * xy, f[0] * xy + f[1] * yy]);
-        Some(RingTerms {
-            share: ring.share,
+        RingTerms {
+            share: self.share,
             stress: v * f33 * hoop.stress,
-            coupling,
+            coupling: deformation.map(|f| [f[0] * xx + f[1] * xy, f[0] * xy + f[1] * yy]),
             modulus: v * (hoop.stress + f33 * f33 * hoop.modulus),
-        })
+        }
     }
 }
 
