@@ -78,6 +78,7 @@ pub fn model(slaves: usize) -> Model {
         },
         nodes,
         loads: vec![],
+        pressures: Vec::new(),
         prescribed: vec![],
         path: vec![0.0, 1.0],
         increment: 0.1,

@@ -175,9 +175,9 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         if self.update == Update::Updated {
             let before: [[f64; 2]; N] = pairs(past.u);
             for (i, before) in before.into_iter().enumerate() {
-                for a in 0..2 {
-                    reference.at[i][a] += before[a];
-                    reference.u[i][a] -= before[a];
+                for (a, before) in before.into_iter().enumerate() {
+                    reference.at[i][a] += before;
+                    reference.u[i][a] -= before;
                 }
             }
         }

@@ -71,13 +71,16 @@ impl<const N: usize> RingTerms<N> {
         let own = self.share[i];
         for (a, row) in self.coupling.iter().enumerate() {
             let by_gradient = row[0] * x + row[1] * y;
-            for j in 0..N {
-                sums[a][0][j] += by_gradient * self.share[j];
-                sums[0][a][j] += own * (row[0] * grad[0][j] + row[1] * grad[1][j]);
+            for (sum, share) in sums[a][0].iter_mut().zip(&self.share) {
+                *sum += by_gradient * share;
+            }
+            let slopes = grad[0].iter().zip(&grad[1]);
+            for (sum, (x, y)) in sums[0][a].iter_mut().zip(slopes) {
+                *sum += own * (row[0] * x + row[1] * y);
             }
         }
-        for j in 0..N {
-            sums[0][0][j] += own * self.modulus * self.share[j];
+        for (sum, share) in sums[0][0].iter_mut().zip(&self.share) {
+            *sum += own * self.modulus * share;
         }
     }
 }
