@@ -1,6 +1,6 @@
 //! The scene file as its author writes it: from its text to a [`Spec`], and from that back to a line.
 //!
-//! - [`spec`]: the types of the file; [`arc`]: how a path is followed; [`given`]: meshes node by node; [`condensed`]: those of a file
+//! - [`spec`]: the types of the file; [`loads`]: loads; [`arc`]: how a path is followed; [`given`]: meshes node by node; [`condensed`]: those of a file
 //!   with an interface problem without bodies.
 //! - [`described`]: the types, described once for [`paths`] and for the [`reference`](mod@reference), which
 //!   [`markdown`] writes.
@@ -17,6 +17,7 @@ pub mod described;
 pub mod error;
 pub mod given;
 pub mod kind;
+pub mod loads;
 pub mod locate;
 pub mod markdown;
 pub mod notation;
