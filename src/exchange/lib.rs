@@ -9,10 +9,24 @@
 //! - [`inp`]: decks of CalculiX and Abaqus.
 //! - [`gmsh`]: meshes of Gmsh.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
+//! - [`problem`]: friction problems, as all readers of interface problems give them.
+//! - [`siconos`]: friction problems of Siconos, as text.
+//! - [`matrix_market`]: single matrices in the Matrix Market's exchange format.
+//! - [`fclib`]: friction problems in the HDF5 files of the library fclib.
+//! - [`calculix`]: files of CalculiX.
+//! - [`vtu`]: results for ParaView: VTK's unstructured grids, and collections of them.
 
 #![forbid(unsafe_code)]
 
 pub mod broken;
+pub mod calculix;
+pub mod fclib;
+pub mod matrix_market;
 pub mod gmsh;
 pub mod inp;
 pub mod mesh;
+pub mod problem;
+pub mod siconos;
+pub mod vtu;
+
+mod words;

@@ -1,0 +1,5 @@
+//! Files of CalculiX.
+//!
+//! - [`stiffness`]: the stiffness matrix that it stores.
+
+pub mod stiffness;
