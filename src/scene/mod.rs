@@ -5,7 +5,7 @@
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
 //! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
-//! - [`siconos`]: interface problems of another code.
+//! - [`problems`]: interface problems that other programs have written.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod base;
@@ -16,7 +16,7 @@ pub mod import;
 pub mod limits;
 pub mod memory;
 pub mod nodes;
-pub mod siconos;
+pub mod problems;
 pub mod solver;
 
 mod areas;
@@ -30,6 +30,7 @@ use crate::format::paths::Override;
 use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read};
 use crate::model::Model;
 pub use builtin::Builtin;
+pub use problems::siconos;
 
 pub(crate) use compile::increments;
 use nodes::Names;
@@ -67,6 +68,9 @@ impl Scene {
         if import::is_mesh(name) {
             return Err(SceneError::whole(name, import::no_scene(name)));
         }
+        if let Some(problem) = problems::from_file(name, overrides) {
+            return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
+        }
         let text = read::text(name).map_err(|mut error| {
             if !std::path::Path::new(name).exists() {
                 error.message = no_such_scene(name);
@@ -76,8 +80,8 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// Reads a scene from a text, or what [`condensed`] and [`siconos`] make one of; `name` is what messages call it, and the
-    /// meshes that it imports lie beside a file of that name.
+    /// Reads a scene from a text, or what [`condensed`] and [`problems`] make one of; `name` is what messages call it, and the
+    /// files that it names lie beside a file of that name.
     ///
     /// # Errors
     /// If the scene is unsound.
@@ -89,8 +93,8 @@ impl Scene {
         if deck::is_one(text) {
             return Scene::from_deck(name, text, overrides);
         }
-        if siconos::is_one(text) {
-            return Scene::from_siconos(name, text, overrides);
+        if let Some(problem) = problems::from_text(name, text, overrides) {
+            return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
         if locate::head(text) == Some(condensed::HEAD) {
             let problem = read::problem(name, text)?;
@@ -137,26 +141,6 @@ impl Scene {
         let mut scene = Scene::compiled(name, "", spec, overrides, place)?;
         scene.remarks = read.remarks;
         Ok(scene)
-    }
-
-    fn from_siconos(
-        name: &str,
-        text: &str,
-        overrides: &[(String, String)],
-    ) -> Result<Scene, SceneError> {
-        let memory = overrides
-            .iter()
-            .rev()
-            .find(|(path, _)| path == "settings.memory");
-        let memory = memory.and_then(|(_, value)| value.parse().ok());
-        let problem = siconos::read_within(text, memory).map_err(|broken| SceneError {
-            at: Some((broken.line, broken.column)),
-            ..SceneError::whole(name, broken.message)
-        })?;
-        let file = std::path::Path::new(name).file_name();
-        let title = file.map_or_else(|| name.into(), |file| file.to_string_lossy());
-        let spec = problem.problem(&error::shortened(&title)).spec();
-        Scene::assemble(name, "", spec, overrides, Vec::new())
     }
 
     /// Checks a scene that came without a text, as from a snapshot.
