@@ -21,9 +21,9 @@
 pub mod broken;
 pub mod calculix;
 pub mod fclib;
-pub mod matrix_market;
 pub mod gmsh;
 pub mod inp;
+pub mod matrix_market;
 pub mod mesh;
 pub mod problem;
 pub mod siconos;

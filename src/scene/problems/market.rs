@@ -126,15 +126,11 @@ fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, Sc
     Ok(Some(numbers))
 }
 
-/// The files of a problem of which the matrix is to be named so, the matrix first.
+/// The files that a problem is written to whose matrix, a compliance, is to be named so: the matrix, q and mu.
 ///
 /// # Errors
 /// If the name is that of a stiffness or of another part of a problem.
-pub fn written(
-    file: &Path,
-    problem: &super::siconos::Friction2d,
-    title: &str,
-) -> Result<Vec<(PathBuf, String)>, String> {
+pub fn parts(file: &Path) -> Result<[PathBuf; 3], String> {
     let names = Names::of(file)?;
     if names.stiffness {
         return Err(format!(
@@ -142,25 +138,19 @@ pub fn written(
             file.display()
         ));
     }
+    Ok([file.to_owned(), names.part("q"), names.part("mu")])
+}
+
+/// The texts of these files.
+pub fn texts(problem: &super::siconos::Friction2d, title: &str) -> [String; 3] {
     let local = problem.local();
-    let column = |part: &str, numbers: &[f64], what: &str| {
-        let text = matrix_market::write_column(numbers, &[what, title]);
-        (names.part(part), text)
-    };
-    Ok(vec![
-        (
-            file.to_owned(),
-            matrix_market::write(
-                &local.w,
-                &[
-                    "W of u = q + W r; rows along n and t of each contact in turn",
-                    title,
-                ],
-            ),
-        ),
-        column("q", &local.q, "q of u = q + W r"),
-        column("mu", &local.mu, "friction coefficients of the contacts"),
-    ])
+    let of_w = "W of u = q + W r; rows along n and t of each contact in turn";
+    let column = |numbers: &[f64], what: &str| matrix_market::write_column(numbers, &[what, title]);
+    [
+        matrix_market::write(&local.w, &[of_w, title]),
+        column(&local.q, "q of u = q + W r"),
+        column(&local.mu, "friction coefficients of the contacts"),
+    ]
 }
 
 #[cfg(test)]
