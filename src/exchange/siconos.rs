@@ -58,7 +58,7 @@ pub fn read(text: &str) -> Result<Problem, Broken> {
     let Some(size) = contacts.checked_mul(2) else {
         return Err(words.broken(format!("the problem has {contacts} contacts, far too many")));
     };
-    let first = matrix(&mut words, "W", None)?;
+    let first = matrix(&mut words, "W", None, size)?;
     if first.rows == size && !begins_matrix(&words, size, contacts) {
         return Ok(Problem::Local(Local {
             w: first,
@@ -66,7 +66,7 @@ pub fn read(text: &str) -> Result<Problem, Broken> {
             mu: words.coefficients(contacts)?,
         }));
     }
-    let h = matrix(&mut words, "H", Some((first.rows, size)))?;
+    let h = matrix(&mut words, "H", Some((first.rows, size)), size)?;
     Ok(Problem::Global(Global {
         f: words.numbers(first.rows, "q of a global problem")?,
         m: first,
@@ -87,11 +87,21 @@ fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
         && words.left().nth(size.saturating_add(contacts)).is_some()
 }
 
-/// A matrix; a square one where its size is not known.
+/// Refuses a number of rows where the columns, which follow, are as many as those of a local problem.
+fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Result<(), Broken> {
+    let columns = words.peek().and_then(|word| word.parse::<usize>().ok());
+    match rows != local && columns == Some(local) {
+        true => Err(words.broken(format!("{of_rows} is {rows}; it must be {local}"))),
+        false => Ok(()),
+    }
+}
+
+/// A matrix; a square one where its size is not known, which may be that of a local problem.
 fn matrix(
     words: &mut Words<'_>,
     name: &str,
     size: Option<(usize, usize)>,
+    local: usize,
 ) -> Result<Matrix, Broken> {
     let entries = match words.count(&format!("the storage of {name}"))? {
         0 => dense,
@@ -113,6 +123,9 @@ fn matrix(
     };
     if rows == 0 {
         return Err(words.broken(format!("{name} has 0 rows; it must have 1 at least")));
+    }
+    if size.is_none() {
+        squared(words, rows, local, &of_rows)?;
     }
     let columns = size.map_or(rows, |(_, columns)| columns);
     words.exactly(columns, &of_columns)?;
