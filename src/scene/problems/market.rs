@@ -11,8 +11,8 @@
 //! The components are those of [`super::siconos`]. Who opens such a problem names the matrix; the others lie beside it. Of a
 //! stiffness q may be missing where f is there.
 
+use super::fits;
 use super::siconos::{contacts, settings};
-use super::{beside, fits};
 use crate::format::SceneError;
 use crate::format::condensed::{Matrix, Problem, at_once};
 use std::path::{Path, PathBuf};
@@ -110,7 +110,7 @@ fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, Sc
         return Ok(None);
     }
     let file = path.display().to_string();
-    let text = beside::text(&path)?;
+    let text = super::text(&path)?;
     let read = matrix_market::read(&text).map_err(|broken| super::of_file(&file, broken))?;
     if (read.rows, read.columns) != (size, 1) && (read.rows, read.columns) != (1, size) {
         let why = format!(

@@ -3,11 +3,10 @@
 //! - [`siconos`]: friction problems condensed to their contacts, of Siconos (text) and fclib (HDF5), and what becomes of
 //!   global ones; [`market`]: those of files of the Matrix Market.
 //! - [`stored`]: a stiffness that CalculiX has stored, with contacts named by their nodes.
-//! - [`condense`]: unknowns that no contact sees, eliminated; [`beside`]: files that another one names.
+//! - [`condense`]: unknowns that no contact sees, eliminated.
 //!
 //! How their files are read and written is for [`stickslip_exchange`]; what the numbers mean is said here.
 
-pub mod beside;
 pub mod condense;
 pub mod market;
 pub mod siconos;
@@ -91,6 +90,19 @@ fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
     let entries = 4.0 * (contacts as f64).powi(2);
     limits::memory(entries * limits::ENTRY_BYTES, memory)
         .map_err(|why| format!("the problem has {contacts} contacts; its matrix takes {why}"))
+}
+
+/// The text of a file that another one names.
+fn text(path: &Path) -> Result<String, SceneError> {
+    let file = path.display().to_string();
+    let large = "no interface problem has more";
+    input::text(path, read::FILE_BYTES as u64, large).map_err(|why| SceneError {
+        at: match &why {
+            input::Unreadable::NoText { line, column } => Some((*line, *column)),
+            _ => None,
+        },
+        ..SceneError::whole(&file, why.to_string())
+    })
 }
 
 /// What is wrong with a file, as scenes tell it.

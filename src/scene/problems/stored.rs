@@ -10,12 +10,13 @@
 //! needs both components of each contact to be free.
 
 use super::condense::{NotEliminated, condensed, reduced};
-use super::{beside, fits, of_file};
+use super::{fits, of_file};
 use crate::format::condensed::{Contact, Matrix, Problem};
-use crate::format::error::{Fault, Path, at};
+use crate::format::error::{Fault, Path, at, quoted};
 use crate::format::stored::{Stored, Touching};
 use crate::format::{SceneError, read};
 use crate::model::InitialState;
+use crate::outside::input;
 use crate::scene::placed;
 use std::collections::HashMap;
 use stickslip_exchange::calculix::stiffness::{self, Unknown};
@@ -29,16 +30,22 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let spec: Stored = read::value(file, text, "stored stiffness")?;
     let place = |fault: Fault| placed(file, text, &[], fault);
     let named = |key: &str, name: &str| {
-        beside::path(file, name).map_err(|why| place(Fault::new(at![key], why)))
+        input::beside(std::path::Path::new(file), name).map_err(|why| {
+            let told = format!("{}: {why}", quoted(name));
+            place(Fault::new(at![key], told))
+        })
     };
     let unknowns = match &spec.unknowns {
         Some(name) => named("unknowns", name)?,
-        None => named("stiffness", &spec.stiffness)?.with_extension("dof"),
+        None => {
+            let name = std::path::Path::new(&spec.stiffness).with_extension("dof");
+            named("stiffness", &name.to_string_lossy())?
+        }
     };
     let matrix = named("stiffness", &spec.stiffness)?;
     let of = |path: &std::path::Path, broken| of_file(&path.display().to_string(), broken);
-    let list = stiffness::unknowns(&beside::text(&unknowns)?).map_err(|b| of(&unknowns, b))?;
-    let stored = beside::text(&matrix)?;
+    let list = stiffness::unknowns(&super::text(&unknowns)?).map_err(|b| of(&unknowns, b))?;
+    let stored = super::text(&matrix)?;
     let k = stiffness::matrix(&stored, list.len()).map_err(|b| of(&matrix, b))?;
     drop(stored);
     Posed::new(&spec, &list, memory)
