@@ -184,12 +184,19 @@ impl Scene {
     /// # Errors
     /// If there is no such path, or the value is unsound there.
     pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
-        let change = [(path.to_owned(), value.to_owned())];
+        self.with_all(&[(path.to_owned(), value.to_owned())])
+    }
+
+    /// This scene with several scalars set, one after the other.
+    ///
+    /// # Errors
+    /// As [`Scene::with`].
+    pub fn with_all(&self, changes: &[(String, String)]) -> Result<Scene, SceneError> {
         let scene = Scene::assemble(
             &self.name,
             &self.text,
             self.spec.clone(),
-            &change,
+            changes,
             self.overrides.clone(),
         )?;
         Ok(Scene {

@@ -9,6 +9,7 @@
 //! | `contact_mode` | −1 no slave node, 0 free, 1 sliding, 2 fixed |
 //! | `contact_force` | force on the slave node, x, y and 0; zero elsewhere |
 //! | `F_n`, `F_t`, `T_max`, `gap`, `slip` | of slave nodes, as in the trace |
+//! | `pressure`, `shear` | F_n and F_t by the area of the slave node; NaN where it has none |
 //!
 //! | on cells | |
 //! | --- | --- |
@@ -252,7 +253,17 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
         .push(array("contact_mode", &[], Values::Wholes(modes)));
     grid.on_points
         .push(array("contact_force", VECTOR, Values::Numbers(force)));
-    for (name, values) in names.into_iter().zip(numbers) {
+    let by_area = [&numbers[0], &numbers[1]].map(|forces| {
+        let mut stresses = vec![f64::NAN; nodes];
+        for contact in &model.contacts {
+            if let Some(area) = contact.area.filter(|area| *area > 0.0) {
+                stresses[contact.node] = forces[contact.node] / area;
+            }
+        }
+        stresses
+    });
+    let names = names.into_iter().chain(["pressure", "shear"]);
+    for (name, values) in names.zip(numbers.into_iter().chain(by_area)) {
         grid.on_points
             .push(array(name, &[], Values::Numbers(values)));
     }

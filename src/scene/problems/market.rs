@@ -15,6 +15,7 @@ use super::fits;
 use super::siconos::{contacts, settings};
 use crate::format::SceneError;
 use crate::format::condensed::{Matrix, Problem, at_once};
+use crate::outside::input;
 use std::path::{Path, PathBuf};
 use stickslip_exchange::matrix_market;
 
@@ -110,6 +111,9 @@ fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, Sc
         return Ok(None);
     }
     let file = path.display().to_string();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let path =
+        input::beside(&names.part("W"), &name).map_err(|why| SceneError::whole(&file, why))?;
     let text = super::text(&path)?;
     let read = matrix_market::read(&text).map_err(|broken| super::of_file(&file, broken))?;
     if (read.rows, read.columns) != (size, 1) && (read.rows, read.columns) != (1, size) {
