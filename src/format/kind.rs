@@ -9,7 +9,7 @@ use crate::outside::{calculix, input, shown};
 /// The kinds of files that the program writes or reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileKind {
-    /// A scene, an interface problem in RON or in the form of Siconos.
+    /// A scene, or an interface problem: in RON, or in the form of another program.
     Scene,
     /// A recorded state.
     Snapshot,
@@ -48,6 +48,9 @@ impl FileKind {
     /// What a text is, as far as its beginning and its outermost fields tell; `None` where they do not.
     pub fn of(text: &str) -> Option<FileKind> {
         let text = text.trim_start_matches(input::MARK);
+        if text.starts_with("%%MatrixMarket") {
+            return Some(FileKind::Scene);
+        }
         let rows = text.lines().filter(|line| !line.starts_with('#'));
         let first = rows.map(str::trim).find(|line| !line.is_empty())?;
         if first.starts_with("stickslip ") && first.contains(" results, ") {
@@ -85,7 +88,10 @@ impl FileKind {
         if too_deep(text).is_some() {
             return None;
         }
-        if head(text) == Some(super::condensed::HEAD) {
+        if [super::condensed::HEAD, super::stored::HEAD]
+            .map(Some)
+            .contains(&head(text))
+        {
             return Some(FileKind::Scene);
         }
         let whole = locate(text, &Path::default());
@@ -195,7 +201,12 @@ mod tests {
             ("(scene: \"b\", series: [])", FileKind::Chart),
             ("(title: \"a\", nodes: [], bodies: [])", FileKind::Scene),
             ("Contacts(title: \"a\")", FileKind::Scene),
+            ("Stored(title: \"a\")", FileKind::Scene),
             ("2\n1\n0\n", FileKind::Scene),
+            (
+                "%%MatrixMarket matrix array real general\n",
+                FileKind::Scene,
+            ),
             (
                 "# words\nscene,series,run,settings,status,error\n",
                 FileKind::ChartTable,
