@@ -99,7 +99,10 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         _ => format!("{name}: {increments} increments accepted, {marked} of them marked\n"),
     };
     text += "  law          worst     allowed   where\n";
-    for law in Law::ALL {
+    let of_bonds = Law::OF_BONDS
+        .into_iter()
+        .filter(|law| audit.of(*law).is_some());
+    for law in Law::ALL.into_iter().chain(of_bonds) {
         text += &match audit.of(law) {
             None => format!("  {:<11}  -\n", law.name()),
             Some(found) => row(model, law, found),

@@ -24,6 +24,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     say(&text)?;
     if !args.paths {
+        for remark in &scene.remarks {
+            tell(&format!("note: {remark}"));
+        }
         for warning in gaps::warnings(&scene.model) {
             tell(&format!("warning: {warning}"));
         }

@@ -2,6 +2,7 @@
 
 use super::base::{Error, Exit, SetArgs};
 use super::groups;
+use super::past;
 use crate::record::journal::Keep;
 use crate::tui;
 use std::io::IsTerminal;
@@ -9,7 +10,8 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A scene file, or the name of a built-in scene; without one, the debugger offers the built-in ones
+    /// A scene file, or the name of a built-in scene; without one, the debugger offers the built-in ones. The .cel of a
+    /// CalculiX run that is over opens that run, to be looked at
     scene: Option<String>,
     #[command(flatten)]
     set: SetArgs,
@@ -32,6 +34,29 @@ pub fn main(args: Args) -> Result<Exit, Error> {
     }
     if let Some(told) = args.scene.as_deref().and_then(groups::unknown) {
         return Err(Error::Usage(told));
+    }
+    if let Some(past) = args
+        .scene
+        .as_deref()
+        .map(past::named)
+        .transpose()?
+        .flatten()
+    {
+        let asked = [
+            (!args.set.set.is_empty(), "--set"),
+            (args.journal.is_some(), "--journal"),
+        ];
+        if let Some((_, asked)) = asked.into_iter().find(|(is, _)| *is) {
+            return Err(Error::Usage(past::read_only(asked)));
+        }
+        if !has_terminal() {
+            let name = past.name;
+            return Err(Error::Usage(format!(
+                "to look at a run needs a terminal, and standard input or output is none; `stickslip show {name}` prints it as text"
+            )));
+        }
+        tui::past::run(past).map_err(|error| Error::Usage(error.to_string()))?;
+        return Ok(Exit::Good);
     }
     if !has_terminal() {
         let scene = args.scene.as_deref().unwrap_or("SCENE");

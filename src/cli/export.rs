@@ -11,11 +11,12 @@ use crate::history::strip::Strip;
 use crate::outside::files::{self, Output};
 use crate::outside::input;
 use crate::record::export::shown::{COLUMNS, Shown};
+use crate::record::export::skeleton::skeleton;
 use crate::record::export::{self, Kind, MadeOf, Origin};
 use crate::record::journal::Record;
 use crate::record::snapshot::Snapshot;
-use crate::scene::Scene;
 use crate::scene::solver::solver;
+use crate::scene::{Scene, import};
 use crate::step::drive::RunEnd;
 use crate::step::event::{Failure, Position};
 use crate::step::state::{State, Status};
@@ -27,15 +28,15 @@ use std::sync::Arc;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 .svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline.
-.ron: the scene as it was opened; with --frozen the interface problem that is solved next, as a scene of its own.
+.ron: the scene as it was opened; of a mesh of Gmsh a scene around it, to be edited; with --frozen the interface problem that is solved next, as a scene of its own.
 .dat: that interface problem in the form of Siconos.
 .cast: a journal as a film for asciinema.
 
 A scene is taken at its end, or where it fails. Exit codes: 0 the file was written, though the scene may have failed;
 2 bad input or usage; 3 --at is not reached, or no file can say what is asked for.")]
 pub struct Args {
-    /// A scene file, the name of a built-in scene, a snapshot or a journal
-    #[arg(value_name = "SCENE|SNAPSHOT|JOURNAL")]
+    /// A scene file, the name of a built-in scene, a snapshot, a journal or a mesh
+    #[arg(value_name = "SCENE|SNAPSHOT|JOURNAL|MESH")]
     input: String,
     #[command(flatten)]
     set: SetArgs,
@@ -68,6 +69,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
     drop(Output::create(&args.output, args.force)?);
     let bytes = match kind.made_of {
+        _ if import::is_mesh(&args.input) => around_mesh(args, kind)?,
         MadeOf::Journal => film(args)?,
         MadeOf::State(_) => match state(args, kind, &interrupt)? {
             Ok(bytes) => bytes,
@@ -92,6 +94,34 @@ fn input_kind(input: &str) -> FileKind {
         true => FileKind::Journal,
         false => FileKind::Snapshot,
     }
+}
+
+/// A scene around a mesh.
+fn around_mesh(args: &Args, kind: &Kind) -> Result<Vec<u8>, Error> {
+    let file = &args.input;
+    let usage = |why: &str| Error::Usage(format!("{file}: {why}"));
+    if kind.extension != "ron" || args.frozen {
+        return Err(usage(
+            "this is a mesh; a scene is written around it, with -o FILE.ron",
+        ));
+    }
+    scene_only(args, "a mesh has no values to set")?;
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|folder| *folder != Path::new(""));
+        folder.unwrap_or(Path::new(".")).canonicalize().ok()
+    };
+    let mesh = Path::new(file);
+    let below = folder(mesh).zip(folder(&args.output)).zip(mesh.file_name());
+    let below =
+        below.and_then(|((mesh, scene), name)| Some(mesh.strip_prefix(scene).ok()?.join(name)));
+    let Some(below) = below else {
+        return Err(usage(
+            "a scene imports a mesh that lies beside it or below; write the scene there, by -o",
+        ));
+    };
+    let scene = args.output.to_string_lossy();
+    let parts = import::bodies(file)?;
+    Ok(skeleton(&scene, &below.to_string_lossy(), &parts)?.into_bytes())
 }
 
 /// The film of a journal.

@@ -20,6 +20,7 @@ mod lesson;
 mod list;
 mod map;
 mod outputs;
+mod past;
 mod place;
 mod record;
 mod remedies;
@@ -70,7 +71,7 @@ enum Command {
     Diff(diff::Args),
     /// Goes on with a session of the debugger where it was, from its journal
     Resume(resume::Args),
-    /// Tells a session's journal as text
+    /// Tells a session's journal as text, or a CalculiX run that is over
     Story(story::Args),
     /// Judges every accepted increment by positions and forces alone: the worst violation of each law
     Audit(audit::Args),
@@ -88,7 +89,7 @@ enum Command {
     Chart(chart::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
-    /// Prints the file of a built-in scene, study or lesson, to start from
+    /// Prints the file of a built-in scene, study or lesson, to start from, or a CalculiX run that is over
     Show(show::Args),
     /// Shows a page of the manual, or the help of a subcommand
     Help(help::Args),

@@ -6,6 +6,7 @@ use super::outputs::aligned;
 use super::sink::{Sent, Sink};
 use super::table;
 use crate::contact::record::ContactRecord;
+use crate::explain::bond;
 use crate::explain::names;
 use crate::explain::number::six;
 use crate::explain::page;
@@ -381,6 +382,11 @@ impl Tally<'_> {
         }
         let heads = ["", "node", "mode", "gap", "F_n", "F_t"];
         let mut table = vec![heads.map(str::to_owned).to_vec()];
+        let contacts = &self.scene.model.contacts;
+        let bonds = contacts.iter().any(|contact| !contact.bond.is_hard());
+        if bonds {
+            table[0].extend(["F_n/A", "F_t/A", "law"].map(str::to_owned));
+        }
         for (slave, found) in self.slaves.iter().enumerate().take(MOST_SLAVES) {
             table.push(vec![
                 String::new(),
@@ -390,6 +396,13 @@ impl Tally<'_> {
                 six(found.f_n),
                 six(found.f_t),
             ]);
+            if let (true, Some(row)) = (bonds, table.last_mut()) {
+                let contact = &contacts[slave];
+                let by_area = contact.pressure(found.f_n, found.f_t);
+                let told = by_area.map_or(["-".into(), "-".into()], |both| both.map(six));
+                row.extend(told);
+                row.push(bond::name(contact).to_owned());
+            }
         }
         for line in aligned(&table, 3) {
             tell(&line);

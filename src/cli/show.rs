@@ -1,6 +1,9 @@
-//! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from.
+//! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from; or what a CalculiX run that is
+//! over did, as text.
 
 use super::base::{Error, Exit, say, tell};
+use super::past;
+use crate::explain::past::summary;
 use crate::format::error::did_you_mean;
 use crate::outside::files;
 use crate::scene::builtin;
@@ -10,7 +13,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Name of a built-in scene, study or lesson
+    /// Name of a built-in scene, study or lesson; or the .cel of a CalculiX run that is over
     name: String,
     /// The work-precision chart of that scene
     #[arg(long)]
@@ -24,13 +27,19 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let text = find(&args.name, args.chart).map_err(Error::Usage)?;
+    let text = match past::named(&args.name)? {
+        Some(_) if args.chart => return Err(Error::Usage(past::read_only("--chart"))),
+        Some(past) => summary::text(&past),
+        None => find(&args.name, args.chart)
+            .map_err(Error::Usage)?
+            .to_owned(),
+    };
     match &args.output {
         Some(path) if path.as_os_str() != "-" => {
             files::write(path, text, args.force)?;
             tell(&format!("wrote {}", path.display()));
         }
-        _ => say(text)?,
+        _ => say(&text)?,
     }
     Ok(Exit::Good)
 }

@@ -17,12 +17,13 @@
 //! what their side gives (F_n, F_t and T_max in its own frame), of all splits the one of least norm. With `history.control:
 //! arc` one more column comes last, `arc`, the way along the path at the start of the increment, and where it is accepted
 //! at its end; with `history.jumps: dynamic` it is `drag`, c / Δt of the damped motion that the row is part of, 0
-//! outside. A minor iteration that could not be solved has no rows.
+//! outside. Where the scene names a law, a stick stiffness or a pressure to report, `pressure` and `shear` come last: F_n / A and
+//! F_t / A of the row, with the undeformed tributary area A, and `NaN` without one. A minor iteration that could not be solved has no rows.
 
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
 use crate::linear::stability::Stability;
-use crate::model::{Control, Friction, Jumps, Model};
+use crate::model::{Control, Friction, Jumps, Model, Monitor, Watched};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::motion::Motion;
 use crate::study::csv::field;
@@ -104,8 +105,18 @@ pub fn trace_header(model: &Model) -> String {
     if moves(model) {
         line.push_str(",drag");
     }
+    if has_pressures(model) {
+        line.push_str(",pressure,shear");
+    }
     line.push('\n');
     line
+}
+
+/// Whether a scene has columns for pressures.
+fn has_pressures(model: &Model) -> bool {
+    let watched = |monitor: &Monitor| matches!(monitor.of, Watched::Pressure { .. });
+    model.contacts.iter().any(|contact| !contact.bond.is_hard())
+        || model.monitors.iter().any(watched)
 }
 
 /// The rows of a minor iteration; `friction` is that in force, by slave.
@@ -134,6 +145,11 @@ pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String
         }
         if moves(model) {
             let _ = write!(lines, ",{:?}", event.drag);
+        }
+        if has_pressures(model) {
+            let found = model.contacts[slave].pressure(f_n, f_t);
+            let [pressure, shear] = found.unwrap_or([f64::NAN; 2]);
+            let _ = write!(lines, ",{pressure:?},{shear:?}");
         }
         lines.push('\n');
     };

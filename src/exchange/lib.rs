@@ -6,11 +6,15 @@
 //! for.
 //!
 //! - [`broken`]: what is wrong with a file, and where.
+//! - [`calculix`]: how a run of CalculiX went.
+//! - [`inp`]: decks of CalculiX and Abaqus.
 //! - [`gmsh`]: meshes of Gmsh.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
 
 #![forbid(unsafe_code)]
 
 pub mod broken;
+pub mod calculix;
 pub mod gmsh;
+pub mod inp;
 pub mod mesh;

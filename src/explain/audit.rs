@@ -48,10 +48,11 @@ pub struct Audit {
     pub increments: u32,
     /// Those of them that were only marked.
     pub marked: u32,
-    /// The worst place of each law over all increments that were not marked, in the order of [`Law::ALL`].
-    pub worst: [Option<Found>; 8],
+    /// The worst place of each law over all increments that were not marked, in the order of [`Law::ALL`], and then of
+    /// [`Law::OF_BONDS`].
+    pub worst: [Option<Found>; 11],
     /// The same of the marked ones.
-    pub worst_marked: [Option<Found>; 8],
+    pub worst_marked: [Option<Found>; 11],
     /// Where friction gave the most work.
     pub work: Option<Found>,
     /// The deepest place of a master's node in a slave's body.
@@ -78,7 +79,8 @@ impl Audit {
             Some(_) => &mut self.worst_marked,
             None => &mut self.worst,
         };
-        for (worst, &finding) in worst.iter_mut().zip(&verdict.worst) {
+        let all = verdict.worst.iter().chain(&verdict.bonds);
+        for (worst, &finding) in worst.iter_mut().zip(all) {
             keep_worse(worst, finding.map(found));
         }
         keep_worse(&mut self.work, verdict.work.map(found));
@@ -107,7 +109,8 @@ impl Audit {
 
     /// The worst place of a law in increments that were not marked.
     pub fn of(&self, law: Law) -> Option<&Found> {
-        self.worst.get(law as usize)?.as_ref()
+        let mut all = self.worst.iter().flatten();
+        all.find(|found| found.finding.law == law)
     }
 }
 

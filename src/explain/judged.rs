@@ -43,6 +43,18 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         Law::Work => format!(
             "friction gave work at {node}: it slipped by {slip:.6e} along t, and F_t is {f_t:.6e} at the end"
         ),
+        Law::Penalty if finding.amount.is_infinite() => {
+            format!("{node} bears a force and has no surface to touch")
+        }
+        Law::Penalty => format!(
+            "{node} is inside its surface by {:.6e}, which is not what its penalty gives to F_n {f_n:.6e}",
+            -gap
+        ),
+        Law::Tied => format!("{node} has left the point of the surface that it is tied to"),
+        Law::Stick => format!(
+            "{node} slipped by {slip:.6e} along t beyond its elastic slip, and friction is not at its limit against that: F_t is \
+             {f_t:.6e}, the limit {limit:.6e}"
+        ),
         Law::Balance => format!("the forces on {node} are not in balance"),
         Law::Moments => "loads and reactions are not in balance".into(),
     };

@@ -10,11 +10,13 @@
 //! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
 //!   where nothing holds it; [`reach`]: up to which load there is an answer; [`finer`]: whether a finer mesh has one.
 //! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
+//! - [`past`]: a run of another program that is over: what cycled in it, and who chattered.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
 pub mod advice;
 pub mod attempt;
 pub mod audit;
+pub mod bond;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;
@@ -28,6 +30,7 @@ pub mod names;
 pub mod number;
 pub mod outline;
 pub mod page;
+pub mod past;
 pub mod proven;
 pub mod reach;
 pub mod remedies;

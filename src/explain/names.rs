@@ -78,6 +78,7 @@ pub fn rule(rule: Rule) -> &'static str {
         Rule::FreeSlides => "free-slides",
         Rule::FreeStays => "free-stays",
         Rule::OffSurface => "off-surface",
+        Rule::Tied => "tied",
         Rule::Held => "held",
         Rule::FreeEnters => "free-enters",
         Rule::Waits => "waits",

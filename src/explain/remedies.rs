@@ -259,11 +259,14 @@ fn scale_of(tested: crate::contact::table2::Tested, stepper: &Stepper, event: &E
 fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     let verdict = stepper.state().start.verdict.as_ref();
     let amount = |law: Law| {
-        let found = verdict.and_then(|verdict| verdict.worst[law as usize]);
+        let found = verdict.and_then(|verdict| verdict.of(law));
         let amount = found.map_or(0.0, |found| found.amount);
         if amount < ROUND_OFF { 0.0 } else { amount }
     };
-    let inside = amount(Law::Penetration).max(amount(Law::Gap));
+    let gap = amount(Law::Gap)
+        .max(amount(Law::Penalty))
+        .max(amount(Law::Tied));
+    let inside = amount(Law::Penetration).max(gap);
     let (tension, shear) = (amount(Law::Tension), amount(Law::Cone));
     let decisions = event.nodes.iter().map(|record| &record.decision);
     Left {

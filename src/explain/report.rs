@@ -92,6 +92,9 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
         Rule::OffSurface => {
             "Free: the projection lies past an end of every surface, so there is nothing to touch."
         }
+        Rule::Tied => {
+            "Tied: it is held at its point of the surface, in tension too. Table 2 is not asked."
+        }
         Rule::Held if decision.wanted == decision.next => {
             return format!(
                 "You hold it {}; Table 2 wants the same.",

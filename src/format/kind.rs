@@ -4,7 +4,7 @@
 
 use super::error::{Path, Step};
 use super::locate::{head, locate, too_deep};
-use crate::outside::{input, shown};
+use crate::outside::{calculix, input, shown};
 
 /// The kinds of files that the program writes or reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,10 +29,20 @@ pub enum FileKind {
     Results,
     /// A session to be played in a terminal.
     Cast,
+    /// The contact elements of a CalculiX run.
+    Contacts,
+    /// How such a run went: its increments, or its residuals.
+    Progress,
 }
 
 /// Columns with which the tables of runs, traces and sweeps begin.
 const TABLES: [&str; 3] = ["increment,load,", "increment,attempt,", "scene,"];
+
+/// What the tables of a CalculiX run begin with.
+const PROGRESS: [&str; 2] = [
+    "SUMMARY OF JOB INFORMATION",
+    "SUMMARY OF C0NVERGENCE INFORMATION",
+];
 
 impl FileKind {
     /// What a text is, as far as its beginning and its outermost fields tell; `None` where they do not.
@@ -42,6 +52,12 @@ impl FileKind {
         let first = rows.map(str::trim).find(|line| !line.is_empty())?;
         if first.starts_with("stickslip ") && first.contains(" results, ") {
             return Some(FileKind::Results);
+        }
+        if first.starts_with("*ELEMENT") && first.contains("=contactelements_st") {
+            return Some(FileKind::Contacts);
+        }
+        if PROGRESS.contains(&first) {
+            return Some(FileKind::Progress);
         }
         if first.starts_with("{\"version\"") {
             return Some(FileKind::Cast);
@@ -102,12 +118,17 @@ impl FileKind {
             FileKind::Table => "a table of results",
             FileKind::Results => "a file of kept results",
             FileKind::Cast => "a session to be played in a terminal",
+            FileKind::Contacts => "the .cel of a CalculiX run that is over",
+            FileKind::Progress => "a table of a CalculiX run that is over",
         }
     }
 
     /// The command that reads a file of this kind; none where the program has none.
     pub fn reader(self, file: &str) -> Option<String> {
-        let file = shown::cut(file, 120);
+        // The tables of a run are read with its contact elements.
+        let cel = calculix::cel_of(file).filter(|_| self == FileKind::Progress);
+        let cel = cel.map(|cel| cel.display().to_string());
+        let file = shown::cut(cel.as_deref().unwrap_or(file), 120);
         let file = match file.contains(char::is_whitespace) {
             true => format!("'{file}'"),
             false => file,
@@ -121,6 +142,7 @@ impl FileKind {
             FileKind::ChartTable => format!("stickslip chart --from {file}"),
             FileKind::Results => format!("stickslip map SCENE --resume {file}"),
             FileKind::Cast => format!("asciinema play {file}"),
+            FileKind::Contacts | FileKind::Progress => format!("stickslip {file}"),
             FileKind::Chart | FileKind::Table => return None,
         })
     }
@@ -175,6 +197,12 @@ mod tests {
             ("increment,load,majors,minors,u_x\n", FileKind::Table),
             ("stickslip 0.1.0 results, abc\n", FileKind::Results),
             ("{\"version\": 2}", FileKind::Cast),
+            (
+                "*ELEMENT,TYPE=C3D6,ELSET=contactelements_st1_in1_at1_it1\n1,2\n",
+                FileKind::Contacts,
+            ),
+            ("SUMMARY OF JOB INFORMATION\n STEP\n", FileKind::Progress),
+            ("SUMMARY OF C0NVERGENCE INFORMATION\n", FileKind::Progress),
         ] {
             assert_eq!(FileKind::of(text), Some(kind), "{text}");
         }
@@ -190,6 +218,11 @@ mod tests {
         assert_eq!(
             mistaken("my scene.ron", scene, FileKind::Snapshot).unwrap(),
             "this is a scene; `stickslip run 'my scene.ron'` reads it"
+        );
+        let table = "SUMMARY OF JOB INFORMATION\n";
+        assert_eq!(
+            mistaken("job.sta", table, FileKind::Scene).unwrap(),
+            "this is a table of a CalculiX run that is over; `stickslip job.cel` reads it"
         );
     }
 }

@@ -612,6 +612,18 @@ described! {
             /// The mode: free, sliding or fixed.
             mode: Mode,
         },
+        /// The contact pressure F_n / A of one slave node, with its undeformed tributary area A, or the largest of all.
+        Pressure {
+            /// Name of the slave node. Default: the one where it is largest.
+            #[serde(default)]
+            node: Option<String>,
+        },
+        /// The contact shear F_t / A of one slave node, along t, or that of all which is largest in size.
+        Shear {
+            /// Name of the slave node. Default: the one where it is largest in size.
+            #[serde(default)]
+            node: Option<String>,
+        },
         /// How far one slave node that sticks has gone along its surface from the point where it stuck (length, with the
         /// sign of slip; 0 where it slides or is free), or that of all which has gone furthest.
         Drift {

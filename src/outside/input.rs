@@ -4,7 +4,7 @@
 use std::fs::{File, FileType, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// Most bytes of a table: a chart's, or a reference's.
 pub const TABLE_BYTES: u64 = 64 << 20;
@@ -59,6 +59,31 @@ pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unre
     match bytes.len() as u64 > most {
         true => Err(Unreadable::TooLarge { most, what }),
         false => Ok(bytes),
+    }
+}
+
+/// The path of a file that another one names, which lies beside it or in a folder below: what somebody sends can name no other
+/// file of the machine, be it by a link.
+///
+/// # Errors
+/// A message that says why it is none.
+pub fn beside(own: &Path, named: &str) -> Result<PathBuf, String> {
+    let parts = || Path::new(named).components();
+    if named.is_empty() || !parts().all(|part| matches!(part, Component::Normal(_))) {
+        return Err("the file must lie beside this one or in a folder below, named without .. and without a / at its start".to_owned());
+    }
+    let folder = own.parent().unwrap_or(Path::new(""));
+    let path = folder.join(named);
+    let told = |error: io::Error| Unreadable::Failed(error).to_string();
+    let real = path.canonicalize().map_err(told)?;
+    let here = if folder == Path::new("") {
+        Path::new(".")
+    } else {
+        folder
+    };
+    match real.starts_with(here.canonicalize().map_err(told)?) {
+        true => Ok(path),
+        false => Err("the file is a link to one outside of the folder of this one".to_owned()),
     }
 }
 
@@ -165,6 +190,34 @@ mod tests {
         }
         let missing = bytes(&directory.path().join("none"), 10, "").unwrap_err();
         assert!(matches!(missing, Unreadable::Failed(_)));
+    }
+
+    #[test]
+    fn a_named_file_lies_beside_or_below() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path().join("own");
+        std::fs::create_dir_all(folder.join("deep")).unwrap();
+        for file in ["own/a", "own/deep/b", "other"] {
+            std::fs::write(directory.path().join(file), "").unwrap();
+        }
+        std::os::unix::fs::symlink("../other", folder.join("out")).unwrap();
+        std::os::unix::fs::symlink("deep/b", folder.join("in")).unwrap();
+        let own = folder.join("scene");
+        for named in ["a", "deep/b", "in"] {
+            assert_eq!(beside(&own, named), Ok(folder.join(named)));
+        }
+        let absolute = folder.join("a");
+        let wrong = [
+            "../other",
+            "deep/../a",
+            "out",
+            "",
+            "none",
+            absolute.to_str().unwrap(),
+        ];
+        for named in wrong {
+            assert!(beside(&own, named).is_err(), "{named}");
+        }
     }
 
     #[test]

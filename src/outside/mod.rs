@@ -2,8 +2,10 @@
 //!
 //! - [`input`]: the one way in which files are read: regular ones only, never waiting, never more than a stated size.
 //! - [`files`]: the one way in which files are written: whole or not at all, and never over another one unasked.
+//! - [`calculix`]: a CalculiX run that is over.
 //! - [`shown`]: the one way in which texts of others reach a terminal, a table or a picture.
 
+pub mod calculix;
 pub mod files;
 pub mod input;
 pub mod shown;

@@ -33,6 +33,8 @@ pub struct Cost {
     pub surfaces: Vec<String>,
     /// Slave nodes, and how many of them start in each mode, as text.
     pub slaves: String,
+    /// What the laws of the pairs cost and change, where any is not hard contact.
+    pub laws: Vec<String>,
     /// Range of the start gaps, a line per surface.
     pub gaps: Vec<String>,
     /// Increments, with the path that they follow.
@@ -80,6 +82,7 @@ impl Cost {
             bodies: model.bodies.iter().map(body_line).collect(),
             surfaces: model.surfaces.iter().map(surface_line).collect(),
             slaves: slaves_line(model),
+            laws: super::bonds::words(model),
             gaps: gaps::words(model),
             history: history_line(model),
             solvers: solver_lines(model),
@@ -381,6 +384,7 @@ impl fmt::Display for Cost {
         section(f, "bodies", &self.bodies)?;
         section(f, "surfaces", &self.surfaces)?;
         section(f, "slaves", std::slice::from_ref(&self.slaves))?;
+        section(f, "laws", &self.laws)?;
         section(f, "gaps", &self.gaps)?;
         section(f, "history", std::slice::from_ref(&self.history))?;
         section(f, "solver", &self.solvers)?;

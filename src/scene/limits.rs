@@ -22,6 +22,8 @@ pub const INCREMENTS: f64 = 1e6;
 pub const ITERATIONS: u32 = 1_000_000;
 /// Most characters of a name.
 pub const NAME: usize = 64;
+/// Words that mean something behind the id of nodes, so that no part of a mesh can be called so.
+pub const TAKEN: [&str; 3] = ["all", "start", "end"];
 /// Most characters of a title.
 pub const TITLE: usize = 120;
 /// Largest coordinate, load or prescribed value.

@@ -4,13 +4,16 @@
 //!   is wrong.
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
+//! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
 //! - [`siconos`]: interface problems of another code.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod base;
+pub mod bonds;
 pub mod builtin;
 pub mod cost;
 pub mod gaps;
+pub mod import;
 pub mod limits;
 pub mod memory;
 pub mod nodes;
@@ -21,6 +24,7 @@ mod areas;
 mod blocks;
 mod compile;
 mod curves;
+mod deck;
 mod geometry;
 
 use crate::format::paths::Override;
@@ -42,8 +46,11 @@ pub struct Scene {
     pub spec: Spec,
     /// What the solver uses.
     pub model: Model,
+    /// What was passed over in the file, or read as something else: place and words.
+    pub remarks: Vec<String>,
     names: Names,
     overrides: Vec<Override>,
+    imports: bool,
 }
 
 impl Scene {
@@ -58,6 +65,9 @@ impl Scene {
         {
             return Scene::from_text(builtin.name, builtin.text, overrides);
         }
+        if import::is_mesh(name) {
+            return Err(SceneError::whole(name, import::no_scene(name)));
+        }
         let text = read::text(name).map_err(|mut error| {
             if !std::path::Path::new(name).exists() {
                 error.message = no_such_scene(name);
@@ -67,7 +77,8 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// Reads a scene from a text, or what [`condensed`] and [`siconos`] make one of; `name` is what messages call it.
+    /// Reads a scene from a text, or what [`condensed`] and [`siconos`] make one of; `name` is what messages call it, and the
+    /// meshes that it imports lie beside a file of that name.
     ///
     /// # Errors
     /// If the scene is unsound.
@@ -76,6 +87,9 @@ impl Scene {
         text: &str,
         overrides: &[(String, String)],
     ) -> Result<Scene, SceneError> {
+        if deck::is_one(text) {
+            return Scene::from_deck(name, text, overrides);
+        }
         if siconos::is_one(text) {
             return Scene::from_siconos(name, text, overrides);
         }
@@ -93,7 +107,37 @@ impl Scene {
             return Scene::compiled(name, "", spec, overrides, place);
         }
         let spec = read::spec(name, text)?;
-        Scene::assemble(name, text, spec, overrides, Vec::new())
+        let (mut spec, overrides) = changed(name, spec, overrides, Vec::new())?;
+        let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
+        let imports = imported(&mut spec, name, |fault| place(&overrides, fault))?;
+        let scene = Scene::compiled(name, text, spec, overrides, place)?;
+        Ok(Scene { imports, ..scene })
+    }
+
+    fn from_deck(
+        name: &str,
+        text: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Scene, SceneError> {
+        let read = deck::read(name, text)?;
+        let place = |overrides: &[Override], fault: Fault| {
+            let own = read
+                .origin
+                .of(&fault.path)
+                .map(|(file, at)| (file.to_owned(), at));
+            match (placed(name, "", overrides, fault), own) {
+                (fault, Some((file, at))) if fault.set.is_none() => SceneError {
+                    file,
+                    at: Some(at),
+                    ..fault
+                },
+                (fault, _) => fault,
+            }
+        };
+        let (spec, overrides) = changed(name, read.spec.clone(), overrides, Vec::new())?;
+        let mut scene = Scene::compiled(name, "", spec, overrides, place)?;
+        scene.remarks = read.remarks;
+        Ok(scene)
     }
 
     fn from_siconos(
@@ -132,20 +176,23 @@ impl Scene {
         name: &str,
         text: &str,
         path: &error::Path,
-        spec: Spec,
+        mut spec: Spec,
     ) -> Result<Scene, SceneError> {
         let at = |fault: Fault| {
             let whole = error::Path(path.0.iter().chain(&fault.path.0).cloned().collect());
             placed(name, text, &[], Fault::new(whole, fault.message))
         };
+        imported(&mut spec, name, at)?;
         let (model, names) = compile::compile(&spec).map_err(at)?;
         Ok(Scene {
             name: name.to_owned(),
             text: String::new(),
             spec,
             model,
+            remarks: Vec::new(),
             names,
             overrides: Vec::new(),
+            imports: false,
         })
     }
 
@@ -155,13 +202,18 @@ impl Scene {
     /// If there is no such path, or the value is unsound there.
     pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
         let change = [(path.to_owned(), value.to_owned())];
-        Scene::assemble(
+        let scene = Scene::assemble(
             &self.name,
             &self.text,
             self.spec.clone(),
             &change,
             self.overrides.clone(),
-        )
+        )?;
+        Ok(Scene {
+            remarks: self.remarks.clone(),
+            imports: self.imports,
+            ..scene
+        })
     }
 
     /// The number of a node by any of its names: `ID.3`, `ID.end`, `ID@0.5`, or the id of a single node.
@@ -170,6 +222,11 @@ impl Scene {
     /// A message that tells which names there are.
     pub fn node(&self, name: &str) -> Result<usize, String> {
         self.names.node(name)
+    }
+
+    /// Whether its text names meshes in other files, which the spec has inside.
+    pub fn imports(&self) -> bool {
+        self.imports
     }
 
     /// All names by which nodes can be called, and what they stand for.
@@ -209,10 +266,24 @@ impl Scene {
             text: text.to_owned(),
             spec,
             model,
+            remarks: Vec::new(),
             names,
             overrides,
+            imports: false,
         })
     }
+}
+
+/// Reads what a scene imports, and tells whether it imports anything; `name` is the scene's file, and `place` finds what is wrong in it.
+fn imported(
+    spec: &mut Spec,
+    name: &str,
+    place: impl Fn(Fault) -> SceneError,
+) -> Result<bool, SceneError> {
+    import::resolve(spec, name).map_err(|refused| match refused {
+        import::Refused::Here(fault) => place(fault),
+        import::Refused::There(error) => error,
+    })
 }
 
 /// A scene's file with more set from outside.

@@ -89,6 +89,7 @@ fn unit(plan: &Plan, monitor: &str) -> &'static str {
         Some(MonitorKind::Length | MonitorKind::Drift) => " (length)",
         Some(MonitorKind::Rotation) => " (rad)",
         Some(MonitorKind::Force) => " (force)",
+        Some(MonitorKind::Pressure) => " (force by area)",
         Some(MonitorKind::Count) | None => "",
     }
 }

@@ -15,6 +15,8 @@ pub enum MonitorKind {
     Force,
     /// A number of nodes, which is not compared.
     Count,
+    /// A force by area.
+    Pressure,
     /// A length that is a measure of error, and is not compared.
     Drift,
 }
@@ -40,6 +42,7 @@ pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
         Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
         Watched::Modes { .. } => MonitorKind::Count,
         Watched::Drift { .. } => MonitorKind::Drift,
+        Watched::Pressure { .. } => MonitorKind::Pressure,
         Watched::Arc => MonitorKind::Length,
     }
 }

@@ -1,5 +1,6 @@
 //! The product of all settings of a study, with every case found sound before any is run.
 
+use super::log::key;
 use super::read::{AxisQuantity, Study, Vary};
 use crate::format::error::{SceneError, did_you_mean, some_of};
 use crate::format::paths::{self, Listed};
@@ -48,6 +49,8 @@ pub struct Case {
 struct Posed {
     /// The scene's text.
     text: Arc<str>,
+    /// Key of the meshes that it imports, if it does.
+    meshes: Option<String>,
     base: Base,
     /// The paths that are set, in this order.
     paths: Vec<String>,
@@ -79,7 +82,10 @@ impl Case {
     pub fn identity(&self) -> impl Iterator<Item = &str> {
         let settings = self.of.paths.iter().zip(&self.set);
         let settings = settings.flat_map(|(path, value)| [path.as_str(), value.as_str()]);
-        std::iter::once(&*self.of.text).chain(settings)
+        let meshes = self.of.meshes.as_deref();
+        std::iter::once(&*self.of.text)
+            .chain(meshes)
+            .chain(settings)
     }
 
     /// What was set last at a path from outside, if anything.
@@ -184,6 +190,10 @@ impl Plan {
         let places = set.iter().map(|(path, _)| base.find(path)).collect();
         let posed = Arc::new(Posed {
             text: scene.text.as_str().into(),
+            meshes: scene.imports().then(|| {
+                let nodes = format!("{:?}", scene.spec.nodes);
+                key(std::iter::once(nodes.as_str()))
+            }),
             places,
             paths: set.iter().map(|(path, _)| path.clone()).collect(),
             base,

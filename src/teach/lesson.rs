@@ -402,8 +402,9 @@ impl Reader<'_> {
             When::Quadratic => Truth::Quadratic(true),
             When::Obeys => Truth::Obeys,
             When::Breaks(name) => {
-                let law = Law::ALL.into_iter().find(|law| law.name() == name);
-                let names = || Law::ALL.map(Law::name).join(", ");
+                let all = || Law::ALL.into_iter().chain(Law::OF_BONDS);
+                let law = all().find(|law| law.name() == name);
+                let names = || all().map(Law::name).collect::<Vec<_>>().join(", ");
                 let none = || {
                     Fault::new(
                         path,

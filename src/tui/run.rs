@@ -109,6 +109,11 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
         events(&mut debugger, &mut terminal, &signals)
     });
     debugger.part();
+    leave(ended, &signals)
+}
+
+/// Ends as the signal wants that asked for it, or as the terminal that went away; else says what failed.
+pub(super) fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
     if let Some(signal) = signals.end() {
         terminal::obey(signal)?;
     }
@@ -132,7 +137,7 @@ pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String
 }
 
 /// How long to wait for a key: while the solver is at work the screen follows it.
-const IDLE: Duration = Duration::from_millis(100);
+pub(super) const IDLE: Duration = Duration::from_millis(100);
 const BUSY: Duration = Duration::from_millis(40);
 
 fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
@@ -175,7 +180,11 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
 }
 
 /// Does what only the event loop can; true for the end.
-fn obey(outside: Outside, terminal: &mut Terminal, signals: &Signals) -> io::Result<bool> {
+pub(super) fn obey(
+    outside: Outside,
+    terminal: &mut Terminal,
+    signals: &Signals,
+) -> io::Result<bool> {
     match outside {
         Outside::Quit => return Ok(true),
         Outside::Suspend => suspend(terminal, signals)?,
@@ -186,7 +195,7 @@ fn obey(outside: Outside, terminal: &mut Terminal, signals: &Signals) -> io::Res
     Ok(false)
 }
 
-fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
+pub(super) fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     terminal.suspend()?;
     signals.resumed();
     // What the process group was told comes back here too.

@@ -16,6 +16,7 @@ use crossterm::terminal::{
 };
 use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
+use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
 use signal_hook::iterator::Handle;
@@ -76,13 +77,17 @@ impl Terminal {
         }
     }
 
-    /// Draws what changed, in one go where the terminal can do that.
-    /// Returns its size.
+    /// Draws what changed of the debugger's screen; returns its size.
     pub fn draw(&mut self, app: &App, view: Option<&View>) -> io::Result<Rect> {
+        self.show(|buffer, area| screen::draw(buffer, area, app, view))
+    }
+
+    /// Draws what changed of any screen, in one go where the terminal can do that; returns its size.
+    pub fn show(&mut self, screen: impl FnOnce(&mut Buffer, Rect)) -> io::Result<Rect> {
         queue!(stdout(), BeginSynchronizedUpdate)?;
         let drawn = self.screen.draw(|frame| {
             let area = frame.area();
-            screen::draw(frame.buffer_mut(), area, app, view);
+            screen(frame.buffer_mut(), area);
         });
         let drawn = drawn.map(|frame| frame.area);
         execute!(stdout(), EndSynchronizedUpdate)?;

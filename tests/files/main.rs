@@ -13,6 +13,8 @@ mod scenes;
 mod built_in;
 // Nodes lie where they should and have the names that the format promises.
 mod meshes;
+// Meshes that are given node by node, and those of Gmsh.
+mod given;
 // Loads, supports, regions, monitors and settings mean what they say.
 mod meaning;
 // A scene that is read once has every bit of one that is read with its settings.

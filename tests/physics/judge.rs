@@ -5,7 +5,7 @@ use stickslip::contact::balance::{self, Forces};
 use stickslip::contact::judge::{Judge, Seen};
 use stickslip::contact::laws::{Law, Scales, Verdict};
 use stickslip::model::InitialState;
-use stickslip::model::{Contact, Surface};
+use stickslip::model::{Bond, Contact, Surface};
 use stickslip::model::{Friction, Mode};
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
@@ -19,6 +19,7 @@ struct Stage {
     elements: Vec<Vec<usize>>,
     friction: Friction,
     brought: f64,
+    bond: Bond,
 }
 
 impl Stage {
@@ -34,6 +35,7 @@ impl Stage {
             elements: (1..points.len()).map(|k| vec![k, k + 1]).collect(),
             friction: Friction { angle, cohesion },
             brought: 0.0,
+            bond: Bond::Hard,
         }
     }
 
@@ -52,7 +54,7 @@ impl Stage {
             start: Mode::Free,
             state: InitialState::default(),
             overlap: 0.0,
-            bond: Default::default(),
+            bond: self.bond,
             area: None,
         }];
         let with = |at: [f64; 2]| {
@@ -342,10 +344,7 @@ fn forces_out_of_balance_at_a_node_and_on_the_bodies_as_a_whole_are_refused() {
             load: &load,
             contact: &contact,
         };
-        let mut verdict = Verdict {
-            worst: [None; 8],
-            work: None,
-        };
+        let mut verdict = Verdict::default();
         balance::check(&model, &forces, &now, &scales, &mut verdict);
         let laws: Vec<Law> = verdict.broken().map(|finding| finding.law).collect();
         laws
@@ -564,4 +563,50 @@ fn the_rough_cantilevers_at_two_degrees_come_to_the_same_state_with_any_incremen
         );
         assert!((found - 0.949343).abs() < 1e-6, "{set:?}: {found}");
     }
+}
+
+#[test]
+fn a_penalty_node_is_inside_by_its_compliance_times_its_force_and_by_nothing_else() {
+    let stage = Stage {
+        bond: Bond::Giving([0.1, 0.0]),
+        ..Stage::floor(30.0, 0.0)
+    };
+    let at = |y: f64, f_n: f64| stage.broken([1.0, 0.0], [1.0, y], [0.0, f_n]);
+    assert_eq!(at(-0.2, 2.0), []);
+    assert_eq!(at(-0.2, 1.9), [Law::Penalty]);
+    assert_eq!(at(0.0, 2.0), [Law::Penalty]);
+    assert_eq!(at(-0.2, 0.0), [Law::Penetration]);
+    assert_eq!(at(0.3, 0.0), []);
+    // It has gone along the floor as well, and friction at its limit opposes that.
+    let slid = |f_x: f64| stage.broken([1.0, 0.0], [1.5, -0.2], [f_x, 2.0]);
+    assert_eq!(slid(-2.0 * MU), []);
+    assert_eq!(slid(-1.9 * MU), [Law::Slip]);
+    assert_eq!(slid(-2.1 * MU), [Law::Cone]);
+}
+
+#[test]
+fn elastic_slip_is_in_proportion_to_the_tangential_force() {
+    let stage = Stage {
+        bond: Bond::Giving([0.0, 0.25]),
+        ..Stage::floor(30.0, 0.0)
+    };
+    let gone = |x: f64, f_x: f64| stage.broken([1.0, 0.0], [1.0 + x, 0.0], [f_x, 4.0]);
+    assert_eq!(gone(0.25, -1.0), []);
+    assert_eq!(gone(0.25, -0.9), [Law::Stick]);
+    assert_eq!(gone(0.0, 0.0), []);
+    assert_eq!(gone(-0.5, 2.0), []);
+    // Beyond the limit it slides.
+    assert_eq!(gone(0.9, -4.0 * MU), []);
+}
+
+#[test]
+fn a_tied_node_may_be_pulled_and_may_not_stray() {
+    let stage = Stage {
+        bond: Bond::Tied { upright: false },
+        ..Stage::floor(0.0, 0.0)
+    };
+    let to = |to: [f64; 2], force: [f64; 2]| stage.broken([1.0, 0.0], to, force);
+    assert_eq!(to([1.0, 0.0], [3.0, -7.0]), []);
+    assert_eq!(to([1.001, 0.0], [3.0, -7.0]), [Law::Tied]);
+    assert_eq!(to([1.0, 0.001], [0.0, 0.0]), [Law::Tied]);
 }

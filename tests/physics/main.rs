@@ -15,6 +15,8 @@ mod blocks;
 // Solids alone meet closed forms and beam theory; a distorted patch is exact.
 mod solids;
 mod start_gaps;
+// Penalty, stick stiffness, ties and cohesion by area meet closed forms, and each other.
+mod laws;
 // The paper's problems meet solutions found without any contact algorithm, at the rate that they claim.
 mod references;
 // A cantilever beside an elastic block: its end, its work, its mesh, the paper's figures.

@@ -8,6 +8,9 @@
 //!   elements. If it is not zero, friction opposes it and is at its limit;
 //! - a node that was open, or on another surface, may have touched anywhere on its way. Only friction that is at its limit
 //!   and drives the whole of this way breaks the law, since no place of touching explains it;
+//! - where a bond gives way (compliances c_n, c_t), all this holds for a point further out, at x + c_n F_n n: g + c_n F_n = 0 where a
+//!   force acts; and of a net slip, c_t times the change of −F_t is elastic, which friction does not oppose;
+//! - a tied node stays where it is on its surface, whatever its forces are;
 //! - in a corner between two sides the force is a sum of what each of them can give ([`super::corner`]);
 //! - every node is in balance, and so are the bodies as a whole with the reactions ([`super::balance`]).
 //!
@@ -216,8 +219,13 @@ impl Judge {
     }
 
     fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
-        let Contact { node, surfaces, .. } = &seen.contacts[slave];
-        let (point, force) = (seen.point(slave), seen.forces[slave]);
+        let Contact {
+            node,
+            surfaces,
+            bond,
+            ..
+        } = &seen.contacts[slave];
+        let (mut point, force) = (seen.point(slave), seen.forces[slave]);
         let Scales { length, forces, .. } = seen.scales;
         let near = seen.scales.near();
         let pressed = size(force) > forces * seen.scales.force;
@@ -229,7 +237,6 @@ impl Judge {
             2.0 * near,
             &mut self.feet,
         );
-        self.next.add(&self.feet);
         let mut report = |law: Law, amount: f64, numbers: Numbers| {
             verdict.add(Finding {
                 law,
@@ -239,11 +246,30 @@ impl Judge {
                 numbers,
             });
         };
-        let foot = self
-            .feet
-            .iter()
-            .find(|foot| !is_past_end(foot, point, seen));
-        let Some(foot) = foot.copied() else {
+        let over = |feet: &[Foot], point: [f64; 2]| {
+            let mut feet = feet.iter();
+            feet.find(|foot| !is_past_end(foot, point, seen)).copied()
+        };
+        let mut foot = over(&self.feet, point);
+        let mut given = 0.0;
+        if let (Some(found), true) = (foot, pressed && bond.give()[0] > 0.0) {
+            let n = outward(&found, seen.surfaces, seen.now);
+            given = bond.give()[0] * dot(force, n);
+            point = [0, 1].map(|k| point[k] + given * n[k]);
+            let feet = &mut self.feet;
+            feet::find(point, seen.surfaces, surfaces, seen.now, 2.0 * near, feet);
+            foot = over(feet, point);
+        }
+        self.next.add(&self.feet);
+        if bond.is_tied() {
+            let amount = foot.map_or(f64::INFINITY, |foot| {
+                hand_on(seen, *node, force, &foot, contact);
+                foot.distance.max(self.strayed(seen, slave, &foot).abs())
+            });
+            report(Law::Tied, amount / length, Numbers::default());
+            return;
+        }
+        let Some(foot) = foot else {
             if pressed {
                 report(Law::Gap, f64::INFINITY, Numbers::default());
             }
@@ -259,28 +285,34 @@ impl Judge {
             report(Law::Penetration, through / length, numbers);
         }
         let numbers = Numbers {
-            gap,
+            gap: gap - given,
             ..Numbers::default()
         };
         if !pressed {
             report(Law::Penetration, (-gap / length).max(0.0), numbers);
             return;
         }
-        report(Law::Gap, foot.distance / length, numbers);
+        let [law_of_gap, law_of_slip] = match bond.give().map(|give| give > 0.0) {
+            [normal, tangential] => [
+                if normal { Law::Penalty } else { Law::Gap },
+                if tangential { Law::Stick } else { Law::Slip },
+            ],
+        };
+        report(law_of_gap, foot.distance / length, numbers);
         hand_on(seen, *node, force, &foot, contact);
         if foot.distance > near {
             return;
         }
-        self.find_sides(seen, slave, near);
+        self.find_sides(seen, slave, point, near);
         let amounts = self.least(seen, slave);
         let numbers = Numbers {
-            gap,
+            gap: gap - given,
             ..amounts.numbers
         };
         for (law, amount) in [
             (Law::Tension, amounts.tension),
             (Law::Cone, amounts.cone),
-            (Law::Slip, amounts.slip),
+            (law_of_slip, amounts.slip),
             (Law::Touch, amounts.touch),
         ] {
             report(law, amount, numbers);
@@ -292,25 +324,40 @@ impl Judge {
         }
     }
 
-    /// The sides on which a node stands: those of its feet, and where it stands on a border of elements, both.
-    fn find_sides(&mut self, seen: &Seen, slave: usize, near: f64) {
-        let surfaces = &seen.contacts[slave].surfaces;
-        let (point, was) = (seen.point(slave), seen.was(slave));
+    /// Where a node's feet were in the last accepted state.
+    fn find_earlier(&mut self, seen: &Seen, slave: usize, near: f64) {
         // What was found of that state when it was judged itself holds still.
-        match self.last.ends.is_empty() {
-            false => {
-                self.earlier.clear();
-                self.earlier.extend_from_slice(self.last.of(slave));
-            }
-            true => feet::find(
-                was,
-                seen.surfaces,
-                surfaces,
-                seen.before,
-                2.0 * near,
-                &mut self.earlier,
-            ),
+        if !self.last.ends.is_empty() {
+            self.earlier.clear();
+            self.earlier.extend_from_slice(self.last.of(slave));
+            return;
         }
+        let (was, surfaces) = (seen.was(slave), &seen.contacts[slave].surfaces);
+        let earlier = &mut self.earlier;
+        feet::find(
+            was,
+            seen.surfaces,
+            surfaces,
+            seen.before,
+            2.0 * near,
+            earlier,
+        );
+    }
+
+    /// How far a tied node has gone along its surface since the last accepted state; infinite where it is on another one.
+    fn strayed(&mut self, seen: &Seen, slave: usize, foot: &Foot) -> f64 {
+        self.find_earlier(seen, slave, seen.scales.near());
+        let here = |earlier: &&Foot| earlier.spot.surface == foot.spot.surface;
+        let surface = &seen.surfaces[foot.spot.surface];
+        let earlier = self.earlier.iter().find(here);
+        earlier.map_or(f64::INFINITY, |earlier| {
+            distance(surface, earlier.spot, foot.spot, seen.now)
+        })
+    }
+
+    /// The sides on which a node stands: those of its feet, and where it stands on a border of elements, both.
+    fn find_sides(&mut self, seen: &Seen, slave: usize, point: [f64; 2], near: f64) {
+        self.find_earlier(seen, slave, near);
         self.sides.clear();
         for foot in self.feet.iter().filter(|foot| foot.distance <= near) {
             let across = [-1.0, 1.0].map(|end| {
@@ -397,7 +444,12 @@ fn touching(
     let surface = &seen.surfaces[spot.surface];
     let tangent = direction(Element::of(surface, spot.element), seen.now, spot.xi)?;
     let friction = &seen.friction[slave];
-    let way = |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave];
+    let elastic = match seen.contacts[slave].bond.give()[1] {
+        0.0 => 0.0,
+        give => give * (dot(seen.forces[slave], tangent) - seen.earlier[slave]),
+    };
+    let way =
+        |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave] + elastic;
     let here = earlier.iter().find(|f| f.spot.surface == spot.surface);
     let was = seen.was(slave);
     let past = match here {
@@ -544,20 +596,33 @@ fn beyond_border(surfaces: &[Surface], border: SurfacePoint) -> Option<SurfacePo
     })
 }
 
-/// Distance with its sign: negative where the point lies inside.
-fn signed_gap(foot: &Foot, point: [f64; 2], surfaces: &[Surface], positions: &[[f64; 2]]) -> f64 {
+/// Outward direction at a foot, of length one; nothing where it has none.
+fn outward(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
+    let n = outward_at(foot, surfaces, positions);
+    match size(n) {
+        0.0 => n,
+        size => n.map(|n| n / size),
+    }
+}
+
+/// Sum of the outward normals of the sides on which a foot is.
+fn outward_at(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
     let normal = |spot: SurfacePoint| {
         let element = Element::of(&surfaces[spot.surface], spot.element);
         let t = direction(element, positions, spot.xi);
         t.map_or([0.0; 2], |t| [t[1], -t[0]])
     };
-    let mut n = normal(foot.spot);
-    if foot.spot.xi.abs() == 1.0
-        && let Some(across) = beyond_border(surfaces, foot.spot)
-    {
+    let n = normal(foot.spot);
+    let across = beyond_border(surfaces, foot.spot).filter(|_| foot.spot.xi.abs() == 1.0);
+    across.map_or(n, |across| {
         let other = normal(across);
-        n = [n[0] + other[0], n[1] + other[1]];
-    }
+        [n[0] + other[0], n[1] + other[1]]
+    })
+}
+
+/// Distance with its sign: negative where the point lies inside.
+fn signed_gap(foot: &Foot, point: [f64; 2], surfaces: &[Surface], positions: &[[f64; 2]]) -> f64 {
+    let n = outward_at(foot, surfaces, positions);
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
     if dot(to, n) < 0.0 {
         -foot.distance

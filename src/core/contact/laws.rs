@@ -27,7 +27,7 @@ impl Scales {
     /// How large an amount against a law may be.
     pub fn allowed(&self, law: Law) -> f64 {
         match law {
-            Law::Penetration | Law::Gap => self.lengths,
+            Law::Penetration | Law::Gap | Law::Penalty | Law::Tied => self.lengths,
             _ => self.forces,
         }
     }
@@ -56,6 +56,13 @@ pub enum Law {
     /// Friction dissipates: mean tangential force of both states times slip <= 0 (force times length). This is reported and
     /// not required, since a node that reverses within an increment may break it.
     Work,
+    /// A bond gives way in proportion to the normal force: g + c_n F_n = 0 where a force acts (length).
+    Penalty,
+    /// A tied node stays at its point of the surface (length).
+    Tied,
+    /// What a node slips beyond the elastic slip of its bond, c_t times the change of −F_t, is opposed by friction at its limit. The
+    /// amount is the force that friction lacks to that limit.
+    Stick,
 }
 
 impl Law {
@@ -71,6 +78,9 @@ impl Law {
         Law::Moments,
     ];
 
+    /// The laws of bonds that are not hard, which only scenes with such bonds have.
+    pub const OF_BONDS: [Law; 3] = [Law::Penalty, Law::Tied, Law::Stick];
+
     /// Its name, as files and messages have it.
     pub const fn name(self) -> &'static str {
         match self {
@@ -83,6 +93,9 @@ impl Law {
             Law::Balance => "balance",
             Law::Moments => "moments",
             Law::Work => "work",
+            Law::Penalty => "penalty",
+            Law::Tied => "tied",
+            Law::Stick => "stick",
         }
     }
 }
@@ -123,8 +136,15 @@ pub struct Numbers {
 pub struct Verdict {
     /// The worst place for every law, in the order of [`Law::ALL`]. `None` if the law applied nowhere.
     pub worst: [Option<Finding>; 8],
+    /// The same for [`Law::OF_BONDS`].
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub bonds: [Option<Finding>; 3],
     /// The node at which friction did the most positive work. `None` if there is no such node.
     pub work: Option<Finding>,
+}
+
+fn is_nothing(worst: &[Option<Finding>; 3]) -> bool {
+    worst.iter().all(Option::is_none)
 }
 
 impl Verdict {
@@ -132,6 +152,9 @@ impl Verdict {
     pub fn add(&mut self, finding: Finding) {
         let worst = match finding.law {
             Law::Work => &mut self.work,
+            Law::Penalty => &mut self.bonds[0],
+            Law::Tied => &mut self.bonds[1],
+            Law::Stick => &mut self.bonds[2],
             law => &mut self.worst[law as usize],
         };
         if worst.is_none_or(|w| finding.amount > w.amount || finding.amount.is_nan()) {
@@ -139,9 +162,20 @@ impl Verdict {
         }
     }
 
+    /// The worst place for a law. `None` if it applied nowhere.
+    pub fn of(&self, law: Law) -> Option<Finding> {
+        let mut all = self.findings().chain(&self.work);
+        all.find(|found| found.law == law).copied()
+    }
+
+    /// The worst place for every law that applied, the laws of bonds last.
+    pub fn findings(&self) -> impl Iterator<Item = &Finding> {
+        self.worst.iter().chain(&self.bonds).flatten()
+    }
+
     /// The finding with the largest amount relative to its tolerance. `None` if no law applied anywhere.
     pub fn largest(&self) -> Option<Finding> {
-        let all = self.worst.iter().flatten().copied();
+        let all = self.findings().copied();
         all.reduce(|worst, next| {
             if next.times() > worst.times() {
                 next
@@ -153,10 +187,7 @@ impl Verdict {
 
     /// The findings whose amount exceeds its tolerance.
     pub fn broken(&self) -> impl Iterator<Item = &Finding> {
-        self.worst
-            .iter()
-            .flatten()
-            .filter(|found| found.is_broken())
+        self.findings().filter(|found| found.is_broken())
     }
 }
 

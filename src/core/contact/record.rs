@@ -14,7 +14,7 @@ pub struct ContactRecord {
     pub decision: Decision,
     /// Whether the mode of this solve, or the next, was forced by the user.
     pub forced: Forced,
-    /// Gap after this solve, on the frozen geometry; negative is penetration.
+    /// Gap after this solve, on the frozen geometry; negative is penetration, by which a touching node's bond gives way.
     pub gap: f64,
     /// Normal force; compression positive.
     pub f_n: f64,

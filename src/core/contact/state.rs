@@ -29,9 +29,12 @@ pub struct ContactState {
     /// Whether the anchor is kept while the node is free, so that its net slip counts.
     #[serde(default)]
     pub kept: bool,
-    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t. In a
-    /// corner: distance of the node from the corner, along t.
+    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t; less elastic
+    /// slip where the bond gives way along t. In a corner, and of a tied node: distance of the node from its place, along t.
     pub drift: f64,
+    /// Elastic slip that the node had when it was anchored (length).
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub stretched: f64,
     /// Ratio ρ of tangential to normal travel where the node touched in the present major iteration; else 0.
     pub ratio: f64,
     /// Ratio of tangential to normal travel in the last minor iteration: the ρ that the node takes if it touches.
@@ -53,6 +56,10 @@ pub struct ContactState {
     pub normal: [f64; 2],
 }
 
+fn is_zero(length: &f64) -> bool {
+    *length == 0.0
+}
+
 impl ContactState {
     /// A node before the first minor iteration: its mode, and what it brings into the scene.
     pub fn new(mode: Mode, brought: &InitialState) -> Self {
@@ -71,6 +78,7 @@ impl ContactState {
             anchor: None,
             kept: false,
             drift: brought.slip,
+            stretched: 0.0,
             ratio: brought.ratio,
             travel: 0.0,
             spot: None,
@@ -79,6 +87,15 @@ impl ContactState {
             left: None,
             normal: [0.0, 1.0],
         }
+    }
+
+    /// Anchors the node at a spot, where its bond gives way by `give` along t (length by force).
+    pub fn anchor_at(&mut self, spot: Option<SurfacePoint>, give: f64) {
+        self.anchor = spot;
+        self.stretched = match give {
+            0.0 => 0.0,
+            give => give * self.f_t,
+        };
     }
 
     /// Slip up to the start of the present major iteration, which sticking takes back (length): counted, or measured from the

@@ -39,6 +39,8 @@ pub enum Rule {
     FreeStays,
     /// The node's projection lies past an end of every surface: nothing to touch.
     OffSurface,
+    /// The node is tied to its surface: it is fixed whatever its forces are.
+    Tied,
     /// The user holds the mode; Table 2 was not obeyed.
     Held,
     /// One change at a time: another node comes first.
@@ -269,6 +271,17 @@ impl Decision {
             rule: Rule::FixedDragged,
             tests: [self.tests[0], Some(test)],
             ..self
+        }
+    }
+
+    /// What takes the place of a decision on a node that is tied.
+    pub fn tied() -> Self {
+        Decision {
+            before: Mode::Fixed,
+            next: Mode::Fixed,
+            rule: Rule::Tied,
+            tests: [None; 2],
+            wanted: Mode::Fixed,
         }
     }
 

@@ -19,7 +19,7 @@ use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
 use crate::contact::table1::t_max;
 use crate::model::Mode;
-use crate::model::{Contact, Friction, Surface};
+use crate::model::{Bond, Contact, Friction, Surface};
 
 /// A node closer to a place where two sides meet than this part of the element's size stands there.
 const AT_VERTEX: f64 = 1e-9;
@@ -39,9 +39,15 @@ impl Ground<'_> {
     /// anchored anew where it stands.
     pub fn stand(&self, node: &mut ContactState, slave: &Contact, friction: &Friction, anew: bool) {
         let at = self.positions[slave.node];
+        if slave.bond.is_tied() {
+            return self.stay_tied(node, slave, at);
+        }
         let (previous, force, was_held) = (node.spot, node.force(), node.corner.is_some());
         let (second, mean) = (node.second, node.normal);
-        if !self.stays_in_corner(node, friction) {
+        if !slave.bond.is_hard() {
+            // What gives way is not held in corners: each law is that of one side.
+            node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
+        } else if !self.stays_in_corner(node, friction) {
             (node.corner, node.second) = (None, None);
             node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
             if !was_held {
@@ -80,9 +86,30 @@ impl Ground<'_> {
             (node.f_n, node.f_t) = (0.0, 0.0);
         }
         if anew && node.mode == Mode::Sliding {
-            node.anchor = node.spot;
+            node.anchor_at(node.spot, slave.bond.give()[1]);
         }
-        self.find_anchor(node, at);
+        self.find_anchor(node, slave);
+    }
+
+    /// A tied node stays at its point of the surface, and its force keeps its direction: the surface may have turned.
+    fn stay_tied(&self, node: &mut ContactState, slave: &Contact, at: [f64; 2]) {
+        node.mode = Mode::Fixed;
+        let found = || project(at, self.surfaces, &slave.surfaces, self.positions, None);
+        let Some(spot) = node.anchor.or_else(found) else {
+            node.drift = 0.0;
+            return;
+        };
+        let over = projection_at(self.surfaces, spot, self.positions, at);
+        let normal = match slave.bond {
+            Bond::Tied { upright: true } => axis(over.normal),
+            _ => over.normal,
+        };
+        let ([c, s], t, [f_x, f_y]) = (normal, tangent(normal), node.force());
+        if node.anchor.is_some() && node.normal != normal {
+            (node.f_n, node.f_t) = (c * f_x + s * f_y, c * f_y - s * f_x);
+        }
+        (node.spot, node.anchor, node.normal) = (Some(spot), Some(spot), normal);
+        node.drift = (over.foot[0] - at[0]) * t[0] + (over.foot[1] - at[1]) * t[1];
     }
 
     /// Whether a node that is held in a corner still sticks there, and the corner is still one; its angle is renewed.
@@ -137,7 +164,9 @@ impl Ground<'_> {
         slave: &Contact,
         motion: Option<f64>,
     ) -> Option<ContactState> {
-        let spot = node.spot.filter(|_| node.corner.is_none())?;
+        let spot = node
+            .spot
+            .filter(|_| node.corner.is_none() && slave.bond.is_hard())?;
         let xi = match (motion, node.mode) {
             (Some(motion), Mode::Sliding) => -motion.signum(),
             (None, Mode::Fixed) => spot.xi,
@@ -159,7 +188,7 @@ impl Ground<'_> {
             f_t: c * f_y - s * f_x,
             ..*node
         };
-        self.find_anchor(&mut held, at);
+        self.find_anchor(&mut held, slave);
         Some(held)
     }
 
@@ -257,20 +286,21 @@ impl Ground<'_> {
     }
 
     /// Anchors a touching node that has no anchor where it stands, removes the anchor of a free node that does not keep it,
-    /// and measures the drift. A node that has come to another surface is anchored anew there. In a corner, the drift is the
-    /// distance of the node from the corner.
-    pub fn find_anchor(&self, node: &mut ContactState, at: [f64; 2]) {
+    /// and measures the drift. A node that has come to another surface is anchored anew there, with the elastic slip that it has.
+    /// In a corner, the drift is the distance of the node from the corner.
+    pub fn find_anchor(&self, node: &mut ContactState, slave: &Contact) {
+        let (at, give) = (self.positions[slave.node], slave.bond.give()[1]);
         let free = node.mode == Mode::Free;
         let Some(spot) = node.spot.filter(|_| !free || node.kept) else {
             node.drift = 0.0;
             if !node.kept {
-                node.anchor = None;
+                (node.anchor, node.stretched) = (None, 0.0);
             }
             return;
         };
         let anchor = node.anchor.filter(|a| a.surface == spot.surface);
-        if !free {
-            node.anchor = anchor.or(Some(spot));
+        if !free && anchor.is_none() {
+            node.anchor_at(Some(spot), give);
         }
         node.drift = match (node.corner, anchor) {
             (Some(_), _) => {
@@ -283,6 +313,9 @@ impl Ground<'_> {
             }
             (None, None) => 0.0,
         };
+        if give > 0.0 && anchor.is_some() {
+            node.drift += node.stretched - give * node.f_t;
+        }
     }
 
     /// Anchors a node that brings slip into the scene at the distance of that slip. A node that starts free is not anchored;
@@ -292,20 +325,30 @@ impl Ground<'_> {
         if node.mode == Mode::Free {
             node.drift = node.slip;
         }
-        let slipped = node.mode != Mode::Free && node.slip != 0.0;
+        let slipped = node.mode != Mode::Free && node.slip != 0.0 && !slave.bond.is_tied();
         let Some(spot) = node.spot.filter(|_| slipped) else {
             return;
         };
         let projection = projection_at(self.surfaces, spot, self.positions, at);
         let t = tangent(projection.normal);
         let point = [0, 1].map(|k| projection.foot[k] + node.slip * t[k]);
-        node.anchor = project(
+        let there = project(
             point,
             self.surfaces,
             &[spot.surface],
             self.positions,
             Some(spot),
         );
-        self.find_anchor(node, at);
+        node.anchor_at(there, slave.bond.give()[1]);
+        self.find_anchor(node, slave);
+    }
+}
+
+/// The axis nearest to a direction.
+fn axis([x, y]: [f64; 2]) -> [f64; 2] {
+    if x.abs() > y.abs() {
+        [x.signum(), 0.0]
+    } else {
+        [0.0, y.signum()]
     }
 }

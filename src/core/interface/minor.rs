@@ -6,11 +6,11 @@
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::{direction, t_max};
-use crate::contact::table2::{Entry, Numbers, Rule, Ties};
+use crate::contact::table2::{Decision, Entry, Numbers, Rule, Ties};
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::method::{self, Method};
 use crate::interface::rows::{carried, moves};
-use crate::model::{BoundUpdate, Friction, Mode, Settings, SlipCount, Touch};
+use crate::model::{Bond, BoundUpdate, Friction, Mode, Settings, SlipCount, Touch};
 
 /// What modes are checked with.
 #[derive(Clone, Copy)]
@@ -122,7 +122,10 @@ fn record(
     } else if let Some(room) = kinematics.and_then(|k| k.room_for(tangential)) {
         decision = decision.with_room(tangential.abs(), room, ties);
     }
-    if kinematics.is_none() {
+    let bond = kinematics.map_or(Bond::Hard, |k| k.bond);
+    if bond.is_tied() {
+        decision = Decision::tied();
+    } else if kinematics.is_none() {
         decision.rule = Rule::OffSurface;
         (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
     } else if let Forced::Held(mode) = node.forced {
@@ -134,7 +137,10 @@ fn record(
     let record = ContactRecord {
         decision,
         forced: node.forced,
-        gap: numbers.gap,
+        gap: match bond.give()[0] {
+            0.0 => numbers.gap,
+            give => numbers.gap - give * f_n,
+        },
         f_n,
         f_t,
         t_max: limit,

@@ -26,7 +26,10 @@ pub fn rows(
     let known = Known {
         gap: kinematics.map_or(0.0, |k| k.gap),
         ratio: node.ratio,
-        slip: node.slipped(settings),
+        slip: match kinematics {
+            Some(over) if over.bond.is_tied() => node.drift,
+            _ => node.slipped(settings),
+        },
         f_n: node.f_n,
         f_t: node.f_t,
         limit,

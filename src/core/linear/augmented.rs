@@ -4,6 +4,7 @@ use super::source::{At, Solved};
 use super::system::{System, dot};
 use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, Motion};
+use crate::interface::kinematics::through;
 use crate::model::Model;
 
 /// Estimated norm of the scaled inverse from which on a system is suspected to be singular.
@@ -19,14 +20,20 @@ impl System {
             let rows = self.rows(s, at);
             let frame = self.interfaces[s].frame(&at.contacts[s]);
             for (k, row) in rows.iter().enumerate() {
-                self.rhs[unknowns + 2 * s + k] = self.place_row(s, k, row, frame);
+                let row = through(*row, model.contacts[s].bond.give());
+                self.rhs[unknowns + 2 * s + k] = self.place_row(s, k, &row, frame);
             }
         }
         let solved = self.factor_and_solve();
         for (s, node) in at.contacts.iter().enumerate() {
             let row = unknowns + 2 * s;
             self.condensed.forces[s] = [self.x[row], self.x[row + 1]];
-            self.condensed.motions[s] = self.motion_of_solution(model, s, node);
+            let motion = self.motion_of_solution(model, s, node);
+            let (give, force) = (model.contacts[s].bond.give(), self.condensed.forces[s]);
+            self.condensed.motions[s] = [0, 1].map(|k| match give[k] {
+                0.0 => motion[k],
+                give => motion[k] - give * force[k],
+            });
         }
         solved
     }
@@ -40,7 +47,8 @@ impl System {
         for s in 0..self.interfaces.len() {
             let frame = self.interfaces[s].frame(&at.contacts[s]);
             for (k, row) in springs(0.0).iter().enumerate() {
-                self.place_row(s, k, row, frame);
+                let row = through(*row, model.contacts[s].bond.give());
+                self.place_row(s, k, &row, frame);
             }
         }
         self.sizes.units(model, self.spring(model), &mut self.work);

@@ -39,6 +39,8 @@ pub struct Bodies {
     told: Vec<bool>,
     /// Whether any contact starts inside, and is pushed out over the first leg.
     overlaps: bool,
+    /// Whether any bond gives way along n.
+    gives: bool,
 }
 
 /// The judge, with the memory that it works in.
@@ -46,7 +48,8 @@ struct Bench {
     judge: Judge,
     /// Positions of all nodes in the last accepted state.
     before: Vec<[f64; 2]>,
-    /// What is left of the overlaps, as ways out of them by contact: now, and in the last accepted state.
+    /// What is left of the overlaps, as ways out of them by contact: now, and in the last accepted state, where how far the bond
+    /// gave way comes to it.
     out: [Vec<[f64; 2]>; 2],
     forces: Vec<[f64; 2]>,
     brought: Vec<f64>,
@@ -81,6 +84,10 @@ impl Bodies {
             tangent: None,
             told: stresses_tell(&model),
             overlaps: model.contacts.iter().any(|contact| contact.overlap > 0.0),
+            gives: model
+                .contacts
+                .iter()
+                .any(|contact| contact.bond.give()[0] > 0.0),
             model,
         }
     }
@@ -101,6 +108,24 @@ impl Bodies {
             forces: (TIMES * tolerance.max(after.limit)).max(TOLERANCE),
         }
     }
+}
+
+/// Pressure or shear of those of some contacts where it is largest in size.
+pub(super) fn pressure(
+    contacts: &[Contact],
+    states: &[ContactState],
+    slaves: &[usize],
+    shear: bool,
+) -> f64 {
+    let of = |&s: &usize| {
+        let both = contacts[s].pressure(states[s].f_n, states[s].f_t)?;
+        Some(both[usize::from(shear)])
+    };
+    let all = slaves.iter().filter_map(of);
+    all.fold(
+        0.0,
+        |most: f64, p| if p.abs() > most.abs() { p } else { most },
+    )
 }
 
 /// Whether the stresses tell the force of each contact: not where a support or a second contact shares its node's force, nor
@@ -126,7 +151,7 @@ fn is_laid_out_alike(one: &Model, other: &Model) -> bool {
     let memory = |model: &Model| (model.settings.memory, model.budget, model.length);
     let mut contacts = one.contacts.iter().zip(&other.contacts);
     let stands_alike = |(a, b): (&Contact, &Contact)| {
-        (a.node, &a.surfaces, a.overlap) == (b.node, &b.surfaces, b.overlap)
+        (a.node, &a.surfaces, a.overlap, a.bond) == (b.node, &b.surfaces, b.overlap, b.bond)
     };
     one.contacts.len() == other.contacts.len()
         && contacts.all(stands_alike)
@@ -285,9 +310,13 @@ impl Source for Bodies {
                 self.system.nodal_force(first),
                 self.system.nodal_force(first + 1),
             ];
-            let [c, s] = state.normal;
+            let ([c, s], before) = (state.normal, state.f_t);
             state.f_n = c * force[0] + s * force[1];
             state.f_t = -s * force[0] + c * force[1];
+            let give = self.model.contacts[k].bond.give()[1];
+            if give > 0.0 {
+                state.drift += give * (before - state.f_t);
+            }
             changed = true;
         }
         changed
@@ -350,7 +379,7 @@ impl Source for Bodies {
             model.unclosed(at.leg, at.start_load),
         ];
         bench.out.iter_mut().for_each(Vec::clear);
-        if self.overlaps {
+        if self.overlaps || self.gives {
             for (contact, (state, was)) in overlaps {
                 for ((out, part), normal) in bench
                     .out
@@ -359,6 +388,11 @@ impl Source for Bodies {
                     .zip([state.normal, was.normal])
                 {
                     out.push(normal.map(|n| n * part * contact.overlap));
+                }
+                // How far the bond gives way now is for the judge to find.
+                if let Some(out) = bench.out[1].last_mut() {
+                    let given = contact.bond.give()[0] * was.f_n;
+                    *out = [0, 1].map(|k| out[k] + was.normal[k] * given);
                 }
             }
         }
@@ -412,11 +446,17 @@ impl Source for Bodies {
             let (at, out) = (before[contact.node], out(k));
             let at = [at[0] + out[0], at[1] + out[1]];
             let touched = Judge::touched(&self.model.surfaces, contact, at, before, near);
-            let Some(touched) = touched else { continue };
+            let Some(touched) = touched.filter(|_| !contact.bond.is_tied()) else {
+                continue;
+            };
             let anchor = was.anchor.filter(|a| a.surface == touched.surface);
+            state.stretched = match anchor {
+                Some(_) => was.stretched,
+                None => contact.bond.give()[1] * was.f_t,
+            };
             (state.anchor, state.kept) = (anchor.or(Some(touched)), true);
             (state.ratio, state.travel) = (0.0, 0.0);
-            ground.find_anchor(state, ground.positions[contact.node]);
+            ground.find_anchor(state, contact);
             state.slip = state.drift;
         }
     }
@@ -446,6 +486,9 @@ impl Source for Bodies {
             }
             Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
             Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
+            Watched::Pressure { slaves, shear } => {
+                pressure(&self.model.contacts, at.contacts, slaves, *shear)
+            }
             Watched::Arc => at.arc,
             // The load is that of the displacements at hand, not the one that is aimed at next.
             Watched::Reaction { dof } => {

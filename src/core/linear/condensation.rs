@@ -15,7 +15,10 @@
 //! twice: for r̃, and to recover the displacements inside. Bodies know nothing of each other before they meet in A, so they are
 //! factored side by side where somebody has threads to give ([`Executor`]).
 //!
-//! Where all bodies are solids, and every slave node can move both ways and is no master's, no springs are needed
+//! Where a bond gives way by c ([`crate::interface::kinematics`]), its spring is softer, 1 / (1 / k + c), and v is the motion of the
+//! touching point.
+//!
+//! Where all bodies are solids, no bond gives way, and every slave node can move both ways and is no master's, no springs are needed
 //! ([`Way::Direct`]): with F the frames and M the master nodes' shares in S*, v = F (M u_m − u_s), so that the slave nodes'
 //! displacements give way to v,
 //!
@@ -29,7 +32,7 @@ use crate::executor::{Executor, each};
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
 use crate::linear::coupling::Interface;
-use crate::model::{Body, BodyKind, Model};
+use crate::model::{Body, BodyKind, Contact, Model};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -184,7 +187,7 @@ impl Condensation {
         if self.way == Way::Direct {
             return self.relate(interfaces, frames, out);
         }
-        self.assemble(interfaces, k);
+        self.assemble(interfaces, frames, k);
         self.dense.factor(&self.matrix);
         self.push(interfaces, frames, k);
         self.dense.solve(&mut self.start)?;
@@ -284,16 +287,35 @@ impl Condensation {
     }
 
     /// A.
-    fn assemble(&mut self, interfaces: &[Interface], k: f64) {
+    fn assemble(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], k: f64) {
         let c = self.equations.len();
         self.add_turning();
-        for interface in interfaces {
+        for (interface, frame) in interfaces.iter().zip(frames) {
+            if interface.bond.give() != [0.0; 2] {
+                self.add_springs(interface, frame, springs(interface, k));
+                continue;
+            }
             for col in &interface.links {
                 let Some(j) = col.unknown else { continue };
                 for row in interface.links.iter().filter(|row| row.axis == col.axis) {
                     if let Some(i) = row.unknown {
                         self.matrix[j * c + i] += k * row.weight * col.weight;
                     }
+                }
+            }
+        }
+    }
+
+    /// Adds springs of their own along n and t to A.
+    fn add_springs(&mut self, interface: &Interface, frame: &[[f64; 2]; 2], springs: [f64; 2]) {
+        let c = self.equations.len();
+        for col in &interface.links {
+            let Some(j) = col.unknown else { continue };
+            for row in &interface.links {
+                if let Some(i) = row.unknown {
+                    let both = frame.iter().zip(springs);
+                    let sum: f64 = both.map(|(d, k)| k * d[row.axis] * d[col.axis]).sum();
+                    self.matrix[j * c + i] += sum * row.weight * col.weight;
                 }
             }
         }
@@ -307,8 +329,13 @@ impl Condensation {
         let directions = interfaces
             .iter()
             .zip(frames)
-            .flat_map(|(interface, frame)| frame.iter().map(move |d| (interface, d)));
-        for (column, (interface, direction)) in columns.zip(directions) {
+            .flat_map(|(interface, frame)| {
+                frame
+                    .iter()
+                    .zip(springs(interface, k))
+                    .map(move |(d, k)| (interface, d, k))
+            });
+        for (column, (interface, direction, k)) in columns.zip(directions) {
             for link in &interface.links {
                 if let Some(i) = link.unknown {
                     column[i] += k * link.weight * direction[link.axis];
@@ -335,18 +362,22 @@ impl Condensation {
         let rows = || interfaces.iter().zip(frames);
         let count = out.start.len();
         for (s, (interface, frame)) in rows().enumerate() {
+            let springs = springs(interface, k);
             for (component, direction) in frame.iter().enumerate() {
-                out.start[2 * s + component] = k * motion(interface, direction, &self.start);
+                out.start[2 * s + component] =
+                    springs[component] * motion(interface, direction, &self.start);
             }
         }
         for (j, column) in out.response.chunks_exact_mut(count.max(1)).enumerate() {
             let u = &self.motions[j * c..(j + 1) * c];
             for (s, (interface, frame)) in rows().enumerate() {
+                let springs = springs(interface, k);
                 for (component, direction) in frame.iter().enumerate() {
-                    column[2 * s + component] = k * motion(interface, direction, u);
+                    column[2 * s + component] =
+                        springs[component] * motion(interface, direction, u);
                 }
             }
-            column[j] -= k;
+            column[j] -= springs(&interfaces[j / 2], k)[j % 2];
         }
     }
 
@@ -491,16 +522,25 @@ fn parts(
     parts.into_iter().filter_map(|(_, part)| part).collect()
 }
 
+/// Springs of a slave node along n and t: k, in series with what its bond gives.
+fn springs(interface: &Interface, k: f64) -> [f64; 2] {
+    interface.bond.give().map(|give| match give {
+        0.0 => k,
+        give => k / (1.0 + k * give),
+    })
+}
+
 /// Component of a vector along a direction.
 fn along(direction: [f64; 2], x: f64, y: f64) -> f64 {
     direction[0] * x + direction[1] * y
 }
 
 /// The interface's equations for [`Way::Direct`]: the masters' first, then x and y of every slave node. None where some body
-/// is no solid, or a slave node cannot move both ways, is a master's too, or is listed twice.
+/// is no solid, or a slave node cannot move both ways, is a master's too, or is listed twice; or where a bond gives way.
 fn direct_equations(model: &Model) -> Option<Vec<usize>> {
     let solid = |body: &Body| matches!(body.kind, BodyKind::Solid(_));
-    if !model.bodies.iter().all(solid) {
+    let gives = |slave: &Contact| slave.bond.give() != [0.0; 2];
+    if !model.bodies.iter().all(solid) || model.contacts.iter().any(gives) {
         return None;
     }
     let mut slaves = Vec::with_capacity(2 * model.contacts.len());

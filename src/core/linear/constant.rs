@@ -21,7 +21,9 @@ use crate::linear::condensed::Condensed;
 use crate::linear::norms::Norms;
 use crate::linear::source::{At, Solved, Source};
 use crate::linear::violation::violation;
-use crate::model::{Axis, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch, Watched};
+use crate::model::{
+    Axis, Bond, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch, Watched,
+};
 
 /// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
 const SUSPICIOUS: f64 = 1e12;
@@ -103,7 +105,7 @@ impl Constant {
             start: Mode::Free,
             state: Default::default(),
             overlap: 0.0,
-            bond: Default::default(),
+            bond: Bond::Hard,
             area: None,
         };
         let node = |k: usize| Node {
@@ -261,6 +263,7 @@ impl Source for ConstantSource {
             foot: [0.0; 2],
             room: [None; 2],
             moves: [true; 2],
+            bond: Bond::Hard,
         })
     }
 
@@ -414,6 +417,8 @@ impl Source for ConstantSource {
             }
             Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
             Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
+            // Its contacts have no areas.
+            Watched::Pressure { .. } => 0.0,
             Watched::Arc => at.arc,
             // Nothing is supported here.
             Watched::Reaction { .. } => 0.0,

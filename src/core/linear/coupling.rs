@@ -4,7 +4,7 @@ use crate::contact::geometric_tangent::Variation;
 use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
-use crate::model::Model;
+use crate::model::{Bond, Model};
 
 /// What moves, in a slave node's equations: one Cartesian displacement with its share in u_S* − u_S.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +28,9 @@ pub struct Interface {
     pub projection: Option<Projection>,
     /// What is left of the overlap that the node started with (length), by which it may be inside.
     pub allowed: f64,
+    /// What holds where the node touches, and how far that gives way along n to the normal force at hand (length).
+    pub bond: Bond,
+    pub given: f64,
     pub links: Vec<Link>,
     /// The element that `links` reach into, once they are listed.
     linked: Option<Option<(usize, usize)>>,

@@ -3,6 +3,7 @@
 use super::augmented::{springs, suspicion};
 use super::source::{At, Solved};
 use super::system::{Layout, System, dot};
+use crate::interface::kinematics::through;
 use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::linalg::{Factors, SolveError};
 use crate::model::Model;
@@ -46,7 +47,7 @@ impl System {
         suspicion(self.condensed.norm)
     }
 
-    /// The interface problem of the last linearisation, to be looked at by itself; costs a condensation, unless the
+    /// The interface problem of the last linearisation, to be looked at by itself, its tied nodes eliminated; costs a condensation, unless the
     /// minor iterations have made it already.
     ///
     /// # Errors
@@ -72,7 +73,7 @@ impl System {
                 state: *node,
             });
         let largest = relation.start.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-        Ok(InterfaceProblem {
+        let problem = InterfaceProblem {
             nodes: nodes.collect(),
             force: if self.norms.scale > 0.0 {
                 self.norms.scale
@@ -83,7 +84,17 @@ impl System {
             spring: self.spring(model),
             settings: at.settings,
             relation,
-        })
+        };
+        // Tied nodes have nothing to choose: what decides about modes does without them.
+        let tied = model.contacts.iter().any(|slave| slave.bond.is_tied());
+        if !tied {
+            return Ok(problem);
+        }
+        let contacts = 0..model.contacts.len();
+        let keep: Vec<usize> = contacts
+            .filter(|&s| !model.contacts[s].bond.is_tied())
+            .collect();
+        problem.reduced(&keep).ok_or(SolveError::Singular)
     }
 
     /// Condenses the bodies to the interface; returns an estimate of the norm of the inverse of what was factored.
@@ -119,7 +130,8 @@ impl System {
     }
 
     /// Condenses with every interface equation replaced by `motion − ΔF / stiffness = z`: the forces are then a linear
-    /// function of z, found column by column.
+    /// function of z, found column by column. Where a bond gives way, the motion is that of its touching point
+    /// ([`crate::interface::kinematics`]).
     pub(super) fn condense_whole(&mut self, model: &Model, at: &At<'_>) -> Result<f64, SolveError> {
         self.scale(model, at);
         self.start_values();
@@ -127,7 +139,8 @@ impl System {
         let give = -1.0 / self.condensed.relation.stiffness;
         for s in 0..self.interfaces.len() {
             for (k, row) in springs(give).iter().enumerate() {
-                self.place_row(s, k, row, self.frames[s]);
+                let row = through(*row, model.contacts[s].bond.give());
+                self.place_row(s, k, &row, self.frames[s]);
                 self.rhs[unknowns + 2 * s + k] = 0.0;
             }
         }

@@ -12,7 +12,10 @@ impl System {
     /// Out-of-balance force R − F of eqn (22) and its norms.
     pub(super) fn balance(&mut self, model: &Model, at: &At<'_>) {
         self.interaction.fill(0.0);
-        for (interface, node) in self.interfaces.iter().zip(at.contacts) {
+        let slaves = at.contacts.iter().zip(&model.contacts);
+        for (interface, (node, slave)) in self.interfaces.iter_mut().zip(slaves) {
+            interface.bond = slave.bond;
+            interface.given = slave.bond.give()[0] * node.f_n;
             let force = node.force();
             for link in &interface.links {
                 self.interaction[link.dof] -= link.weight * force[link.axis];

@@ -12,6 +12,8 @@
 //! where W = N + Gᵀ Z, C W = 0, is a test motion with its part along the constraints changed so that λ drops out. C is what a
 //! change of F_n brings along in friction.
 //!
+//! Where a bond gives way, its spring 1 / c comes to A in place of the condition.
+//!
 //! - R symmetric: stable where no eigenvalue is negative (Lagrange and Dirichlet); else as many directions lead away.
 //! - R not symmetric: an odd number of motions grows where det R < 0, which is called **divergence** (Ziegler, *Principles of
 //!   Structural Stability*). Where det R > 0 nothing follows yet; the state is stable if the symmetric part of R, of all
@@ -81,9 +83,22 @@ pub(super) struct Conditions {
     pub force: Vec<Vec<f64>>,
     /// Whether friction makes C another than G.
     pub slides: bool,
+    /// Motions that bonds resist in place of holding them, each with the stiffness (force by length).
+    pub springs: Vec<(Vec<f64>, f64)>,
 }
 
 impl Conditions {
+    /// Adds the springs to S + T.
+    pub fn stiffen(&self, condensed: &mut DMatrix<f64>) {
+        for (row, stiffness) in &self.springs {
+            for (i, a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+                for (j, b) in row.iter().enumerate() {
+                    condensed[(i, j)] += stiffness * a * b;
+                }
+            }
+        }
+    }
+
     /// Leaves out what follows from the others: conditions that supports meet, or other nodes.
     pub fn keep_independent(&mut self) {
         let reduced = Reduced::of(&self.motion);

@@ -212,6 +212,8 @@ impl System {
             let over = |spot| projection_at(&model.surfaces, spot, &self.positions, point);
             interface.projection = node.spot.map(over).map(|here| match node.second {
                 Some(_) => here.along(node.normal, point),
+                // A tied node does not travel over its surface.
+                None if slave.bond.is_tied() => here.along(node.normal, point),
                 None => here,
             });
         }
@@ -534,12 +536,19 @@ impl System {
             0.0 => projection.gap,
             allowed => projection.gap + allowed,
         };
+        let gap = match interface.given {
+            0.0 => gap,
+            given => gap + given,
+        };
+        let give = interface.bond.give();
         Some(NodeKinematics {
             gap,
             normal: projection.normal,
             foot: projection.foot,
             room: interface.room,
-            moves: interface.moves,
+            // A force on a spring moves something whatever else is held.
+            moves: [0, 1].map(|k| interface.moves[k] || give[k] > 0.0),
+            bond: interface.bond,
         })
     }
 

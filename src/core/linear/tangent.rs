@@ -72,8 +72,9 @@ impl Tangent {
             return None;
         }
         self.assemble(&system.sizes, model, at);
-        let dense = self.condense(system, model, at, last.clone())?;
+        let mut dense = self.condense(system, model, at, last.clone())?;
         let conditions = conditions(system, model, at, &last)?;
+        conditions.stiffen(&mut dense.condensed);
         let basis = conditions.admissible(last.len());
         if conditions.slides {
             sliding(&dense, &conditions, &basis)
@@ -238,7 +239,8 @@ fn turn(matrix: &mut DMatrix<f64>, system: &System, model: &Model, at: &At<'_>, 
     }
 }
 
-/// The conditions of the nodes that touch; `None` where it is not known which way a rough one slides.
+/// The conditions of the nodes that touch; `None` where it is not known which way a rough one slides, or where one does whose
+/// bond gives way.
 fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Option<Conditions> {
     let mut all = Conditions::default();
     for (interface, s) in touching(system, at) {
@@ -255,12 +257,27 @@ fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Op
         };
         let frame = interface.frame(node);
         let [normal, tangential] = frame.map(row);
+        let give = interface.bond.give();
         if node.mode == Mode::Fixed {
-            all.force.extend([normal.clone(), tangential.clone()]);
-            all.motion.extend([normal, tangential]);
+            for (row, give) in [normal, tangential].into_iter().zip(give) {
+                if give > 0.0 {
+                    all.springs.push((row, 1.0 / give));
+                } else {
+                    all.force.push(row.clone());
+                    all.motion.push(row);
+                }
+            }
             continue;
         }
         let friction = node.friction(&at.friction[s]);
+        if give[0] > 0.0 {
+            // Friction would make the spring's share of the tangent one that is not symmetric.
+            if !friction.is_smooth() {
+                return None;
+            }
+            all.springs.push((normal, 1.0 / give[0]));
+            continue;
+        }
         let mut force = normal.clone();
         if !friction.is_smooth() {
             if node.sign == 0.0 {

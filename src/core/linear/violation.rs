@@ -30,7 +30,8 @@ pub fn violation(
             Mode::Sliding => (state.f_t - t_max).abs(),
             _ => 0.0,
         };
-        let anchored = at.chosen.sticking == Sticking::Anchored || state.corner.is_some();
+        let held = state.corner.is_some() || over.bond.is_tied();
+        let anchored = at.chosen.sticking == Sticking::Anchored || held;
         let drift = match mode {
             Mode::Fixed if anchored && over.moves[1] => state.drift.abs(),
             _ => 0.0,

@@ -1,6 +1,7 @@
 //! The interface: master surfaces, and the contacts that slave nodes may make with them.
 
 use super::friction::{Friction, InitialState, Mode};
+use serde::{Deserialize, Serialize};
 
 /// A master surface: a chain of m-node interface elements; the outward side is on the right of the walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,9 +56,17 @@ pub struct Contact {
     pub area: Option<f64>,
 }
 
+impl Contact {
+    /// Contact pressure and shear (force by undeformed area) of these forces along n and t. `None` without an area.
+    pub fn pressure(&self, f_n: f64, f_t: f64) -> Option<[f64; 2]> {
+        let area = self.area.filter(|area| *area > 0.0)?;
+        Some([f_n / area, f_t / area])
+    }
+}
+
 /// What holds between a slave node and its surface where they touch, beside friction. The default is hard contact: g >= 0 and
 /// F_n >= 0, one of them zero, and sticking without any motion.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Bond {
     /// Nothing gives way.
     #[default]
@@ -66,7 +75,11 @@ pub enum Bond {
     /// node touches, g + c_n F_n = 0; while it sticks, it has gone c_t F_t along t from its stick point.
     Giving([f64; 2]),
     /// Held at a point of its surface, in tension too.
-    Tied,
+    Tied {
+        /// Whether its normal is the axis nearest to the surface's: where supports leave it and its surface nothing to do along
+        /// the other axis, equations along n and t would be the same one twice.
+        upright: bool,
+    },
 }
 
 impl Bond {
@@ -83,12 +96,17 @@ impl Bond {
     pub fn give(&self) -> [f64; 2] {
         match self {
             Bond::Giving(give) => *give,
-            Bond::Hard | Bond::Tied => [0.0; 2],
+            Bond::Hard | Bond::Tied { .. } => [0.0; 2],
         }
+    }
+
+    /// Whether it is hard contact.
+    pub fn is_hard(&self) -> bool {
+        *self == Bond::Hard
     }
 
     /// Whether it holds the node for ever.
     pub fn is_tied(&self) -> bool {
-        *self == Bond::Tied
+        matches!(self, Bond::Tied { .. })
     }
 }

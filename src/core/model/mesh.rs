@@ -106,20 +106,27 @@ impl ElementKind {
 
 /// The faces that belong to one of these elements only, by node number: the boundary of the body that they make, as surface
 /// elements. Faces that follow each other stand one after the other.
-pub fn boundary<'a>(elements: impl Iterator<Item = (ElementKind, &'a [usize])>) -> Vec<Vec<usize>> {
-    let faces = elements.flat_map(|(kind, nodes)| kind.faces_of(nodes));
-    let all: Vec<Vec<usize>> = faces.collect();
-    let ends = |face: &[usize]| Some((*face.first()?, *face.last()?));
-    let walked: HashMap<(usize, usize), usize> = all
-        .iter()
-        .enumerate()
-        .filter_map(|(k, face)| Some((ends(face)?, k)))
+pub fn boundary<'a>(
+    elements: impl Iterator<Item = (ElementKind, &'a [usize])> + Clone,
+) -> Vec<Vec<usize>> {
+    let places =
+        elements.flat_map(|(kind, nodes)| kind.faces().iter().map(move |face| (nodes, *face)));
+    let ends = |nodes: &[usize], face: &[usize]| (nodes[face[0]], nodes[face[face.len() - 1]]);
+    let mut walked: Vec<(usize, usize)> = places
+        .clone()
+        .map(|(nodes, face)| ends(nodes, face))
         .collect();
-    let inside = |face: &[usize]| {
-        ends(face).is_some_and(|(first, last)| walked.contains_key(&(last, first)))
+    walked.sort_unstable();
+    let is_outer = |(nodes, face): &(&[usize], &[usize])| {
+        let (first, last) = ends(nodes, face);
+        walked.binary_search(&(last, first)).is_err()
     };
-    let outer: Vec<Vec<usize>> = all.into_iter().filter(|face| !inside(face)).collect();
-    in_order(outer)
+    let outer = places.filter(is_outer);
+    in_order(
+        outer
+            .map(|(nodes, face)| face.iter().map(|&place| nodes[place]).collect())
+            .collect(),
+    )
 }
 
 /// Faces walked from one to the next; where a walk closes or ends, the first face that is left begins another.

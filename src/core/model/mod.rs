@@ -128,6 +128,14 @@ pub enum Watched {
         /// Slave numbers.
         slaves: Vec<usize>,
     },
+    /// Contact pressure F_n / A, or shear F_t / A, of one of some slaves: the one where it is largest in size (force by
+    /// undeformed area).
+    Pressure {
+        /// Slave numbers, each of a contact with an area.
+        slaves: Vec<usize>,
+        /// Whether it is the shear.
+        shear: bool,
+    },
     /// Arc along the path of equilibrium from the start of the history, in what [`ArcLength::along`] measures.
     Arc,
 }

@@ -269,14 +269,15 @@ impl Stepper {
 
     /// Slip is counted from here on, and stick points are those of the accepted state.
     pub(super) fn settle_contacts(&mut self) {
-        for node in &mut self.state.nodes {
+        for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.contacts) {
             (node.slip, node.left, node.kept) = (0.0, None, false);
             if node.mode == Mode::Sliding {
-                (node.anchor, node.drift) = (node.spot, 0.0);
+                node.anchor_at(node.spot, slave.bond.give()[1]);
+                node.drift = 0.0;
             } else if node.corner.is_some() {
                 node.anchor = node.spot;
             } else if node.mode == Mode::Free {
-                (node.anchor, node.drift) = (None, 0.0);
+                (node.anchor, node.drift, node.stretched) = (None, 0.0, 0.0);
             }
         }
     }

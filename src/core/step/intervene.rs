@@ -58,6 +58,9 @@ pub enum Refusal {
     /// A contact without a surface can only be free.
     #[error("the node is past the end of its surface: it has nothing to touch")]
     OffSurface,
+    /// A tied contact is fixed for ever.
+    #[error("the node is tied to its surface: it is always fixed")]
+    Tied,
     /// A friction out of bounds.
     #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
     Friction,
@@ -97,6 +100,18 @@ impl State {
     pub fn intervene(&mut self, model: &Model, intervention: &Intervention) -> Result<(), Refusal> {
         if self.status == Status::Finished {
             return Err(Refusal::Done);
+        }
+        let tied = |slave: &usize| model.contacts.get(*slave).is_some_and(|c| c.bond.is_tied());
+        let refused = match intervention {
+            Intervention::Force { slave, mode, .. } => tied(slave) && *mode != Mode::Fixed,
+            Intervention::Assume(starts) => {
+                let mut starts = starts.iter();
+                starts.any(|start| tied(&start.slave) && start.mode != Mode::Fixed)
+            }
+            _ => false,
+        };
+        if refused {
+            return Err(Refusal::Tied);
         }
         match intervention {
             Intervention::Force { slave, mode, hold } => self.force(*slave, *mode, *hold)?,

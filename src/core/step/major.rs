@@ -245,6 +245,7 @@ impl Stepper {
         };
         if before != Mode::Free && node.anchor.is_none() {
             node.anchor = self.source.stick_point(contact, node);
+            node.stretched = 0.0;
         }
         node.ratio = 0.0;
         node.travel = 0.0;

@@ -4,6 +4,7 @@
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
 use crate::model::Mode;
+use crate::step::round;
 use serde::{Deserialize, Serialize};
 
 /// Numbers of two major iterations that differ by less than this, relatively, are the same.
@@ -119,12 +120,8 @@ impl MajorHistory {
             let mut pairs = of(then).iter().zip(of(here));
             pairs.all(|(a, b)| a.within(b, scales, limit))
         };
-        let found = (0..here).rfind(|&then| all_within(then, REPEATED))?;
-        let mut between = found + 1..here;
-        if between.is_empty() || between.any(|then| all_within(then, DIFFERENT)) {
-            return None;
-        }
-        let round = found..here;
+        let same = |then: usize| all_within(then, REPEATED);
+        let round = round::closed(here, same, |then| !all_within(then, DIFFERENT))?;
         let stops = |s: usize| round.clone().map(move |k| of(k)[s]);
         let takes_part =
             |s: &usize| stops(*s).any(|entry| !entry.within(&of(here)[*s], scales, DIFFERENT));

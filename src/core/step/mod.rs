@@ -9,7 +9,7 @@
 //! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come;
 //!   `turn`: corners of the path, where contacts change their modes.
 //! - `damped`: damped motion past a limit point; [`motion`]: what it carries along.
-//! - [`major_history`]: cycles of major iterations.
+//! - [`major_history`]: cycles of major iterations; [`round`]: what makes a cycle of any sequence.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
 
 mod arc;
@@ -27,6 +27,7 @@ pub mod major_history;
 mod minor;
 pub mod motion;
 pub mod pace;
+pub mod round;
 mod search;
 pub mod state;
 pub mod stepper;

@@ -8,7 +8,7 @@ use crate::interface::method::{Asked, NoProposal, Proposal, Search, Searched};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::Assumed;
 use crate::linear::singular::Singular;
-use crate::model::Mode;
+use crate::model::{Contact, Mode};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::Progress;
 use crate::step::stepper::Stepper;
@@ -133,10 +133,18 @@ impl Stepper {
     /// Records what a search has the contacts do, and leaves it in the state.
     fn take(&mut self, proposal: &Proposal) -> Outcome {
         self.state.search.searched = proposal.next;
-        for (contact, &(assumed, numbers)) in proposal.nodes.iter().enumerate() {
-            self.assume(contact, assumed, numbers, proposal);
+        let (model, mut nodes) = (self.model.clone(), proposal.nodes.iter());
+        for (contact, slave) in model.contacts.iter().enumerate() {
+            if slave.bond.is_tied() {
+                self.stay_tied(contact);
+            } else if let Some(&(assumed, numbers)) = nodes.next() {
+                self.assume(contact, assumed, numbers, proposal);
+            }
         }
-        if let Some((contact, tested)) = proposal.bound {
+        if let Some((place, tested)) = proposal.bound {
+            let contacts = model.contacts.iter().enumerate();
+            let mut chosen = contacts.filter(|(_, slave)| !slave.bond.is_tied());
+            let contact = chosen.nth(place).map_or(place, |(contact, _)| contact);
             self.event.nodes[contact].decision.tests[1] = Some(Test {
                 tested,
                 value: 0.0,
@@ -149,11 +157,38 @@ impl Stepper {
         Outcome::Minor
     }
 
-    /// What the contacts brought into the present major iteration.
+    /// What the contacts that are not tied brought into the present major iteration.
     fn brought(&self) -> Vec<Assumed> {
         let first = self.state.minor_history.first(self.state.nodes.len());
-        let of = |input: &Input| Assumed::of(input.mode, input.t_max);
-        first.iter().map(of).collect()
+        let of = |(input, slave): (&Input, &Contact)| {
+            (!slave.bond.is_tied()).then(|| Assumed::of(input.mode, input.t_max))
+        };
+        first
+            .iter()
+            .zip(&self.model.contacts)
+            .filter_map(of)
+            .collect()
+    }
+
+    /// Records a tied contact, of which a search knows nothing: its forces come with the next solve.
+    fn stay_tied(&mut self, contact: usize) {
+        let (node, over) = (&self.state.nodes[contact], self.source.kinematics(contact));
+        self.event.nodes.push(ContactRecord {
+            decision: Decision::tied(),
+            forced: node.forced,
+            gap: over.map_or(f64::INFINITY, |k| k.gap),
+            f_n: node.f_n,
+            f_t: node.f_t,
+            t_max: 0.0,
+            t_max_used: 0.0,
+            slip: node.drift,
+            drift: node.drift,
+            spot: node.spot,
+            normal: over.map_or(node.normal, |k| k.normal),
+            foot: over.map_or([f64::NAN; 2], |k| k.foot),
+            corner: None,
+            carried: [false; 2],
+        });
     }
 
     fn assume(
@@ -186,6 +221,7 @@ impl Stepper {
             Some(_) => proposal.rule,
             None => Rule::OffSurface,
         };
+        let give = over.map_or(0.0, |k| k.bond.give()[0]);
         self.event.nodes.push(ContactRecord {
             decision: Decision {
                 before,
@@ -195,7 +231,10 @@ impl Stepper {
                 wanted: node.mode,
             },
             forced: node.forced,
-            gap,
+            gap: match give {
+                0.0 => gap,
+                give => gap - give * f_n,
+            },
             f_n,
             f_t,
             t_max: node.t_max,

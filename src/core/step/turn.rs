@@ -25,7 +25,7 @@
 
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
-use crate::interface::kinematics::NodeIncrement;
+use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::linear::source::Solved;
 use crate::model::{BoundUpdate, Friction, Mode};
 use crate::step::event::{Failure, Outcome};
@@ -101,7 +101,10 @@ impl Stepper {
         let mut first = (f64::INFINITY, Vec::new());
         for (contact, node) in state.nodes.iter().enumerate() {
             let over = self.source.kinematics(contact);
-            let Some(over) = over.filter(|_| !matches!(node.forced, Forced::Held(_))) else {
+            let is_free = |over: &NodeKinematics| {
+                !matches!(node.forced, Forced::Held(_)) && !over.bond.is_tied()
+            };
+            let Some(over) = over.filter(is_free) else {
                 continue;
             };
             let friction = node.friction(&state.controls.friction[contact]);

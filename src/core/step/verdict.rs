@@ -23,7 +23,7 @@ impl Stepper {
         let verdict = self.source.judge(&self.state.at(), &after);
         if self.state.motion.is_some() {
             let worst = worst_of(&verdict);
-            return match worst.filter(|found| found.law == Law::Slip && !self.state.net) {
+            return match worst.filter(|found| is_slip(found.law) && !self.state.net) {
                 Some(why) => {
                     self.count_net_slip();
                     Outcome::Refused { why, after }
@@ -40,7 +40,7 @@ impl Stepper {
         if self.only_marks() {
             return self.accept(after, verdict, Some(worst), false);
         }
-        if worst.law == Law::Slip && !self.state.net {
+        if is_slip(worst.law) && !self.state.net {
             self.count_net_slip();
             return Outcome::Refused { why: worst, after };
         }
@@ -81,11 +81,16 @@ impl Stepper {
     }
 }
 
+/// Whether a law is about the net slip of a node.
+fn is_slip(law: Law) -> bool {
+    matches!(law, Law::Slip | Law::Stick)
+}
+
 /// The worst of the laws that are broken: slip before all others, since that can be repaired, and the touch of an open
 /// node last, since that may be nothing.
 fn worst_of(verdict: &Verdict) -> Option<Finding> {
     let rank = |finding: &Finding| match finding.law {
-        Law::Slip => 2,
+        law if is_slip(law) => 2,
         Law::Touch => 0,
         _ => 1,
     };

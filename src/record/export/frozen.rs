@@ -25,7 +25,7 @@ use crate::interface::response::InterfaceResponse;
 use crate::interface::trials::Trials;
 use crate::linalg::DenseFactors;
 use crate::model::InitialState;
-use crate::model::{Mode, Model, Settings};
+use crate::model::{Bond, Mode, Model, Settings};
 use crate::scene::siconos::Friction2d;
 use crate::scene::{Scene, limits};
 use crate::step::drive::{RunEnd, Until};
@@ -571,7 +571,14 @@ fn wrapped(text: &str) -> Vec<String> {
 pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
     let scene = Scene::from_text("what would be written", text, &[]).map_err(Box::new)?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
-    let mut trials = Trials::new(problem).ok_or(Parted::Memory)?;
+    // What is written knows the touching points of bonds only, not the nodes behind them.
+    let mut touching = problem.clone();
+    let kinematics = touching
+        .nodes
+        .iter_mut()
+        .filter_map(|node| node.kinematics.as_mut());
+    kinematics.for_each(|over| over.bond = Bond::Hard);
+    let mut trials = Trials::new(&touching).ok_or(Parted::Memory)?;
     let mut nodes = problem.states();
     let (mut worst, mut minor) = (0.0_f64, 0);
     let until = Until::end().minors(COMPARED.into()).past_failures();

@@ -2,7 +2,7 @@
 //!
 //! - [`frozen`]: the core of a cycle, or the whole frozen problem, as a scene, or in the form of Siconos.
 //! - [`picture`]: the deformed shape with modes, forces and gaps, and the timeline, as SVG and PNG.
-//! - [`written`]: the scene itself.
+//! - [`written`]: the scene itself; [`skeleton`]: one around a mesh.
 //! - [`shown`]: what all of them are made of.
 //!
 //! A session as a film is made of a journal by who draws screens; the list has its name.
@@ -10,6 +10,7 @@
 pub mod frozen;
 pub mod picture;
 pub mod shown;
+pub mod skeleton;
 pub mod written;
 
 mod timeline;

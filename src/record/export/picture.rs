@@ -38,6 +38,8 @@ const ELEMENT: f64 = 7.0;
 const ROWS: usize = 14;
 /// Forces.
 const VERMILION: Colour = (213, 94, 0);
+/// Pressures.
+const BLUE: Colour = (86, 180, 233);
 /// Bodies.
 const DARK: Colour = (60, 60, 60);
 
@@ -240,11 +242,20 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     bodies(sheet, &window, model, &now, &mut taken);
     surfaces(sheet, &window, model, &now, &mut taken);
     gaps(sheet, &window, shown, &now);
+    let pressure = pressures(sheet, &window, shown, &now);
     let marked = radius(&window, model, &now);
     let largest = forces(sheet, &window, shown, &now, marked, &mut taken);
     slaves(sheet, &window, shown, &now, rows, marked, &mut taken)?;
     sheet.height = top + HIGH + 0.5 * MARGIN;
-    legend(sheet, &window, shown, largest)
+    legend(sheet, &window, shown, largest)?;
+    if pressure > 0.0 {
+        let told = format!(
+            "blue: contact pressure F_n / A by undeformed areas, largest {}",
+            short(pressure)
+        );
+        sheet.paragraph(&[told], SMALL, GREY)?;
+    }
+    Ok(())
 }
 
 /// Elements as they were (dashed) and as they are.
@@ -353,6 +364,56 @@ fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -
             sheet.dashed(&[from, to], 1.0, (0, 114, 178));
         }
     }
+}
+
+/// Contact pressure along the sides of bodies whose nodes are all slaves, drawn from the nodes along the master's normal; the
+/// largest is half as long as the longest force. Returns the largest.
+fn pressures(
+    sheet: &mut Sheet,
+    window: &Window,
+    shown: &Shown,
+    now: &dyn Fn(usize) -> Point,
+) -> f64 {
+    let (model, Some(event)) = (&shown.scene.model, shown.event) else {
+        return 0.0;
+    };
+    let round_off = RoundOff::of(model, &event.before);
+    let mut of_node = vec![None; model.nodes.len()];
+    for (contact, found) in model.contacts.iter().zip(&event.nodes) {
+        let pressure = contact.pressure(round_off.force(found.f_n), 0.0);
+        of_node[contact.node] = pressure.map(|[pressure, _]| (pressure, found.normal));
+    }
+    let sizes = of_node.iter().flatten().map(|(pressure, _)| pressure.abs());
+    let largest = sizes.filter(|p| p.is_finite()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let scale = 0.5 * FORCE / largest;
+    let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
+    for line in lines {
+        let ends: Option<Vec<[(f64, f64); 2]>> = line
+            .iter()
+            .map(|&node| {
+                let (pressure, n) = of_node[node]?;
+                let foot = window.at(now(node));
+                let tip = (
+                    foot.0 + scale * pressure * n[0],
+                    foot.1 - scale * pressure * n[1],
+                );
+                Some([foot, tip])
+            })
+            .collect();
+        let Some(ends) = ends.filter(|ends| ends.iter().flatten().all(|at| window.holds(*at)))
+        else {
+            continue;
+        };
+        let tips: Vec<(f64, f64)> = ends.iter().map(|end| end[1]).collect();
+        sheet.line(&tips, 1.6, BLUE);
+        for end in &ends {
+            sheet.line(end, 0.8, BLUE);
+        }
+    }
+    largest
 }
 
 /// Room that the arrows of forces need beyond the shape: at the left, above, at the right, and below.
@@ -577,16 +638,19 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     };
     let model = &shown.scene.model;
     /// Right ends of the columns of numbers.
-    const COLUMNS: [(&str, f64); 4] = [
+    const COLUMNS: [(&str, f64); 5] = [
         ("gap", 430.0),
         ("F_n", 560.0),
         ("F_t", 690.0),
         ("T_max", 820.0),
+        ("F_n / A", 950.0),
     ];
     let mut y = sheet.height + 0.6 * SMALL;
     sheet.text((MARGIN + 40.0, y), "slave node", SMALL, GREY, Anchor::Left);
     sheet.text((MARGIN + 214.0, y), "mode", SMALL, GREY, Anchor::Left);
-    for (head, x) in COLUMNS {
+    let areas = model.contacts.iter().any(|contact| contact.area.is_some());
+    let heads = if areas { &COLUMNS[..] } else { &COLUMNS[..4] };
+    for &(head, x) in heads {
         sheet.text((x, y), head, SMALL, GREY, Anchor::Right);
     }
     for (row, &slave) in rows.iter().enumerate() {
@@ -621,6 +685,8 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
         let forces = [found.f_n, found.f_t, found.t_max];
         let mut values = vec![short(round_off.length(found.gap))];
         values.extend(forces.map(|force| short(round_off.force(force))));
+        let by_area = model.contacts[slave].pressure(round_off.force(found.f_n), 0.0);
+        values.extend(by_area.map(|[pressure, _]| short(pressure)));
         for ((_, x), value) in COLUMNS.iter().zip(values) {
             sheet.text((*x, y), &value, SMALL, BLACK, Anchor::Right);
         }

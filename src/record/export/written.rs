@@ -30,12 +30,13 @@ pub(super) fn dat(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMa
     Ok(friction.write(Storage::Dense).into_bytes())
 }
 
-/// The file of a scene: its author's where nothing was set from outside, else one that says the same with that in it.
+/// The file of a scene: its author's where nothing was set from outside and no mesh stands in another file, else one that says
+/// the same with all of that in it.
 ///
 /// # Errors
 /// If it does not read back as the scene that it was made of.
 pub fn scene(scene: &Scene) -> Result<String, NotMade> {
-    if !scene.text.is_empty() && scene.overrides().next().is_none() {
+    if !scene.text.is_empty() && scene.overrides().next().is_none() && !scene.imports() {
         return Ok(scene.text.clone());
     }
     let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(3);

@@ -4,7 +4,7 @@ use super::super::curves::point;
 use super::super::geometry;
 use super::super::limits;
 use super::super::nodes::checks::unique;
-use super::super::nodes::{Mesh, Names};
+use super::super::nodes::{Entry, Mesh, Names};
 use super::linear;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
@@ -196,21 +196,21 @@ pub(super) fn check_axis(
     ))
 }
 
-/// The elements along a chain; `total` counts their nodes.
-pub(super) fn elements(
+/// A chain with an id, along which elements will be; `total` counts their nodes.
+pub(super) fn chain<'n>(
     here: &Path,
-    names: &Names,
+    names: &'n Names,
     along: &str,
     total: &mut usize,
-    memory: Option<f64>,
-) -> Result<Vec<Vec<usize>>, Fault> {
+    spec: &Spec,
+) -> Result<&'n Entry, Fault> {
     let chain = names
         .chain(along)
         .map_err(|message| Fault::new(here.clone(), message))?;
     // An element has at most twice as many nodes as it adds to its chain.
     *total += 2 * chain.nodes.len();
-    limits::element_nodes(here, *total, memory)?;
-    Ok(chain.elements())
+    limits::element_nodes(here, *total, spec.settings.memory)?;
+    Ok(chain)
 }
 
 /// The material with an id.
@@ -234,13 +234,13 @@ fn beam(
     names: &Names,
     total: &mut usize,
 ) -> Result<Body, Fault> {
-    let elements = elements(
-        &here.then("along"),
-        names,
-        along,
-        total,
-        spec.settings.memory,
-    )?;
+    let path = here.then("along");
+    let elements = chain(&path, names, along, total, spec)?.elements();
+    if elements.iter().any(|e| e.len() != elements[0].len()) {
+        let message =
+            format!("{along:?} has sides of 2 nodes and of 3; a beam's elements have as many each");
+        return Err(Fault::new(path, message));
+    }
     let here = here.then("material");
     let Material::Section { EA, EI, GA, .. } = material(&here, spec, of)? else {
         let message = format!("material {of:?} is a continuum's; a beam needs a Section");

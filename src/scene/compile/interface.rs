@@ -4,7 +4,7 @@ use super::super::geometry;
 use super::super::limits;
 use super::super::nodes::Names;
 use super::super::nodes::checks::unique;
-use super::bodies::{check_chain, elements};
+use super::bodies::{chain, check_chain};
 use super::laws;
 use crate::contact::element::closed;
 use crate::contact::smooth::smooth;
@@ -15,43 +15,74 @@ use crate::model::{Component, Friction, InitialState};
 use crate::model::{Contact, Dofs, Surface};
 use std::collections::HashSet;
 
-/// The surfaces, walked so that the outward side is on the right.
-pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Vec<Surface>, Fault> {
+/// The surfaces of a scene: those of its list, in its order, one for each piece.
+pub(super) struct Surfaces {
+    pub made: Vec<Surface>,
+    /// Position in the scene's list of each.
+    pub listed: Vec<usize>,
+}
+
+/// The surfaces, walked so that the outward side is on the right. Sides of a given mesh that do not hang together are a surface
+/// each, `ID.1`, `ID.2`, …
+pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfaces, Fault> {
     unique("surfaces", spec.surfaces.iter().map(|s| s.id.as_str()))?;
-    let mut made = Vec::with_capacity(spec.surfaces.len());
+    let mut all = Surfaces {
+        made: Vec::with_capacity(spec.surfaces.len()),
+        listed: Vec::with_capacity(spec.surfaces.len()),
+    };
     let mut total = 0;
     for (k, surface) in spec.surfaces.iter().enumerate() {
         let here = at!["surfaces", k, "along"];
-        let mut elements = elements(
-            &here,
-            names,
-            &surface.along,
-            &mut total,
-            spec.settings.memory,
-        )?;
-        check_chain(names, &surface.along, &elements, length)?;
-        if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
-            let message = "only a straight surface can be endless";
+        let chain = chain(&here, names, &surface.along, &mut total, spec)?;
+        if chain.is_inside() {
+            let message = format!(
+                "{} has sides between two elements, where nothing is outside; bodies that are to touch must not share \
+                 their nodes there",
+                quoted(&surface.along)
+            );
+            return Err(Fault::new(here, message));
+        }
+        let pieces = chain.pieces();
+        let several = pieces.len() > 1;
+        if several && surface.endless {
+            let message = format!(
+                "the surface has {} pieces; an endless one has one",
+                pieces.len()
+            );
             return Err(Fault::new(at!["surfaces", k, "endless"], message));
         }
-        if surface.reverse {
-            elements.reverse();
-            elements.iter_mut().for_each(|element| element.reverse());
+        for (number, mut elements) in (1..).zip(pieces) {
+            check_chain(names, &surface.along, &elements, length)?;
+            if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
+                let message = "only a straight surface can be endless";
+                return Err(Fault::new(at!["surfaces", k, "endless"], message));
+            }
+            if surface.reverse {
+                elements.reverse();
+                elements.iter_mut().for_each(|element| element.reverse());
+            }
+            let name = match several {
+                true => format!("{}.{number}", surface.id),
+                false => surface.id.clone(),
+            };
+            all.listed.push(k);
+            all.made.push(Surface {
+                name,
+                elements,
+                rigid: false,
+                endless: surface.endless,
+                smooth: Vec::new(),
+            });
         }
-        made.push(Surface {
-            name: surface.id.clone(),
-            elements,
-            rigid: false,
-            endless: surface.endless,
-            smooth: Vec::new(),
-        });
     }
-    Ok(made)
+    limits::entries("surfaces", all.made.len())?;
+    Ok(all)
 }
 
 /// Makes smooth the surfaces of which the scene wants it, with the nodes where they are before anything deforms.
-pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut [Surface]) -> Result<(), Fault> {
-    for (k, (surface, wanted)) in surfaces.iter_mut().zip(&spec.surfaces).enumerate() {
+pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut Surfaces) -> Result<(), Fault> {
+    for (surface, &k) in surfaces.made.iter_mut().zip(&surfaces.listed) {
+        let wanted = &spec.surfaces[k];
         if !wanted.smooth {
             continue;
         }
@@ -73,9 +104,10 @@ pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut [Surface]) -> 
 pub(super) fn slaves(
     spec: &Spec,
     names: &Names,
-    surfaces: &[Surface],
+    all: &Surfaces,
     length: f64,
 ) -> Result<(Vec<Contact>, Vec<usize>), Fault> {
+    let surfaces = all.made.as_slice();
     friction(&at!["friction"], &spec.friction)?;
     let members: Vec<HashSet<usize>> = surfaces
         .iter()
@@ -88,7 +120,7 @@ pub(super) fn slaves(
         if let Some(own) = &group.friction {
             friction(&here.then("friction"), own)?;
         }
-        let on = candidates(&here, group, surfaces)?;
+        let on = candidates(&here, group, spec, all)?;
         initial_state(&here.then("state"), &group.state)?;
         laws::check(&here, group)?;
         if group.nodes.is_empty() {
@@ -131,31 +163,35 @@ pub(super) fn slaves(
 }
 
 /// Numbers of the surfaces that a group of slaves may touch.
-fn candidates(here: &Path, group: &SlaveSpec, surfaces: &[Surface]) -> Result<Vec<usize>, Fault> {
+fn candidates(
+    here: &Path,
+    group: &SlaveSpec,
+    spec: &Spec,
+    surfaces: &Surfaces,
+) -> Result<Vec<usize>, Fault> {
     if group.on.is_empty() {
         return Err(Fault::new(
             here.then("on"),
             "the list is empty; name at least one surface",
         ));
     }
-    let ids = || surfaces.iter().map(|s| s.name.as_str());
+    let ids = || spec.surfaces.iter().map(|s| s.id.as_str());
     let mut on = Vec::with_capacity(group.on.len());
     for (k, name) in group.on.iter().enumerate() {
         let fault = |message| Err(Fault::new(here.then("on").then(k), message));
-        match surfaces.iter().position(|surface| surface.name == *name) {
-            Some(surface) if on.contains(&surface) => {
-                return fault(format!("surface {name:?} is named twice"));
-            }
-            Some(surface) => on.push(surface),
-            None => {
-                return fault(format!(
-                    "no surface called {}{} (surfaces: {})",
-                    quoted(name),
-                    did_you_mean(name, ids()),
-                    some_of(ids())
-                ));
-            }
+        if group.on[..k].contains(name) {
+            return fault(format!("surface {name:?} is named twice"));
         }
+        let Some(listed) = ids().position(|id| id == name) else {
+            return fault(format!(
+                "no surface called {}{} (surfaces: {})",
+                quoted(name),
+                did_you_mean(name, ids()),
+                some_of(ids())
+            ));
+        };
+        let pieces = (0..surfaces.made.len()).filter(|&s| surfaces.listed[s] == listed);
+        on.extend(pieces);
     }
     Ok(on)
 }
@@ -281,9 +317,10 @@ pub(super) fn check_use(
     slaves.iter().for_each(|s| used[s.node] = true);
     for entry in names.entries() {
         // A block's edges share its nodes, and it has an entry of its own.
+        // A given mesh may have nodes to spare: `check` counts them.
         let shares = matches!(
             spec.nodes[entry.at],
-            Nodes::Chain { .. } | Nodes::Mesh { .. }
+            Nodes::Chain { .. } | Nodes::Mesh { .. } | Nodes::Given { .. }
         ) || is_side(spec, spec.nodes[entry.at].id());
         let idle = entry.nodes.iter().find(|&&n| !used[n]);
         if let (Some(&node), false) = (idle, shares) {
@@ -310,8 +347,8 @@ fn is_side(spec: &Spec, id: &str) -> bool {
 ///
 /// # Errors
 /// If an endless one is not among them.
-pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut [Surface]) -> Result<(), Fault> {
-    for (k, surface) in surfaces.iter_mut().enumerate() {
+pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut Surfaces) -> Result<(), Fault> {
+    for (surface, &k) in surfaces.made.iter_mut().zip(&surfaces.listed) {
         surface.rigid = surface
             .elements
             .iter()

@@ -8,7 +8,7 @@ use crate::contact::projection::{project, projection_at};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::{Fault, Path};
 use crate::format::spec::{SlaveSpec, Spec};
-use crate::model::{Body, Bond, Contact, Friction, InitialState, Mode, Surface};
+use crate::model::{Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Surface};
 
 /// Most that a tied node is moved, as a part of the scene's length: what is farther away was not meant to be joined.
 const JOINED: f64 = 0.05;
@@ -99,7 +99,7 @@ pub(super) fn tie(
         moved |= over.foot != at;
         places[slave.node] = over.foot;
         names.nodes[slave.node].at = over.foot;
-        (slave.bond, slave.start) = (Bond::Tied, Mode::Fixed);
+        (slave.bond, slave.start) = (Bond::Tied { upright: false }, Mode::Fixed);
     }
     Ok(moved)
 }
@@ -132,6 +132,25 @@ pub(super) fn apply(
     }
     slaves.retain(|slave| slave.bond.give().iter().all(|give| give.is_finite()));
     Ok(())
+}
+
+/// Finds the tied nodes which supports, and those of their surfaces, leave one axis to move along only.
+pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Contact]) {
+    for slave in slaves.iter_mut().filter(|slave| slave.bond.is_tied()) {
+        let masters = slave
+            .surfaces
+            .iter()
+            .flat_map(|&s| surfaces[s].elements.iter().flatten());
+        let nodes: Vec<usize> = masters.copied().chain([slave.node]).collect();
+        let moves = |k: usize| {
+            nodes
+                .iter()
+                .any(|&n| dofs.equation[dofs.first[n] + k].is_some())
+        };
+        let own = |k: usize| dofs.equation[dofs.first[slave.node] + k].is_some();
+        let upright = own(0) != own(1) || moves(0) != moves(1);
+        slave.bond = Bond::Tied { upright };
+    }
 }
 
 /// What holds at a node of a pair.

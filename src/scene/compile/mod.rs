@@ -57,18 +57,25 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let (mut slaves, pairs) = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
-    interface::check_use(spec, &names, &on_body, &surfaces, &slaves)?;
+    interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
     history::settings(&spec.settings)?;
     if spec.settings.initial_gaps == InitialGaps::Adjust {
         let within = spec.settings.adjust_gap;
-        gaps::adjust(&mut names.nodes, &surfaces, &slaves, within);
+        gaps::adjust(&mut names.nodes, &surfaces.made, &slaves, within);
         bodies::check_bodies(spec, &names, &bodies, length)?;
     }
-    if laws::tie(spec, &mut names, &surfaces, &pairs, &mut slaves, length)? {
+    if laws::tie(
+        spec,
+        &mut names,
+        &surfaces.made,
+        &pairs,
+        &mut slaves,
+        length,
+    )? {
         bodies::check_bodies(spec, &names, &bodies, length)?;
     }
     if spec.settings.initial_gaps == InitialGaps::Ramp {
-        gaps::ramp(&names.nodes, &surfaces, &mut slaves);
+        gaps::ramp(&names.nodes, &surfaces.made, &mut slaves);
     }
     laws::apply(spec, &names, &bodies, &pairs, &mut slaves)?;
     let mut layout = Layout::new(on_body.clone(), &bodies);
@@ -81,7 +88,9 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let dofs = layout.number(&mut bodies);
     loads.extend(linear::free_motions(spec, &bodies, &dofs));
     interface::find_rigid(&dofs, &mut surfaces)?;
+    let surfaces = surfaces.made;
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
+    laws::stand_upright(&dofs, &surfaces, &mut slaves);
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;

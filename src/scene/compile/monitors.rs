@@ -124,10 +124,32 @@ fn watched(
             slaves: slave_numbers(here, None, "mode", names, slaves)?,
             mode: *mode,
         }),
+        Quantity::Pressure { node } => pressure(here, node.as_deref(), false, names, slaves),
+        Quantity::Shear { node } => pressure(here, node.as_deref(), true, names, slaves),
         Quantity::Drift { node } => Ok(Watched::Drift {
             slaves: slave_numbers(here, node.as_deref(), "drift", names, slaves)?,
         }),
     }
+}
+
+/// Pressure or shear at the slave of that name, or where it is largest.
+fn pressure(
+    here: &Path,
+    name: Option<&str>,
+    shear: bool,
+    names: &Names,
+    slaves: &[Contact],
+) -> Result<Watched, Fault> {
+    let mut found = slave_numbers(here, name, "contact pressure", names, slaves)?;
+    found.retain(|&slave| slaves[slave].area.is_some_and(|area| area > 0.0));
+    if found.is_empty() {
+        let message = "no slave node that is meant has a tributary area, by which a force is a pressure; give its pair an `area`";
+        return Err(Fault::new(here.then("node"), message));
+    }
+    Ok(Watched::Pressure {
+        slaves: found,
+        shear,
+    })
 }
 
 /// The slave of that name, or all of them; `what` says what there is none of without any.

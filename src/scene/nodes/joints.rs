@@ -169,7 +169,7 @@ impl Names {
         }
         self.nodes = kept;
         for entry in &mut self.entries {
-            entry.nodes.iter_mut().for_each(|n| *n = number[*n]);
+            entry.numbers_mut().for_each(|n| *n = number[*n]);
             if entry.kind == EntryKind::Mesh {
                 let mut seen = HashSet::new();
                 entry.nodes.retain(|n| seen.insert(*n));

@@ -76,9 +76,12 @@ impl Names {
                 through(&here, points, *per_element, refine)?,
                 EntryKind::Chain(*per_element),
             ),
-            Nodes::Import { file, .. } | Nodes::Given { id: file, .. } => {
-                let message = format!("the mesh {file:?} is not read");
-                return Err(Fault::new(here, message));
+            Nodes::Given { .. } => return self.given(at, nodes),
+            Nodes::Import { file, .. } => {
+                let message = format!(
+                    "the file {file:?} has not been read; a scene with an Import is opened as a file"
+                );
+                return Err(Fault::new(here.then("file"), message));
             }
             Nodes::Chain { .. } | Nodes::Mesh { .. } => return Ok(()),
         };
@@ -124,6 +127,7 @@ impl Names {
         for (k, name) in of.iter().enumerate() {
             let fault = |message: String| Fault::new(here.then("of").then(k), message);
             let found = self.nodes(name).map_err(fault)?;
+            self.check_one_chain(name).map_err(fault)?;
             let total = before + shared.len() + found.len();
             limits::memory(total as f64 * limits::NAMED_BYTES, memory).map_err(|why| {
                 fault(format!(
@@ -147,6 +151,7 @@ impl Names {
     /// Points along a chain that exists already, and nodes per element.
     fn curve(&self, id: &str) -> Result<(Vec<Point>, usize), String> {
         let chain = self.chain(id)?;
+        self.check_one_chain(id)?;
         let place = |n: &usize| (self.nodes[*n].at[0], self.nodes[*n].at[1]);
         Ok((
             chain.nodes.iter().map(place).collect(),

@@ -1,5 +1,6 @@
 //! Nodes, chains and meshes by their names, and what to say where there is none of that name.
 
+use super::given::nodes_of;
 use super::{Entry, EntryKind, Mesh, Names};
 use crate::format::error::{did_you_mean, quoted, some_of};
 
@@ -13,21 +14,28 @@ impl Names {
         let count = entry.nodes.len();
         let index = match selector {
             Selector::Whole if entry.kind == EntryKind::Single => 0,
+            // A point of a mesh that has a name.
+            Selector::Whole if entry.kind == EntryKind::Set && count == 1 => 0,
             Selector::Whole | Selector::All => return Err(entry.many(name, count)),
             Selector::Index(index) => index,
         };
         Ok(entry.nodes[index])
     }
 
-    /// The numbers of the nodes that a name stands for: all of a chain for `ID.all`, and of a block's edge for its name
-    /// alone; else one.
+    /// The numbers of the nodes that a name stands for: all of a chain for `ID.all`; of a block's edge, and of parts, sets and
+    /// sides of a given mesh, for their names alone; else one.
     ///
     /// # Errors
     /// As [`Names::node`].
     pub fn nodes(&self, name: &str) -> Result<Vec<usize>, String> {
         match self.split(name)? {
             (entry, Selector::All) => Ok(entry.nodes.clone()),
-            (entry, Selector::Whole) if matches!(entry.kind, EntryKind::Edge(_)) => {
+            (entry, Selector::Whole)
+                if matches!(
+                    entry.kind,
+                    EntryKind::Edge(_) | EntryKind::Part | EntryKind::Set | EntryKind::Sides(_)
+                ) =>
+            {
                 Ok(entry.nodes.clone())
             }
             _ => Ok(vec![self.node(name)?]),
@@ -39,7 +47,19 @@ impl Names {
         if let Some(&k) = self.index.get(id) {
             let entry = &self.entries[k];
             return match entry.kind {
-                EntryKind::Chain(_) | EntryKind::Edge(_) => Ok(entry),
+                EntryKind::Chain(_) | EntryKind::Edge(_) | EntryKind::Sides(_) => Ok(entry),
+                EntryKind::Given | EntryKind::Part | EntryKind::Set => {
+                    let sides = self
+                        .entries
+                        .iter()
+                        .filter(|e| e.at == entry.at && matches!(e.kind, EntryKind::Sides(_)));
+                    Err(format!(
+                        "{} is {}; a chain is needed, as sides of a given mesh are (sides: {})",
+                        quoted(id),
+                        entry.kind.called(),
+                        some_of(sides.map(|e| e.id.as_str()))
+                    ))
+                }
                 EntryKind::Single => Err(format!(
                     "{id:?} is a single node; a chain is needed (Line, Arc, Through or Chain, or an edge of a Block)"
                 )),
@@ -75,7 +95,12 @@ impl Names {
     /// A message that tells which meshes there are.
     pub(crate) fn mesh(&self, id: &str) -> Result<Mesh, String> {
         let meshes = || {
-            let is_mesh = |e: &&Entry| matches!(e.kind, EntryKind::Block(_) | EntryKind::Mesh);
+            let is_mesh = |e: &&Entry| {
+                matches!(
+                    e.kind,
+                    EntryKind::Block(_) | EntryKind::Mesh | EntryKind::Given | EntryKind::Part
+                )
+            };
             self.entries.iter().filter(is_mesh).map(|e| e.id.as_str())
         };
         let Some(entry) = self.index.get(id).map(|&k| &self.entries[k]) else {
@@ -89,6 +114,18 @@ impl Names {
         let blocks: Vec<&Entry> = match entry.kind {
             EntryKind::Block(_) => vec![entry],
             EntryKind::Mesh => entry.parts.iter().map(|&k| &self.entries[k]).collect(),
+            EntryKind::Given | EntryKind::Part if !entry.elements.is_empty() => {
+                return Ok(Mesh {
+                    nodes: nodes_of(&entry.elements),
+                    elements: entry.elements.clone(),
+                });
+            }
+            EntryKind::Given | EntryKind::Part => {
+                return Err(format!(
+                    "{} has no elements, of which a solid is made",
+                    quoted(id)
+                ));
+            }
             _ => {
                 return Err(format!(
                     "{id:?} is no block; a solid needs the mesh of one (blocks: {})",
@@ -110,6 +147,19 @@ impl Names {
             }));
         }
         Ok(made)
+    }
+
+    /// Refuses sides of a given mesh that are no single open chain of elements of one kind.
+    pub(super) fn check_one_chain(&self, name: &str) -> Result<(), String> {
+        let found = self.index.get(name).map(|&k| &self.entries[k]);
+        let Some(entry) = found.filter(|entry| entry.kind == EntryKind::Sides(None)) else {
+            return Ok(());
+        };
+        Err(format!(
+            "{} is {}; one chain that is open is needed",
+            quoted(name),
+            entry.line.words(&self.nodes)
+        ))
     }
 
     /// Position of the block with an id among the entries.
@@ -176,6 +226,12 @@ impl Names {
     fn selected(&self, name: &str, selector: &str, entry: &Entry) -> Result<Selector, String> {
         let count = entry.nodes.len();
         let is_chain = entry.kind.per_element().is_some();
+        if entry.kind == EntryKind::Given && selector != "all" {
+            return match selector.parse::<usize>() {
+                Ok(label) => entry.labelled(label).map(Selector::Index),
+                Err(_) => Err(self.unknown(name)),
+            };
+        }
         match selector {
             "start" if is_chain => Ok(Selector::Index(0)),
             "end" if is_chain => Ok(Selector::Index(count - 1)),
@@ -185,11 +241,7 @@ impl Names {
                 Ok(_) => Err(format!(
                     "no node called {}: the {} has {count} nodes, \"{}.1\" to \"{}.{count}\"",
                     quoted(name),
-                    match entry.kind {
-                        EntryKind::Block(_) => "block",
-                        EntryKind::Mesh => "mesh",
-                        _ => "chain",
-                    },
+                    entry.kind.word(),
                     entry.id,
                     entry.id
                 )),
@@ -202,19 +254,33 @@ impl Names {
         let mut known = Vec::new();
         let mut shown = Vec::new();
         for Entry {
-            id, nodes, kind, ..
+            id,
+            nodes,
+            kind,
+            labels,
+            ..
         } in &self.entries
         {
             known.push(id.clone());
             match kind {
                 EntryKind::Single => shown.push(id.clone()),
-                EntryKind::Chain(_) | EntryKind::Edge(_) => {
+                EntryKind::Chain(_) | EntryKind::Edge(_) | EntryKind::Sides(Some(_)) => {
                     known.extend(["start", "end", "all"].map(|which| format!("{id}.{which}")));
                     shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
                 }
                 EntryKind::Block(_) | EntryKind::Mesh => {
                     known.push(format!("{id}.all"));
                     shown.push(format!("{id}.1 to {id}.{}", nodes.len()));
+                }
+                EntryKind::Given => {
+                    known.push(format!("{id}.all"));
+                    if let [first, .., last] | [first @ last] = labels[..] {
+                        shown.push(format!("{id}.{first} to {id}.{last}"));
+                    }
+                }
+                EntryKind::Part | EntryKind::Set | EntryKind::Sides(None) => {
+                    known.push(id.clone());
+                    shown.push(id.clone());
                 }
             }
         }
@@ -234,7 +300,48 @@ impl Names {
     }
 }
 
+impl EntryKind {
+    fn word(self) -> &'static str {
+        match self {
+            EntryKind::Block(_) => "block",
+            EntryKind::Mesh | EntryKind::Given => "mesh",
+            EntryKind::Part => "part",
+            EntryKind::Set => "set",
+            EntryKind::Sides(_) => "line of sides",
+            EntryKind::Single | EntryKind::Chain(_) | EntryKind::Edge(_) => "chain",
+        }
+    }
+
+    /// The same, after "is".
+    fn called(self) -> &'static str {
+        match self {
+            EntryKind::Single => "a single node",
+            EntryKind::Edge(_) => "an edge",
+            EntryKind::Chain(_) => "a chain",
+            EntryKind::Block(_) => "a block",
+            EntryKind::Mesh | EntryKind::Given => "a mesh",
+            EntryKind::Part => "a part of a mesh",
+            EntryKind::Set => "a set of nodes",
+            EntryKind::Sides(_) => "a line of sides",
+        }
+    }
+}
+
 impl Entry {
+    /// Place of the node of a given mesh that has a label.
+    fn labelled(&self, label: usize) -> Result<usize, String> {
+        self.labels.binary_search(&label).map_err(|place| {
+            let near = place.saturating_sub(1)..self.labels.len().min(place + 1);
+            let near = self.labels[near].iter();
+            let near: Vec<String> = near.map(|l| format!("{}.{l}", self.id)).collect();
+            format!(
+                "no node of the mesh {:?} has the label {label}; next to it are {}",
+                self.id,
+                near.join(" and ")
+            )
+        })
+    }
+
     /// What to say where one node is wanted and this, called `name`, has many.
     fn many(&self, name: &str, count: usize) -> String {
         let id = &self.id;
@@ -243,7 +350,13 @@ impl Entry {
                 "a block",
                 format!("\"{id}.left.start\" or \"{id}.{}\"", count.min(2)),
             ),
-            EntryKind::Mesh => ("a mesh", format!("\"{id}.{}\"", count.min(2))),
+            EntryKind::Given => (
+                "a mesh",
+                format!("\"{id}.{}\"", self.labels.first().unwrap_or(&1)),
+            ),
+            EntryKind::Mesh | EntryKind::Part | EntryKind::Set | EntryKind::Sides(None) => {
+                (self.kind.called(), format!("\"{id}.{}\"", count.min(2)))
+            }
             kind => (
                 if matches!(kind, EntryKind::Edge(_)) {
                     "an edge"

@@ -1,12 +1,17 @@
 //! Nodes and their names: chains laid out, aliases resolved.
 //!
 //! `checks` refuses what cannot be laid out before any is made; `layout` makes nodes and chains, `joints` meshes of
-//! several blocks; `lookup` finds nodes by their names.
+//! several blocks, `given` meshes that are given node by node, of whose parts `elements` and `sides` make sure; `lookup` finds
+//! nodes by their names, `lines` tells what the sides of a mesh are.
 
 pub(crate) mod checks;
+mod elements;
+mod given;
 mod joints;
 mod layout;
+mod lines;
 mod lookup;
+mod sides;
 
 use super::blocks::Grid;
 use super::limits;
@@ -14,6 +19,9 @@ use crate::format::error::{Fault, at};
 use crate::format::spec::{Nodes, Spec};
 use crate::model::{ElementKind, Node};
 use checks::{check_ids, check_total};
+use elements::Element;
+pub use lines::Line;
+use sides::Line as Sides;
 use std::collections::HashMap;
 
 /// All nodes of a scene, and every name by which they can be called.
@@ -35,6 +43,12 @@ pub(crate) struct Entry {
     pub at: usize,
     /// Of a mesh of several blocks, their entries.
     parts: Vec<usize>,
+    /// Of a given mesh, the labels of its nodes, ascending; others are called by their place from 1.
+    labels: Vec<usize>,
+    /// Of a given mesh and its parts.
+    elements: Vec<Element>,
+    /// Of sides of a given mesh.
+    line: Sides,
 }
 
 /// What a solid is made on.
@@ -58,21 +72,71 @@ pub(crate) enum EntryKind {
     Block(Grid),
     /// A mesh of several blocks.
     Mesh,
+    /// A mesh that is given node by node.
+    Given,
+    /// Some elements of such a mesh.
+    Part,
+    /// Some nodes of such a mesh.
+    Set,
+    /// Sides of such a mesh, and how many nodes each has where they are one chain.
+    Sides(Option<usize>),
 }
 
 impl EntryKind {
     /// Nodes per element of a chain.
     fn per_element(self) -> Option<usize> {
         match self {
-            EntryKind::Single | EntryKind::Block(_) | EntryKind::Mesh => None,
+            EntryKind::Single
+            | EntryKind::Block(_)
+            | EntryKind::Mesh
+            | EntryKind::Given
+            | EntryKind::Part
+            | EntryKind::Set => None,
             EntryKind::Chain(m) | EntryKind::Edge(m) => Some(m),
+            EntryKind::Sides(m) => m,
         }
     }
 }
 
 impl Entry {
+    fn new(at: usize, id: &str, nodes: Vec<usize>, kind: EntryKind) -> Entry {
+        Entry {
+            id: id.to_owned(),
+            nodes,
+            kind,
+            at,
+            parts: Vec::new(),
+            labels: Vec::new(),
+            elements: Vec::new(),
+            line: Sides::default(),
+        }
+    }
+
+    /// Node numbers of each element of a chain in order, chain by chain: sides of a given mesh may be several.
+    pub fn pieces(&self) -> Vec<Vec<Vec<usize>>> {
+        match self.kind {
+            EntryKind::Sides(_) => self.line.pieces.clone(),
+            _ => vec![self.elements()],
+        }
+    }
+
+    /// Whether it has sides between two elements, which have no outward side.
+    pub fn is_inside(&self) -> bool {
+        self.line.inside
+    }
+
+    /// All numbers of nodes in it, to be changed.
+    fn numbers_mut(&mut self) -> impl Iterator<Item = &mut usize> {
+        let of_elements = self.elements.iter_mut().flat_map(|(_, nodes)| nodes);
+        let of_line = self.line.numbers_mut();
+        self.nodes.iter_mut().chain(of_elements).chain(of_line)
+    }
+
     /// Node numbers of each element of a chain, in order.
     pub fn elements(&self) -> Vec<Vec<usize>> {
+        if let EntryKind::Sides(_) = self.kind {
+            return self.line.pieces.concat();
+        }
         let step = self.kind.per_element().map_or(1, |m| m - 1);
         let last = self.nodes.len().saturating_sub(1);
         (0..last)
@@ -124,13 +188,11 @@ impl Names {
     }
 
     fn enter(&mut self, at: usize, id: &str, nodes: Vec<usize>, kind: EntryKind) {
-        self.index.insert(id.to_owned(), self.entries.len());
-        self.entries.push(Entry {
-            id: id.to_owned(),
-            nodes,
-            kind,
-            at,
-            parts: Vec::new(),
-        });
+        self.add(Entry::new(at, id, nodes, kind));
+    }
+
+    fn add(&mut self, entry: Entry) {
+        self.index.insert(entry.id.clone(), self.entries.len());
+        self.entries.push(entry);
     }
 }

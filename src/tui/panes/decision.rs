@@ -2,6 +2,7 @@
 
 use crate::contact::record::{ContactRecord, Forced, SideForce};
 use crate::contact::table2::{Decision, Rule, Test, Tested};
+use crate::explain::bond;
 use crate::explain::influence::Push;
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::number::{self, four, long};
@@ -53,6 +54,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Some(record) => tests
             .into_iter()
             .chain(sides(record, slave, view, theme))
+            .chain(bond(record, slave, view, theme))
             .collect(),
         None => tests,
     };
@@ -77,6 +79,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let air = |enough: bool| enough.then(Line::default);
     let crowded = (inner.width as usize) < LABEL + 6 + 3 * CELL || inner.height < 9;
     let mut all = match decision {
+        Some(decision) if decision.rule == Rule::Tied => Vec::new(),
         Some(decision) if crowded && !hidden => vec![fired(&decision, theme)],
         Some(decision) if (inner.height as usize) < GRID => choices(decision.before, theme),
         _ => grid(
@@ -107,7 +110,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         && zoomed
     {
         all.push(Line::default());
-        all.extend(measured(record, view, theme));
+        all.extend(measured(record, slave, view, theme));
         all.push(Line::default());
         all.extend(pushes);
     }
@@ -195,11 +198,16 @@ fn tested(decision: &Decision) -> Tested {
         .map_or(Tested::Gap, |test| test.tested)
 }
 
-/// Lines that [`measured`] takes.
-const MEASURED: usize = 13;
+/// Lines that [`measured`] takes, pressure and shear among them.
+const MEASURED: usize = 15;
 
 /// All that the minor iteration found at the node, with a word on each, for the screen that has room for it.
-fn measured(record: &ContactRecord, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+fn measured(
+    record: &ContactRecord,
+    slave: usize,
+    view: &View,
+    theme: &Theme,
+) -> Vec<Line<'static>> {
     let round_off = view.round_off();
     let signed = |value: f64| {
         if value < 0.0 {
@@ -269,6 +277,18 @@ fn measured(record: &ContactRecord, view: &View, theme: &Theme) -> Vec<Line<'sta
         ("at", pair(record.foot), ""),
         ("normal", pair(record.normal), ""),
     ];
+    let contact = &view.model.contacts[slave];
+    let by_area = contact.pressure(round_off.force(record.f_n), round_off.force(record.f_t));
+    let of_area = by_area.map_or(Vec::new(), |[pressure, shear]| {
+        vec![
+            (
+                "F_n / A",
+                signed(pressure),
+                "contact pressure, by the undeformed tributary area of the node",
+            ),
+            ("F_t / A", signed(shear), "contact shear"),
+        ]
+    });
     let heading = Line::styled(" What this minor iteration found", theme.heading);
     let row = |(name, value, meaning): (&str, String, &'static str)| {
         Line::from(vec![
@@ -279,7 +299,7 @@ fn measured(record: &ContactRecord, view: &View, theme: &Theme) -> Vec<Line<'sta
     };
     [heading]
         .into_iter()
-        .chain(rows.into_iter().map(row))
+        .chain(rows.into_iter().chain(of_area).map(row))
         .collect()
 }
 
@@ -461,6 +481,13 @@ fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Ve
     let mut lines: Vec<Line> = sides.iter().enumerate().map(one).collect();
     lines.push(Line::styled(note, theme.faint));
     lines
+}
+
+/// What the law of its pair did, where that is not hard contact.
+fn bond(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+    let lines = bond::lines(&view.model.contacts[slave], record);
+    let line = |text: String| Line::styled(format!(" {text}"), theme.text);
+    lines.into_iter().map(line).collect()
 }
 
 /// An inequality as it stands, with ten digits on both sides.

@@ -4,6 +4,7 @@ use crate::action::{ACTIONS, Entry, Group};
 use crate::tui::app::{App, Overlay, Tone};
 use crate::tui::layout::{Pane, Places};
 use crate::tui::paint;
+use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -146,14 +147,17 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
 }
 
 fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {
-    let spans = keys.iter().flat_map(|(key, label)| hint(key, label, app));
+    let spans = keys
+        .iter()
+        .flat_map(|(key, label)| hint(key, label, &app.theme));
     Line::from(spans.collect::<Vec<_>>())
 }
 
-fn hint(key: &str, label: &str, app: &App) -> [Span<'static>; 2] {
+/// A key and what it does.
+fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
     [
-        Span::styled(format!(" {key}"), app.theme.key),
-        Span::styled(format!(" {label} "), app.theme.faint),
+        Span::styled(format!(" {key}"), theme.key),
+        Span::styled(format!(" {label} "), theme.faint),
     ]
 }
 
@@ -167,24 +171,35 @@ fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
         .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
         .filter_map(|entry| Some((entry, key(entry)?, label(entry, app, places))))
         .collect();
+    let needed = |entry: &Entry| is_always(entry) || entry.group == Group::Learn;
+    let hints = labelled
+        .into_iter()
+        .map(|(entry, key, label)| (needed(entry), key, label));
+    fitted(&hints.collect::<Vec<_>>(), room, &app.theme)
+}
+
+/// Whether the footer never leaves an action out.
+pub fn is_always(entry: &Entry) -> bool {
+    ALWAYS.contains(&entry.name)
+}
+
+/// As many hints as fit, in their order, each a key and a label; those that are needed are counted first.
+pub fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<'static> {
     let width = |key: &str, label: &str| key.width() + label.width() + 3;
-    let needed = |entry: &Entry| ALWAYS.contains(&entry.name) || entry.group == Group::Learn;
-    let mut left = labelled
-        .iter()
-        .filter(|(entry, ..)| needed(entry))
-        .fold(room, |left, (_, key, label)| {
-            left.saturating_sub(width(key, label))
-        });
+    let needed = hints.iter().filter(|(needed, ..)| *needed);
+    let mut left = needed.fold(room, |left, (_, key, label)| {
+        left.saturating_sub(width(key, label))
+    });
     let mut spans = Vec::new();
-    for (entry, key, label) in &labelled {
+    for (needed, key, label) in hints {
         let width = width(key, label);
-        if !needed(entry) {
+        if !needed {
             if width > left {
                 continue;
             }
             left -= width;
         }
-        spans.extend(hint(key, label, app));
+        spans.extend(hint(key, label, theme));
     }
     Line::from(spans)
 }

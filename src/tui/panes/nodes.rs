@@ -29,6 +29,8 @@ struct Columns {
     ratio: usize,
     /// How many of gap, F_n, F_t, T_max, ratio and slip are shown.
     shown: usize,
+    /// Whether pressure and shear follow.
+    pressures: bool,
 }
 
 /// Width of the three marks: selected, changed, forced.
@@ -55,6 +57,7 @@ impl Columns {
             number: 9,
             ratio: 8,
             shown: 6,
+            pressures: false,
         };
         let wide = arrangements
             .map(|(words, number, ratio)| Columns {
@@ -72,6 +75,12 @@ impl Columns {
                 .find(|columns| columns.width() <= width)
                 .unwrap_or(Columns { shown: 0, ..last })
         })
+    }
+
+    /// These with pressure and shear behind them, where that fits.
+    fn with_pressures(self, width: usize) -> Self {
+        let pressures = self.shown == 6 && self.width() + 2 * self.number < width;
+        Columns { pressures, ..self }
     }
 
     fn modes(&self) -> usize {
@@ -112,6 +121,15 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .max()
         .unwrap_or(0);
     let columns = Columns::fit(inner.width as usize, longest.clamp(4, 20));
+    let columns = match view
+        .model
+        .contacts
+        .iter()
+        .any(|contact| contact.area.is_some())
+    {
+        true => columns.with_pressures(inner.width as usize),
+        false => columns,
+    };
     let rows = (inner.height as usize).saturating_sub(1);
     let round_off = view.round_off();
     let top = first_row(at, rows, order.len());
@@ -197,6 +215,9 @@ fn headings(columns: &Columns, app: &App) -> Line<'static> {
         };
         text += &format!("{name:<width$}");
     }
+    if columns.pressures {
+        text += &format!(" {:<width$}{}", " F_n/A", " F_t/A", width = columns.number);
+    }
     Line::styled(text, app.theme.heading)
 }
 
@@ -231,6 +252,15 @@ fn row<'a>(
     spans.push(Span::raw(" "));
     if let Some(record) = record {
         spans.extend(numbers(record, round_off, columns, app));
+        if columns.pressures {
+            let forces = [record.f_n, record.f_t].map(|force| round_off.force(force));
+            let found = view.model.contacts[slave].pressure(forces[0], forces[1]);
+            let told = found.map_or([String::new(), String::new()], |both| {
+                both.map(|value| number::cell(value, columns.number))
+            });
+            let text = format!(" {:<width$}{}", told[0], told[1], width = columns.number);
+            spans.push(Span::styled(text, theme.text));
+        }
     }
     Line::from(spans)
 }
@@ -373,12 +403,19 @@ mod tests {
                 words: false,
                 number: 11,
                 ratio: 9,
-                shown: 6
+                shown: 6,
+                pressures: false,
             }
         );
         assert_eq!(Columns::fit(118, 8).number, 13);
         assert_eq!(Columns::fit(20, 8).shown, 0);
         assert_eq!(Columns::fit(0, 20).shown, 0);
+    }
+
+    #[test]
+    fn pressures_have_columns_where_there_is_room_for_them() {
+        assert!(!Columns::fit(78, 6).with_pressures(78).pressures);
+        assert!(Columns::fit(160, 6).with_pressures(160).pressures);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::history::strip::{PointKind, Strip};
 use crate::model::Mode;
 use crate::step::event::{Failure, Outcome};
 use crate::tui::app::App;
+use crate::tui::columns::{self, Column, rows_shown};
 use crate::tui::layout::Pane;
 use crate::tui::paint;
 use crate::tui::view::View;
@@ -20,12 +21,6 @@ use unicode_width::UnicodeWidthStr;
 pub const FRAME: u16 = 5;
 /// Width of the nodes' names.
 const NAME: Range<usize> = 9..14;
-
-/// A visible iteration and where it stands.
-struct Column {
-    at: usize,
-    x: u16,
-}
 
 /// Draws the timeline.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -97,15 +92,9 @@ fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
     let name = names.max().unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
     let left = inner.x + name as u16;
     let room = usize::from(inner.right().saturating_sub(left));
-    (left, columns(view.strips, view.cursor, left, room))
-}
-
-/// The slave nodes that are visible, where there is room for so many.
-fn rows_shown(rows: usize, selected: usize, count: usize) -> Range<usize> {
-    let top = selected
-        .saturating_sub(rows / 2)
-        .min(count.saturating_sub(rows));
-    top..(top + rows).min(count)
+    let ruled = |at: usize| rule(view.strips, at).is_some();
+    let shown = columns::around(view.strips.len(), view.cursor, left, room, ruled);
+    (left, shown)
 }
 
 /// What is inside the frame, where there is anything.
@@ -168,56 +157,16 @@ fn rule(strips: &[Strip], at: usize) -> Option<&'static str> {
     }
 }
 
-fn width(strips: &[Strip], at: usize) -> usize {
-    1 + usize::from(rule(strips, at).is_some())
-}
-
-/// The iterations around the cursor that fit into the room: the cursor in the middle where both sides are long.
-fn columns(strips: &[Strip], cursor: usize, left: u16, room: usize) -> Vec<Column> {
-    let (mut first, mut after) = (cursor, cursor + 1);
-    let mut used = width(strips, cursor);
-    let back = |first: &mut usize, used: &mut usize, most: usize| {
-        while *first > 0 && *used + width(strips, *first - 1) <= most {
-            *first -= 1;
-            *used += width(strips, *first);
-        }
-    };
-    back(&mut first, &mut used, room / 2);
-    while after < strips.len() && used + width(strips, after) <= room {
-        used += width(strips, after);
-        after += 1;
-    }
-    back(&mut first, &mut used, room);
-    let mut x = left;
-    let mut columns = Vec::with_capacity(after - first);
-    for at in first..after {
-        x += width(strips, at) as u16 - 1;
-        columns.push(Column { at, x });
-        x += 1;
-    }
-    columns
-}
-
-/// Numbers of increments and majors over their first columns, where they do not run into each other.
-fn headings(buffer: &mut Buffer, inner: Rect, columns: &[Column], strips: &[Strip], style: Style) {
-    let mut free = [inner.x; 2];
-    for (index, column) in columns.iter().enumerate() {
-        let now = strips[column.at].position;
-        let then = index
-            .checked_sub(1)
-            .map(|before| strips[columns[before].at].position);
-        let increment = |at: crate::step::event::Position| (at.increment, at.attempt);
-        let anew = then.is_none_or(|then| increment(then) != increment(now));
-        let major = anew || then.is_none_or(|then| then.major != now.major);
-        for (row, wanted, text) in [(0, anew, now.increment), (1, major, now.major)] {
-            let text = text.to_string();
-            let fits = column.x >= free[row] && column.x + text.len() as u16 <= inner.right();
-            if wanted && fits {
-                buffer.set_string(column.x, inner.y + row as u16, &text, style);
-                free[row] = column.x + text.len() as u16 + 1;
-            }
-        }
-    }
+/// Numbers of increments and majors over their first columns.
+fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], strips: &[Strip], style: Style) {
+    columns::headings(buffer, inner, shown, style, |at| {
+        let now = strips[at].position;
+        let increment = (now.increment, now.attempt);
+        [
+            ((increment, 0), now.increment.to_string()),
+            ((increment, now.major), now.major.to_string()),
+        ]
+    });
 }
 
 /// The letter of a node's mode in an iteration, V for one that is fixed where two sides meet; a small one where it was
@@ -290,18 +239,7 @@ fn bracket(
     let first = (column.at + 1).saturating_sub(cycle.period as usize);
     let from = columns.iter().find(|column| column.at >= first);
     let from = from.map_or(column.x, |column| column.x);
-    for x in from..=column.x {
-        let stroke = match x {
-            _ if from == column.x => "╵",
-            x if x == from => "╰",
-            x if x == column.x => "╯",
-            _ => "─",
-        };
-        buffer.set_string(x, y, stroke, app.theme.bad);
-    }
     let text = format!("{}-cycle", cycle.period);
-    let room = inner.right().saturating_sub(column.x + 2);
-    if text.len() <= usize::from(room) {
-        buffer.set_string(column.x + 2, y, text, app.theme.bad);
-    }
+    let ends = (from, column.x);
+    columns::bracket(buffer, inner.right(), y, ends, &text, app.theme.bad);
 }

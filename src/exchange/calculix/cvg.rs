@@ -1,0 +1,111 @@
+//! `job.cvg`: a row for every iteration.
+//!
+//! Columns: step, increment, attempt, iteration, number of contact elements; then in percent the largest residual force over the
+//! mean force, the largest correction of a displacement over the largest increment of one, and the same two of heat flux and
+//! temperature. 1e-30 stands for nought over nought, 1e30 for something over nought (CalculiX's writecvg.f).
+
+use super::Stop;
+use super::cel::At;
+use super::lines::{Field, Line, table};
+use crate::broken::Broken;
+use std::io::BufRead;
+
+/// The numbers of an iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Norms {
+    /// Number of contact elements.
+    pub elements: u32,
+    /// Residual of the forces (percent).
+    pub residual: f64,
+    /// Correction of the displacements (percent).
+    pub correction: f64,
+    /// Residual of the heat flux (percent).
+    pub flux: f64,
+    /// Correction of the temperatures (percent).
+    pub temperature: f64,
+}
+
+/// Reads a file: the iterations in its order, and where it breaks off.
+///
+/// # Errors
+/// If it is no such file, or a row is not as it should be.
+pub fn read(from: impl BufRead) -> Result<(Vec<(At, Norms)>, Option<Stop>), Broken> {
+    let mut rows = Vec::new();
+    let take = |line: Line, fields: &[Field]| {
+        let &[
+            step,
+            increment,
+            attempt,
+            iteration,
+            elements,
+            ref percent @ ..,
+        ] = fields
+        else {
+            return Err(line.ends_early(short(fields.len())));
+        };
+        let &[residual, correction, flux, temperature] = percent else {
+            return Err(line.ends_early(short(fields.len())));
+        };
+        let at = At {
+            step: step.whole_number("step")?,
+            increment: increment.whole_number("increment")?,
+            attempt: attempt.whole_number("attempt")?,
+            iteration: iteration.whole_number("iteration")?,
+        };
+        let norms = Norms {
+            elements: elements.whole_number("number of contact elements")?,
+            residual: residual.number("residual of the forces")?,
+            correction: correction.number("correction of the displacements")?,
+            flux: flux.number("residual of the flux")?,
+            temperature: temperature.number("correction of the temperatures")?,
+        };
+        rows.push((at, norms));
+        Ok(())
+    };
+    // The nought in its title is CalculiX's own.
+    let stop = table(from, "SUMMARY OF C0NVERGENCE INFORMATION", ".cvg", take)?;
+    Ok((rows, stop))
+}
+
+fn short(count: usize) -> String {
+    format!("a row has 9 columns, and here are {count}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CVG: &str = "SUMMARY OF C0NVERGENCE INFORMATION
+  STEP   INC  ATT   ITER     CONT.   RESID.        CORR.      RESID.      CORR.
+                              EL.    FORCE         DISP       FLUX        TEMP.
+                              (#)     (%)           (%)        (%)         (%)
+     1     1     1     1        1  0.2500E+03  0.1000E+03  0.0000E+00  0.0000E+00
+     2     1     5     7       12  0.1140E+04  0.9987-101         NaN  0.0000E+00
+";
+
+    #[test]
+    fn iterations_with_their_numbers() {
+        let (rows, stop) = read(CVG.as_bytes()).unwrap();
+        assert_eq!((rows.len(), stop), (2, None));
+        let (at, norms) = rows[1];
+        assert_eq!(
+            (at.step, at.increment, at.attempt, at.iteration),
+            (2, 1, 5, 7)
+        );
+        assert_eq!(
+            (norms.elements, norms.residual, norms.correction),
+            (12, 1140.0, 0.9987e-101)
+        );
+        assert!(norms.flux.is_nan());
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_and_what_breaks_off_is_read_up_to_there() {
+        let (rows, stop) = read(&CVG.as_bytes()[..CVG.len() - 1]).unwrap();
+        assert_eq!((rows.len(), stop), (1, Some(Stop::Cut(6))));
+        let row = |text: &str| read(format!("{CVG}{text}\n").as_bytes()).unwrap_err().at;
+        assert_eq!(row(" 1 1 1 1 1 0. 0. 0."), Some((7, 20)));
+        assert_eq!(row(" 1 1 1 -1 1 0. 0. 0. 0."), Some((7, 8)));
+        assert_eq!(row(" 1 1 1 1 1 0. x 0. 0."), Some((7, 15)));
+    }
+}

@@ -1,0 +1,272 @@
+//! Lines of a file that may be as long as a disk, one at a time, and the fields in them.
+//!
+//! Fields are parted by blanks and commas. Numbers stand as Fortran writes them: `0.1000-100` is 1e-101, and `****` is a
+//! number that has no room.
+
+use super::Stop;
+use crate::broken::Broken;
+use std::io::{BufRead, Read};
+
+/// Most bytes of a line; the longest that CalculiX writes has 160.
+const MOST: usize = 4096;
+
+/// The lines of a file.
+pub(super) struct Lines<R> {
+    from: R,
+    bytes: Vec<u8>,
+    number: usize,
+}
+
+/// A line.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line<'a> {
+    /// Its number, from 1.
+    pub number: usize,
+    /// What stands in it, without its end.
+    pub bytes: &'a [u8],
+    /// Whether it has an end; only the last one may have none.
+    pub whole: bool,
+}
+
+impl<R: BufRead> Lines<R> {
+    pub fn new(from: R) -> Self {
+        Lines {
+            from,
+            bytes: Vec::new(),
+            number: 0,
+        }
+    }
+
+    /// The next line; `None` at the end of the file.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is longer than any line of such a file.
+    pub fn next(&mut self) -> Result<Option<Line<'_>>, Broken> {
+        self.bytes.clear();
+        self.number += 1;
+        let most = MOST as u64 + 1;
+        let read = self
+            .from
+            .by_ref()
+            .take(most)
+            .read_until(b'\n', &mut self.bytes);
+        read.map_err(|error| Broken::at(self.number, 1, format!("it cannot be read on: {error}")))?;
+        if self.bytes.is_empty() {
+            return Ok(None);
+        }
+        let whole = self.bytes.last() == Some(&b'\n');
+        if !whole && self.bytes.len() > MOST {
+            let message = format!("a line of more than {MOST} bytes; CalculiX writes none");
+            return Err(Broken::at(self.number, 1, message));
+        }
+        let end = self.bytes.len() - usize::from(whole);
+        let bytes = &self.bytes[..end];
+        Ok(Some(Line {
+            number: self.number,
+            bytes: bytes.strip_suffix(b"\r").unwrap_or(bytes),
+            whole,
+        }))
+    }
+}
+
+/// A field of a line: where it begins, from 1, and what stands there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Field<'a> {
+    line: Line<'a>,
+    start: usize,
+    /// What stands there.
+    pub bytes: &'a [u8],
+}
+
+impl<'a> Line<'a> {
+    /// The fields, without those that are empty.
+    pub fn fields(self) -> impl Iterator<Item = Field<'a>> {
+        let parts = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
+        let mut start = 0;
+        std::iter::from_fn(move || {
+            start += self.bytes[start..].iter().position(|byte| !parts(byte))?;
+            let rest = &self.bytes[start..];
+            let length = rest.iter().position(parts).unwrap_or(rest.len());
+            let field = Field {
+                line: self,
+                start,
+                bytes: &rest[..length],
+            };
+            start += length;
+            Some(field)
+        })
+    }
+
+    /// Something wrong behind a byte of the line.
+    pub fn wrong(self, byte: usize, message: impl Into<String>) -> Broken {
+        let before = String::from_utf8_lossy(&self.bytes[..byte.min(self.bytes.len())]);
+        Broken::at(self.number, 1 + before.chars().count(), message)
+    }
+
+    /// Something missing at the end of the line.
+    pub fn ends_early(self, message: impl Into<String>) -> Broken {
+        self.wrong(self.bytes.len(), message)
+    }
+}
+
+impl Field<'_> {
+    /// The field without what it ends with, if it does.
+    pub fn without(self, end: &[u8]) -> Self {
+        Field {
+            bytes: self.bytes.strip_suffix(end).unwrap_or(self.bytes),
+            ..self
+        }
+    }
+
+    /// Something wrong with the field.
+    pub fn wrong(self, message: impl Into<String>) -> Broken {
+        self.line.wrong(self.start, message)
+    }
+
+    /// As it is shown in a message.
+    fn shown(self) -> String {
+        const MOST: usize = 20;
+        let text = String::from_utf8_lossy(self.bytes);
+        text.chars()
+            .filter(|c| !c.is_control())
+            .take(MOST)
+            .collect()
+    }
+
+    /// Whether this is a number that had no room.
+    pub fn overflows(self) -> bool {
+        !self.bytes.is_empty() && self.bytes.iter().all(|byte| *byte == b'*')
+    }
+
+    /// The field as a whole number; `what` tells which.
+    pub fn whole_number(self, what: &str) -> Result<u32, Broken> {
+        let text = std::str::from_utf8(self.bytes).ok();
+        let plain = text.filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
+        let number = plain.and_then(|text| text.parse().ok());
+        number.ok_or_else(|| {
+            let shown = self.shown();
+            self.wrong(format!(
+                "'{shown}' stands where the {what} should, a whole number"
+            ))
+        })
+    }
+
+    /// The field as a number; `what` tells which.
+    pub fn number(self, what: &str) -> Result<f64, Broken> {
+        let text = std::str::from_utf8(self.bytes).ok();
+        text.and_then(fortran).ok_or_else(|| {
+            let shown = self.shown();
+            self.wrong(format!(
+                "'{shown}' stands where the {what} should, a number"
+            ))
+        })
+    }
+}
+
+/// Reads a table: a title, headings, and below them rows that begin with a whole number. Returns where it breaks off, if it
+/// does; what is behind a number that has no room is not read.
+///
+/// # Errors
+/// If the first line does not begin with the title, or a row is refused.
+pub(super) fn table(
+    from: impl BufRead,
+    title: &str,
+    what: &str,
+    mut take: impl FnMut(Line, &[Field]) -> Result<(), Broken>,
+) -> Result<Option<Stop>, Broken> {
+    let mut lines = Lines::new(from);
+    let mut headings = true;
+    while let Some(line) = lines.next()? {
+        if !line.whole {
+            return Ok(Some(Stop::Cut(line.number)));
+        }
+        if line.number == 1 && !line.bytes.trim_ascii_start().starts_with(title.as_bytes()) {
+            let message = format!("this is no {what} of CalculiX: it should begin with '{title}'");
+            return Err(line.wrong(0, message));
+        }
+        let fields: Vec<Field> = line.fields().collect();
+        let Some(first) = fields.first() else {
+            continue;
+        };
+        headings &= !first.overflows() && !first.bytes.iter().all(u8::is_ascii_digit);
+        if headings {
+            continue;
+        }
+        if fields.iter().any(|field| field.overflows()) {
+            return Ok(Some(Stop::NoRoom(line.number)));
+        }
+        take(line, &fields)?;
+    }
+    Ok(None)
+}
+
+/// A number as Fortran writes it: the letter before an exponent of three digits is left out.
+fn fortran(text: &str) -> Option<f64> {
+    if let Ok(number) = text.parse() {
+        return Some(number);
+    }
+    let sign = text.rfind(['+', '-']).filter(|at| *at > 0)?;
+    let (mantissa, exponent) = text.split_at(sign);
+    let digits = exponent[1..].bytes().all(|byte| byte.is_ascii_digit());
+    let plain = mantissa.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+    (digits && plain).then(|| format!("{mantissa}e{exponent}").parse().ok())?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_as_fortran_writes_them() {
+        for (text, number) in [
+            ("0.1140E+04", Some(1140.0)),
+            ("-0.5000-100", Some(-0.5e-100)),
+            ("0.1000+101", Some(0.1e101)),
+            ("+1", Some(1.0)),
+            ("Infinity", Some(f64::INFINITY)),
+            ("1-", None),
+            ("1--2", None),
+            ("-", None),
+            ("1e-x", None),
+        ] {
+            let read = fortran(text);
+            // An exponent without digits is none.
+            assert_eq!(read, number, "{text}");
+        }
+        assert!(fortran("NaN").is_some_and(f64::is_nan));
+    }
+
+    #[test]
+    fn fields_know_their_columns_in_characters() {
+        let text = " 12 ,ü, x".as_bytes();
+        let line = Line {
+            number: 3,
+            bytes: text,
+            whole: true,
+        };
+        let fields: Vec<Field> = line.fields().collect();
+        assert_eq!(fields.len(), 3);
+        let wrong = fields[2].whole_number("node").unwrap_err();
+        assert_eq!(wrong.at, Some((3, 9)));
+        assert_eq!(
+            wrong.message,
+            "'x' stands where the node should, a whole number"
+        );
+        assert_eq!(line.ends_early("").at, Some((3, 10)));
+    }
+
+    #[test]
+    fn a_line_without_an_end_is_told_and_an_endless_one_refused() {
+        let mut lines = Lines::new(&b"a\r\nbc"[..]);
+        let first = lines.next().unwrap().unwrap();
+        assert_eq!((first.bytes, first.whole), (&b"a"[..], true));
+        let second = lines.next().unwrap().unwrap();
+        assert_eq!((second.bytes, second.whole), (&b"bc"[..], false));
+        assert!(lines.next().unwrap().is_none());
+        let endless = std::io::repeat(b'x');
+        let refused = Lines::new(std::io::BufReader::new(endless))
+            .next()
+            .unwrap_err();
+        assert_eq!(refused.at, Some((1, 1)));
+    }
+}

@@ -1,0 +1,453 @@
+//! A run that is over, from its .cel and what lies beside it: attempts at increments, and their iterations.
+//!
+//! The .cel alone does not tell iterations without contact elements, residuals, and how the last attempt ended. Stick and slip
+//! are in none of the three files.
+
+use super::Stop;
+use super::cel::{At, Closed, ContactElements, Slave};
+use super::cvg::Norms;
+use super::sta::Ended;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A run that is over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PastRun {
+    /// Every slave node and face that was ever in contact.
+    pub slaves: Vec<Slave>,
+    /// Every master face that was ever touched: its corners.
+    pub masters: Vec<[u32; 4]>,
+    /// The attempts, one after the other; none of them is without an iteration and a row of the .sta.
+    pub attempts: Vec<Attempt>,
+    /// The iterations of all attempts, one after the other.
+    pub iterations: Vec<Iteration>,
+    /// Who is in contact, iteration after iteration, in each ascending by slave and master.
+    pub closed: Vec<Closed>,
+    /// Where the .cel breaks off.
+    pub cel: Option<Stop>,
+    /// The .sta.
+    pub sta: Beside,
+    /// The .cvg.
+    pub cvg: Beside,
+    /// Iterations of which .cel and .cvg tell different numbers of contact elements: the first, and how many.
+    pub differs: Option<(At, usize)>,
+}
+
+/// A file that lies beside the .cel, or should.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beside {
+    /// It is not there.
+    Missing,
+    /// It was read, to its end or up to there.
+    Read(Option<Stop>),
+}
+
+/// An attempt at an increment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attempt {
+    /// Step, from 1.
+    pub step: u32,
+    /// Increment of the step, from 1.
+    pub increment: u32,
+    /// Attempt, from 1.
+    pub attempt: u32,
+    /// How it ended.
+    pub end: End,
+    /// Its row of the .sta.
+    pub row: Option<Ended>,
+    /// Its part of [`PastRun::iterations`]; empty where no file but the .sta tells of it.
+    pub iterations: Range<usize>,
+}
+
+/// How an attempt ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The increment converged.
+    Converged,
+    /// It did not; where another attempt follows, with a smaller increment.
+    NotConverged,
+    /// No file tells: the run was stopped there, or is at it still.
+    Unknown,
+}
+
+/// An iteration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Iteration {
+    /// Its number in the attempt, from 1.
+    pub number: u32,
+    /// Its part of [`PastRun::closed`]; `None` where the .cvg counts contact elements that the .cel does not have.
+    pub closed: Option<Range<usize>>,
+    /// Whether it kept the contact elements of the iteration before: node-to-surface contact holds them fixed after iteration 8
+    /// of an attempt, with SMALL SLIDING after the first (CalculiX's nonlingeo.c), and then they do not stand in the .cel. The
+    /// .cvg counts as many.
+    pub kept: bool,
+    /// Its row of the .cvg.
+    pub norms: Option<Norms>,
+}
+
+/// What a table beside the .cel holds, and where it breaks off.
+type Table<T> = (Vec<T>, Option<Stop>);
+
+impl PastRun {
+    /// Puts together what was read; `None` for a file that is missing.
+    pub fn new(
+        cel: ContactElements,
+        sta: Option<Table<Ended>>,
+        cvg: Option<Table<(At, Norms)>>,
+    ) -> PastRun {
+        let beside = |stop: Option<Option<Stop>>| stop.map_or(Beside::Missing, Beside::Read);
+        let mut run = PastRun {
+            slaves: cel.slaves,
+            masters: cel.masters,
+            attempts: Vec::new(),
+            iterations: Vec::new(),
+            closed: cel.closed,
+            cel: cel.stop,
+            sta: beside(sta.as_ref().map(|table| table.1)),
+            cvg: beside(cvg.as_ref().map(|table| table.1)),
+            differs: None,
+        };
+        let mut all: BTreeMap<At, (Option<Range<usize>>, Option<Norms>)> = BTreeMap::new();
+        for (at, closed) in cel.iterations {
+            all.entry(at).or_default().0 = Some(closed);
+        }
+        for (at, norms) in cvg.into_iter().flat_map(|table| table.0) {
+            all.entry(at).or_default().1 = Some(norms);
+        }
+        let rows = sta.into_iter().flat_map(|table| table.0);
+        let rows = rows.map(|row| ((row.step, row.increment, row.attempt), row));
+        let mut rows: BTreeMap<(u32, u32, u32), Ended> = rows.collect();
+        for (at, (closed, norms)) in all {
+            let key = (at.step, at.increment, at.attempt);
+            run.add_rows_before(&mut rows, key);
+            let last = run.attempts.last().map(Attempt::key);
+            if last != Some(key) {
+                let row = rows.remove(&key);
+                run.begin(key, row);
+            }
+            run.differs = run.told_differently(at, closed.as_ref(), norms.as_ref());
+            run.add(at.iteration, closed, norms);
+            if let Some(attempt) = run.attempts.last_mut() {
+                attempt.iterations.end = run.iterations.len();
+            }
+        }
+        while let Some((key, row)) = rows.pop_first() {
+            run.begin(key, Some(row));
+        }
+        run.end_attempts();
+        run
+    }
+
+    /// Who is in contact in an iteration; `None` where no file tells.
+    pub fn closed(&self, iteration: usize) -> Option<&[Closed]> {
+        let range = self.iterations.get(iteration)?.closed.clone()?;
+        self.closed.get(range)
+    }
+
+    /// An iteration of the last attempt. One that has no contact element does not stand in the .cel, nor does one that kept
+    /// those before it: the .cvg tells which.
+    fn add(&mut self, number: u32, listed: Option<Range<usize>>, norms: Option<Norms>) {
+        let counted = norms
+            .filter(|_| listed.is_none())
+            .map(|norms| norms.elements);
+        let none = counted.filter(|count| *count == 0).map(|_| 0..0);
+        let before = self.before().filter(|before| {
+            let count = self.elements(before);
+            counted.is_some_and(|counted| u64::from(counted) == count)
+        });
+        let kept = listed.is_none() && none.is_none() && before.is_some();
+        self.iterations.push(Iteration {
+            number,
+            closed: listed.or(none).or(before),
+            kept,
+            norms,
+        });
+    }
+
+    /// The part of the iteration before the next one, in the same attempt.
+    fn before(&self) -> Option<Range<usize>> {
+        let attempt = self
+            .attempts
+            .last()
+            .filter(|last| !last.iterations.is_empty())?;
+        self.iterations
+            .get(attempt.iterations.end - 1)?
+            .closed
+            .clone()
+    }
+
+    /// Number of contact elements in a part.
+    fn elements(&self, part: &Range<usize>) -> u64 {
+        let closed = self.closed[part.clone()].iter();
+        closed.map(|closed| u64::from(closed.elements)).sum()
+    }
+
+    /// Iterations that are told differently, with the next one.
+    fn told_differently(
+        &self,
+        at: At,
+        listed: Option<&Range<usize>>,
+        norms: Option<&Norms>,
+    ) -> Option<(At, usize)> {
+        let counted = norms.map(|norms| u64::from(norms.elements));
+        let listed = listed.map(|part| self.elements(part));
+        let kept = self.before().map(|before| self.elements(&before));
+        let fits = |counted: u64| match listed {
+            Some(listed) => listed == counted,
+            None => counted == 0 || kept == Some(counted),
+        };
+        match (counted.is_none_or(fits), self.differs) {
+            (true, before) => before,
+            (false, None) => Some((at, 1)),
+            (false, Some((first, count))) => Some((first, count + 1)),
+        }
+    }
+
+    /// Attempts of which nothing but a row of the .sta tells.
+    fn add_rows_before(
+        &mut self,
+        rows: &mut BTreeMap<(u32, u32, u32), Ended>,
+        key: (u32, u32, u32),
+    ) {
+        while let Some(first) = rows.first_entry().filter(|first| *first.key() < key) {
+            let (key, row) = first.remove_entry();
+            self.begin(key, Some(row));
+        }
+    }
+
+    fn begin(&mut self, (step, increment, attempt): (u32, u32, u32), row: Option<Ended>) {
+        let here = self.iterations.len();
+        self.attempts.push(Attempt {
+            step,
+            increment,
+            attempt,
+            end: End::Unknown,
+            row,
+            iterations: here..here,
+        });
+    }
+
+    /// How each attempt ended: as its row tells, or by what follows it.
+    fn end_attempts(&mut self) {
+        for k in 0..self.attempts.len() {
+            let (step, increment, _) = self.attempts[k].key();
+            let next = self.attempts.get(k + 1).map(Attempt::key);
+            let followed = match next {
+                Some((s, i, _)) if (s, i) == (step, increment) => End::NotConverged,
+                Some(_) => End::Converged,
+                None => End::Unknown,
+            };
+            let attempt = &mut self.attempts[k];
+            attempt.end = match attempt.row.map(|row| row.converged) {
+                Some(true) => End::Converged,
+                Some(false) => End::NotConverged,
+                None => followed,
+            };
+        }
+    }
+}
+
+impl Attempt {
+    fn key(&self) -> (u32, u32, u32) {
+        (self.step, self.increment, self.attempt)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::broken::Broken;
+    use crate::calculix::{cel, cvg, sta};
+    use proptest::prelude::*;
+
+    fn element(increment: u32, attempt: u32, iteration: u32, slave: u32) -> String {
+        format!(
+            "*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in{increment}_at{attempt}_it{iteration}\n 1 , 1 , 2 , 3 , {slave}\n"
+        )
+    }
+
+    fn norms(increment: u32, attempt: u32, iteration: u32, elements: u32) -> String {
+        format!(" 1 {increment} {attempt} {iteration} {elements} 0.1E+01 0.2E+01 0. 0.\n")
+    }
+
+    /// An increment that is cut once, in whose second iteration nothing touches, and one that the run was killed in.
+    fn files() -> [String; 3] {
+        let cel = [(1, 1, 1), (1, 1, 3), (1, 2, 1), (2, 1, 1)];
+        let cel = cel.map(|(i, a, k)| element(i, a, k, 9)).concat();
+        let cvg = [(1, 1, 1, 1), (1, 1, 2, 0), (1, 1, 3, 1), (1, 2, 1, 1)];
+        let cvg = cvg.map(|(i, a, k, n)| norms(i, a, k, n)).concat();
+        let cvg = format!("SUMMARY OF C0NVERGENCE INFORMATION\n  STEP\n{cvg}");
+        let sta =
+            "SUMMARY OF JOB INFORMATION\n  STEP\n 1 1 1U 3 0. 0. 1.\n 1 1 2 1 0.25 0.25 0.25\n"
+                .to_owned();
+        [cel, sta, cvg]
+    }
+
+    fn read(cel: &[u8], sta: Option<&[u8]>, cvg: Option<&[u8]>) -> Result<PastRun, Broken> {
+        let cel = cel::read(cel)?;
+        let sta = sta.map(sta::read).transpose()?;
+        let cvg = cvg.map(cvg::read).transpose()?;
+        Ok(PastRun::new(cel, sta, cvg))
+    }
+
+    #[test]
+    fn three_files_make_attempts_and_iterations() {
+        let [cel, sta, cvg] = files();
+        let run = read(cel.as_bytes(), Some(sta.as_bytes()), Some(cvg.as_bytes())).unwrap();
+        let ends: Vec<_> = run
+            .attempts
+            .iter()
+            .map(|a| (a.increment, a.attempt, a.end))
+            .collect();
+        assert_eq!(
+            ends,
+            [
+                (1, 1, End::NotConverged),
+                (1, 2, End::Converged),
+                (2, 1, End::Unknown)
+            ]
+        );
+        let closed: Vec<_> = (0..5).map(|k| run.closed(k).map(<[Closed]>::len)).collect();
+        assert_eq!(closed, [Some(1), Some(0), Some(1), Some(1), Some(1)]);
+        assert_eq!(run.iterations[4].norms, None);
+        assert_eq!(run.attempts[0].iterations, 0..3);
+        assert_eq!(run.differs, None);
+    }
+
+    #[test]
+    fn without_the_others_the_cel_tells_what_it_has() {
+        let [cel, ..] = files();
+        let run = read(cel.as_bytes(), None, None).unwrap();
+        assert_eq!((run.sta, run.cvg), (Beside::Missing, Beside::Missing));
+        let ends: Vec<_> = run.attempts.iter().map(|attempt| attempt.end).collect();
+        assert_eq!(ends, [End::NotConverged, End::Converged, End::Unknown]);
+        let numbers: Vec<_> = run
+            .iterations
+            .iter()
+            .map(|iteration| iteration.number)
+            .collect();
+        assert_eq!(numbers, [1, 3, 1, 1]);
+    }
+
+    #[test]
+    fn files_of_different_runs_are_told_and_what_no_file_tells_is_not_invented() {
+        let [cel, _, cvg] = files();
+        let cvg = cvg.replace(" 1 1 1 2 0 ", " 1 1 1 2 4 ");
+        let run = read(cel.as_bytes(), None, Some(cvg.as_bytes())).unwrap();
+        let (first, count) = run.differs.unwrap();
+        assert_eq!((first.iteration, count), (2, 1));
+        assert_eq!(run.closed(1), None);
+    }
+
+    #[test]
+    fn contact_elements_that_calculix_held_fixed_are_those_of_the_iteration_before() {
+        let cel = element(1, 1, 8, 9) + &element(1, 1, 8, 7) + &element(1, 2, 1, 9);
+        let rows = [(1, 8, 2), (1, 9, 2), (1, 10, 3), (2, 1, 1)];
+        let rows = rows
+            .map(|(attempt, k, count)| norms(1, attempt, k, count))
+            .concat();
+        let cvg = format!("SUMMARY OF C0NVERGENCE INFORMATION\n{rows}");
+        let run = read(cel.as_bytes(), None, Some(cvg.as_bytes())).unwrap();
+        let told: Vec<_> = (0..4)
+            .map(|k| (run.closed(k).map(<[Closed]>::len), run.iterations[k].kept))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (Some(2), false),
+                (Some(2), true),
+                (None, false),
+                (Some(1), false)
+            ]
+        );
+        assert_eq!(run.differs.unwrap().0.iteration, 10);
+    }
+
+    #[test]
+    fn attempts_of_which_only_the_sta_tells_are_there_too() {
+        let [cel, sta, _] = files();
+        let sta = format!("{sta} 2 1 1U 9 0. 0. 1.\n");
+        let run = read(cel.as_bytes(), Some(sta.as_bytes()), None).unwrap();
+        let last = run.attempts.last().unwrap();
+        assert_eq!(
+            (last.step, last.end, last.iterations.len()),
+            (2, End::NotConverged, 0)
+        );
+    }
+
+    /// What every run must keep, whatever the files hold.
+    fn holds(run: &PastRun) -> Result<(), TestCaseError> {
+        let mut end = 0;
+        for attempt in &run.attempts {
+            prop_assert_eq!(attempt.iterations.start, end);
+            end = attempt.iterations.end;
+        }
+        prop_assert_eq!(end, run.iterations.len());
+        for k in 0..run.iterations.len() {
+            for closed in run.closed(k).unwrap_or_default() {
+                prop_assert!((closed.slave as usize) < run.slaves.len());
+                prop_assert!((closed.master as usize) < run.masters.len());
+                prop_assert!(closed.elements > 0);
+            }
+        }
+        Ok(())
+    }
+
+    /// What is wrong is told with a line and a column of the file.
+    fn told(broken: &Broken, files: [&[u8]; 3]) -> Result<(), TestCaseError> {
+        let (line, column) = broken.at.expect("a place");
+        let lines = files.map(|file| file.split(|byte| *byte == b'\n').count());
+        prop_assert!(line >= 1 && column >= 1 && lines.iter().any(|count| line <= *count));
+        prop_assert!(!broken.message.is_empty());
+        Ok(())
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(files in prop::array::uniform3(prop::collection::vec(any::<u8>(), 0..300))) {
+            let [cel, sta, cvg] = files.each_ref().map(Vec::as_slice);
+            match read(cel, Some(sta), Some(cvg)) {
+                Ok(run) => holds(&run)?,
+                Err(broken) => told(&broken, [cel, sta, cvg])?,
+            }
+        }
+
+        #[test]
+        fn no_change_of_a_sound_file_makes_it_panic(
+            changes in prop::collection::vec((0..3_usize, any::<prop::sample::Index>(), 0..3_u8, any::<u8>()), 1..8),
+            short in prop::option::of((0..3_usize, any::<prop::sample::Index>())),
+        ) {
+            let mut files = files().map(String::into_bytes);
+            for (file, at, what, byte) in changes {
+                let bytes = &mut files[file];
+                let at = at.index(bytes.len());
+                match what {
+                    0 => bytes[at] = byte,
+                    1 => bytes.insert(at, byte),
+                    _ => drop(bytes.remove(at)),
+                }
+            }
+            if let Some((file, at)) = short {
+                let at = at.index(files[file].len());
+                files[file].truncate(at);
+            }
+            let [cel, sta, cvg] = files.each_ref().map(Vec::as_slice);
+            match read(cel, Some(sta), Some(cvg)) {
+                Ok(run) => holds(&run)?,
+                Err(broken) => told(&broken, [cel, sta, cvg])?,
+            }
+        }
+
+        #[test]
+        fn a_run_that_was_killed_anywhere_is_read_up_to_there(at in prop::array::uniform3(any::<prop::sample::Index>())) {
+            let files = files();
+            let whole = read(files[0].as_bytes(), Some(files[1].as_bytes()), Some(files[2].as_bytes())).unwrap();
+            let cut = |k: usize| &files[k].as_bytes()[..at[k].index(files[k].len() + 1)];
+            let run = read(cut(0), Some(cut(1)), Some(cut(2))).unwrap();
+            holds(&run)?;
+            // No iteration is told that there was not.
+            prop_assert!(run.iterations.len() <= whole.iterations.len());
+            prop_assert!(run.attempts.iter().all(|a| whole.attempts.iter().any(|b| a.key() == b.key())));
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! Cards: a keyword with its parameters, and the lines of data that follow it.
+//!
+//! ```text
+//! ** a comment
+//! *NODE PRINT, NSET=TOP, TOTALS=ONLY
+//! U, RF
+//! ```
+//!
+//! Upper and lower case are the same, and so are words with and without blanks in them, as CalculiX reads them. The
+//! parameters go on in the next line where a line of them ends with a comma.
+
+use super::source::{Fault, Line, Place, plain};
+
+/// A keyword with all that belongs to it.
+#[derive(Debug)]
+pub(super) struct Card<'t> {
+    /// In capitals, without the star and without blanks.
+    pub key: String,
+    /// As it is written, without the star.
+    pub shown: String,
+    pub place: Place,
+    parameters: Vec<Parameter>,
+    pub lines: Vec<Line<'t>>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Parameter {
+    /// In capitals, without blanks.
+    pub name: String,
+    /// In capitals, without blanks and quotes.
+    pub value: Option<String>,
+    pub place: Place,
+}
+
+/// A word of a line of data.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell<'t> {
+    pub text: &'t str,
+    line: Line<'t>,
+    byte: usize,
+}
+
+/// The cards of a deck.
+pub(super) fn cards<'t>(lines: impl Iterator<Item = Line<'t>>) -> Result<Vec<Card<'t>>, Fault> {
+    let mut cards: Vec<Card<'t>> = Vec::new();
+    let mut open = false;
+    for line in lines {
+        if line.is_nothing() {
+            continue;
+        }
+        match cards.last_mut() {
+            _ if line.is_keyword() => {
+                let (card, goes_on) = Card::begin(line)?;
+                cards.push(card);
+                open = goes_on;
+            }
+            Some(card) if open => {
+                let parameters;
+                (parameters, open) = parameters_of(line, 0)?;
+                card.parameters.extend(parameters);
+            }
+            Some(card) => card.lines.push(line),
+            None => {
+                return Err(Fault::new(
+                    line.place(0),
+                    "data stand before the first keyword; a deck begins with one, as *HEADING or *NODE",
+                ));
+            }
+        }
+    }
+    Ok(cards)
+}
+
+impl<'t> Card<'t> {
+    /// A card without its data, and whether its parameters go on in the next line.
+    fn begin(line: Line<'t>) -> Result<(Card<'t>, bool), Fault> {
+        let star = line.text.find('*').unwrap_or(0);
+        let end = line.text.find(',').unwrap_or(line.text.len());
+        let word = line.text.get(star + 1..end).unwrap_or_default().trim();
+        let key = plain(word);
+        let place = line.place(star);
+        if key.is_empty() {
+            return Err(Fault::new(
+                place,
+                "a keyword should follow the star; a comment has two",
+            ));
+        }
+        let (parameters, open) = match end < line.text.len() {
+            true => parameters_of(line, end + 1)?,
+            false => (Vec::new(), false),
+        };
+        let card = Card {
+            shown: short(&word.to_uppercase()),
+            key,
+            place,
+            parameters,
+            lines: Vec::new(),
+        };
+        Ok((card, open))
+    }
+
+    /// What is wrong with it.
+    pub fn wrong(&self, message: impl std::fmt::Display) -> Fault {
+        Fault::new(self.place, format!("*{}: {message}", self.shown))
+    }
+
+    /// Refuses parameters other than these.
+    pub fn only(&self, known: &[&str]) -> Result<(), Fault> {
+        for parameter in &self.parameters {
+            if !known.contains(&parameter.name.as_str()) {
+                let list = match known {
+                    [] => "it has none that can be read".to_owned(),
+                    _ => format!("those that can be read are {}", known.join(", ")),
+                };
+                let name = short(&parameter.name);
+                let message = format!(
+                    "*{}: the parameter {name} cannot be read; {list}",
+                    self.shown
+                );
+                return Err(Fault::new(parameter.place, message));
+            }
+        }
+        Ok(())
+    }
+
+    pub fn parameter(&self, name: &str) -> Option<&Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+
+    pub fn has(&self, name: &str) -> bool {
+        self.parameter(name).is_some()
+    }
+
+    /// The value of a parameter, where there is one.
+    pub fn value(&self, name: &str) -> Result<Option<&str>, Fault> {
+        let Some(parameter) = self.parameter(name) else {
+            return Ok(None);
+        };
+        match parameter.value.as_deref() {
+            Some(value) if !value.is_empty() => Ok(Some(value)),
+            _ => Err(Fault::new(
+                parameter.place,
+                format!(
+                    "*{}: {name} has no value; it must be {name}=...",
+                    self.shown
+                ),
+            )),
+        }
+    }
+
+    pub fn required(&self, name: &str) -> Result<&str, Fault> {
+        self.value(name)?
+            .ok_or_else(|| self.wrong(format!("the parameter {name}=... is missing")))
+    }
+
+    /// What a parameter chooses among words; the first one where it is missing.
+    pub fn choice(&self, name: &str, words: &[&str]) -> Result<usize, Fault> {
+        let Some(value) = self.value(name)? else {
+            return Ok(0);
+        };
+        let found = words.iter().position(|word| plain(word) == value);
+        found.ok_or_else(|| {
+            let place = self.parameter(name).map_or(self.place, |p| p.place);
+            let message = format!(
+                "*{}: {name}={} cannot be read; it must be {}",
+                self.shown,
+                short(value),
+                words.join(" or ")
+            );
+            Fault::new(place, message)
+        })
+    }
+
+    /// Where a parameter stands.
+    pub fn place_of(&self, name: &str) -> Place {
+        self.parameter(name).map_or(self.place, |p| p.place)
+    }
+
+    /// The only line of data.
+    pub fn one_line(&self, what: &str) -> Result<Vec<Cell<'t>>, Fault> {
+        match self.lines.as_slice() {
+            [line] => Ok(cells(*line)),
+            [] => Err(self.wrong(format!("a line with {what} should follow"))),
+            [_, more, ..] => Err(Fault::new(
+                more.place(0),
+                format!(
+                    "*{}: a second line of data cannot be read; one with {what} is right",
+                    self.shown
+                ),
+            )),
+        }
+    }
+
+    /// Refuses lines of data.
+    pub fn no_lines(&self) -> Result<(), Fault> {
+        match self.lines.first() {
+            None => Ok(()),
+            Some(line) => Err(Fault::new(
+                line.place(0),
+                format!("*{} has no data; a keyword should stand here", self.shown),
+            )),
+        }
+    }
+
+    /// The words of all lines.
+    pub fn cells(&self) -> impl Iterator<Item = Cell<'t>> {
+        self.lines.iter().flat_map(|line| cells(*line))
+    }
+}
+
+fn parameters_of(line: Line<'_>, from: usize) -> Result<(Vec<Parameter>, bool), Fault> {
+    let mut parameters = Vec::new();
+    let mut open = true;
+    let mut byte = from;
+    for part in line.text.get(from..).unwrap_or_default().split(',') {
+        let blanks = part.len() - part.trim_start().len();
+        let place = line.place(byte + blanks);
+        byte += part.len() + 1;
+        open = part.trim().is_empty();
+        if open {
+            continue;
+        }
+        let (name, value) = match part.split_once('=') {
+            Some((name, value)) => (name, Some(plain(value))),
+            None => (part, None),
+        };
+        let name = plain(name);
+        if name.is_empty() {
+            return Err(Fault::new(
+                place,
+                "a parameter has no name before its \"=\"",
+            ));
+        }
+        parameters.push(Parameter { name, value, place });
+    }
+    Ok((parameters, open))
+}
+
+/// The words of a line; what follows the last comma counts only if it is there.
+pub(super) fn cells(line: Line<'_>) -> Vec<Cell<'_>> {
+    let mut found = Vec::new();
+    let mut byte = 0;
+    for part in line.text.split(',') {
+        let blanks = part.len() - part.trim_start().len();
+        found.push(Cell {
+            text: part.trim(),
+            line,
+            byte: byte + blanks,
+        });
+        byte += part.len() + 1;
+    }
+    if found.last().is_some_and(|cell| cell.text.is_empty()) {
+        found.pop();
+    }
+    found
+}
+
+impl Cell<'_> {
+    pub fn place(&self) -> Place {
+        self.line.place(self.byte)
+    }
+
+    pub fn wrong(&self, message: impl Into<String>) -> Fault {
+        Fault::new(self.place(), message)
+    }
+
+    /// A number; Fortran's exponents with D too.
+    pub fn number(&self, what: &str) -> Result<f64, Fault> {
+        let read = self.text.parse().ok().or_else(|| {
+            let fortran: String = self.text.replace(['d', 'D'], "e");
+            fortran.parse().ok()
+        });
+        read.filter(|value: &f64| value.is_finite()).ok_or_else(|| {
+            self.wrong(format!(
+                "{:?} stands where {what}, a number, should",
+                short(self.text)
+            ))
+        })
+    }
+
+    /// A whole number that is not negative.
+    pub fn whole(&self, what: &str) -> Result<u64, Fault> {
+        self.text.parse().map_err(|_| {
+            self.wrong(format!(
+                "{:?} stands where {what}, a whole number, should",
+                short(self.text)
+            ))
+        })
+    }
+}
+
+/// The number in a place of a line, 0 if it is left out.
+pub(super) fn number_or_zero(cells: &[Cell<'_>], at: usize, what: &str) -> Result<f64, Fault> {
+    match cells.get(at).filter(|cell| !cell.text.is_empty()) {
+        Some(cell) => cell.number(what),
+        None => Ok(0.0),
+    }
+}
+
+/// A word for a message.
+pub(super) fn short(word: &str) -> String {
+    const MOST: usize = 60;
+    match word.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &word[..end]),
+        None => word.to_owned(),
+    }
+}

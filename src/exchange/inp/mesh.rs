@@ -1,0 +1,503 @@
+//! Nodes, elements, sets and surfaces of a deck.
+
+use super::cards::{Card, Cell, cells, short};
+use super::deck::{Deck, Element, ElementType, Faces, Family, Node, Set, Surface};
+use super::source::{Fault, Place, plain};
+use crate::mesh::CellKind;
+use std::collections::{BTreeMap, HashMap};
+
+/// Most members of all sets and surfaces together, and most loads on nodes and elements of sets: more than any mesh in the
+/// plane calls for, and few enough for any memory.
+const MEMBERS: usize = 20_000_000;
+
+/// Where labels and names of a deck are found.
+#[derive(Debug, Default)]
+pub(super) struct Names {
+    nodes: BTreeMap<u64, usize>,
+    elements: BTreeMap<u64, usize>,
+    node_sets: HashMap<String, usize>,
+    element_sets: HashMap<String, usize>,
+    surfaces: HashMap<String, usize>,
+    members: usize,
+}
+
+impl Names {
+    /// Counts members of sets.
+    pub fn count(&mut self, more: usize, place: Place) -> Result<(), Fault> {
+        self.members += more;
+        match self.members <= MEMBERS {
+            true => Ok(()),
+            false => Err(Fault::new(
+                place,
+                format!("sets, surfaces and loads have more than {MEMBERS} members together"),
+            )),
+        }
+    }
+}
+
+/// Reads a card of the mesh, if it is one.
+pub(super) fn read(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<bool, Fault> {
+    match card.key.as_str() {
+        "NODE" => nodes(card, deck, names)?,
+        "ELEMENT" => elements(card, deck, names)?,
+        "NSET" => set(card, deck, names, Kind::Nodes)?,
+        "ELSET" => set(card, deck, names, Kind::Elements)?,
+        "SURFACE" => surface(card, deck, names)?,
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+fn nodes(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Fault> {
+    card.only(&["NSET"])?;
+    let first = deck.nodes.len();
+    for line in &card.lines {
+        let cells = cells(*line);
+        let Some(label) = cells.first() else {
+            continue;
+        };
+        let number = label.whole("the number of a node")?;
+        let coordinate = |k: usize| super::cards::number_or_zero(&cells, k, "a coordinate");
+        let (x, y, z) = (coordinate(1)?, coordinate(2)?, coordinate(3)?);
+        if let Some(more) = cells.get(4) {
+            return Err(more.wrong("a node has a number and three coordinates; this is one more"));
+        }
+        if z != 0.0 {
+            let at = cells.get(3).map_or(label.place(), Cell::place);
+            return Err(Fault::new(
+                at,
+                format!("node {number} stands at z = {z:?}; only what lies in z = 0 can be read"),
+            ));
+        }
+        let place = label.place();
+        if names.nodes.insert(number, deck.nodes.len()).is_some() {
+            return Err(Fault::new(
+                place,
+                format!("node {number} stands here a second time"),
+            ));
+        }
+        deck.nodes.push(Node {
+            label: number,
+            at: [x, y],
+            place,
+        });
+    }
+    add(
+        card,
+        deck,
+        names,
+        Kind::Nodes,
+        "NSET",
+        (first..deck.nodes.len()).collect(),
+    )
+}
+
+fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Fault> {
+    card.only(&["TYPE", "ELSET"])?;
+    let name = card.required("TYPE")?;
+    let kind = element_type(name).map_err(|why| Fault::new(card.place_of("TYPE"), why))?;
+    let count = kind.cell.nodes();
+    let first = deck.elements.len();
+    let mut lines = card.lines.iter();
+    while let Some(line) = lines.next() {
+        let mut words = cells(*line);
+        let mut last = line;
+        while words.len() <= count
+            && last.text.trim_end().ends_with(',')
+            && let Some(more) = lines.next()
+        {
+            words.extend(cells(*more));
+            last = more;
+        }
+        let Some(label) = words.first() else {
+            continue;
+        };
+        let number = label.whole("the number of an element")?;
+        if words.len() != count + 1 {
+            return Err(label.wrong(format!(
+                "element {number} has {} nodes; one of type {} has {count}",
+                words.len() - 1,
+                short(name)
+            )));
+        }
+        let mut of = Vec::with_capacity(count);
+        for word in &words[1..] {
+            let node = word.whole("the number of a node")?;
+            let known = names.nodes.get(&node).copied();
+            of.push(known.ok_or_else(|| {
+                word.wrong(format!("there is no node {node}; *NODE must stand before"))
+            })?);
+        }
+        let mut sorted = of.clone();
+        sorted.sort_unstable();
+        if sorted.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(label.wrong(format!(
+                "element {number} names a node twice; write it as one with fewer nodes"
+            )));
+        }
+        let place = label.place();
+        if names.elements.insert(number, deck.elements.len()).is_some() {
+            return Err(Fault::new(
+                place,
+                format!("element {number} stands here a second time"),
+            ));
+        }
+        deck.elements.push(Element {
+            label: number,
+            kind,
+            nodes: of,
+            place,
+        });
+    }
+    add(
+        card,
+        deck,
+        names,
+        Kind::Elements,
+        "ELSET",
+        (first..deck.elements.len()).collect(),
+    )
+}
+
+/// A kind of element by its name, or why it cannot be read.
+fn element_type(name: &str) -> Result<ElementType, String> {
+    const RIGHT: &str = "those that can be read are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R";
+    let plane = |family: Family, rest: &str| {
+        let (cell, reduced) = match rest {
+            "3" => (CellKind::Triangle3, false),
+            "4" => (CellKind::Quad4, false),
+            "6" => (CellKind::Triangle6, false),
+            "8" => (CellKind::Quad8, false),
+            "8R" => (CellKind::Quad8, true),
+            "4R" => {
+                let full = name.trim_end_matches('R');
+                return Err(format!(
+                    "{name} is integrated in one point and needs a stiffness against its hourglass modes, which codes choose \
+                     differently; use {full} or, better, {}8R",
+                    full.trim_end_matches('4')
+                ));
+            }
+            _ => {
+                return Err(format!(
+                    "elements of type {} cannot be read; {RIGHT}",
+                    short(name)
+                ));
+            }
+        };
+        Ok(ElementType {
+            family,
+            cell,
+            reduced,
+        })
+    };
+    let beam = |cell| {
+        Ok(ElementType {
+            family: Family::Beam,
+            cell,
+            reduced: false,
+        })
+    };
+    match name {
+        "B21" | "B31" | "B31R" => return beam(CellKind::Line2),
+        "B22" | "B32" | "B32R" => return beam(CellKind::Line3),
+        _ => {}
+    }
+    let families = [
+        ("CPE", Family::PlaneStrain),
+        ("CPS", Family::PlaneStress),
+        ("CAX", Family::Axisymmetric),
+    ];
+    for (begin, family) in families {
+        if let Some(rest) = name.strip_prefix(begin) {
+            return plane(family, rest);
+        }
+    }
+    let why = match name {
+        _ if name.starts_with("C3D") => "is an element of space",
+        _ if name.starts_with('S') && name[1..].starts_with(|c: char| c.is_ascii_digit()) => {
+            "is a shell, in space"
+        }
+        _ => "cannot be read",
+    };
+    Err(format!("{} {why}; {RIGHT}", short(name)))
+}
+
+/// What a set is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Nodes,
+    Elements,
+}
+
+impl Kind {
+    fn word(self) -> &'static str {
+        match self {
+            Kind::Nodes => "node",
+            Kind::Elements => "element",
+        }
+    }
+}
+
+fn set(card: &Card<'_>, deck: &mut Deck, names: &mut Names, kind: Kind) -> Result<(), Fault> {
+    let parameter = match kind {
+        Kind::Nodes => "NSET",
+        Kind::Elements => "ELSET",
+    };
+    card.only(&[parameter, "GENERATE", "UNSORTED", "INTERNAL"])?;
+    card.required(parameter)?;
+    let mut members = Vec::new();
+    match card.has("GENERATE") {
+        true => {
+            for line in &card.lines {
+                generated(&cells(*line), names, kind, &mut members)?;
+            }
+        }
+        false => {
+            for cell in card.cells().filter(|cell| !cell.text.is_empty()) {
+                members.extend(members_of(&cell, deck, names, kind)?);
+                names.count(0, cell.place())?;
+                if members.len() > MEMBERS {
+                    return Err(cell.wrong(format!("a set has more than {MEMBERS} members")));
+                }
+            }
+        }
+    }
+    add(card, deck, names, kind, parameter, members)
+}
+
+/// Members that are counted from one number to another.
+fn generated(
+    words: &[Cell<'_>],
+    names: &Names,
+    kind: Kind,
+    members: &mut Vec<usize>,
+) -> Result<(), Fault> {
+    let Some(first) = words.first() else {
+        return Ok(());
+    };
+    let Some(last) = words.get(1) else {
+        return Err(first.wrong("GENERATE needs a first and a last number, and may have a step"));
+    };
+    let from = first.whole("the first number")?;
+    let to = last.whole("the last number")?;
+    let by = match words.get(2) {
+        Some(step) => step.whole("the step")?,
+        None => 1,
+    };
+    if by == 0 || to < from {
+        return Err(first
+            .wrong("the numbers must rise from the first to the last, by a step of 1 at least"));
+    }
+    if let Some(more) = words.get(3) {
+        return Err(
+            more.wrong("GENERATE has a first and a last number and a step; this is one more")
+        );
+    }
+    let labels = match kind {
+        Kind::Nodes => &names.nodes,
+        Kind::Elements => &names.elements,
+    };
+    let within = labels
+        .range(from..=to)
+        .filter(|(label, _)| (*label - from) % by == 0);
+    members.extend(within.map(|(_, &position)| position));
+    match members.len() <= MEMBERS {
+        true => Ok(()),
+        false => Err(first.wrong(format!("a set has more than {MEMBERS} members"))),
+    }
+}
+
+/// What a word of a list stands for: one node or element by its number, or a set by its name.
+pub(super) fn members_of(
+    cell: &Cell<'_>,
+    deck: &Deck,
+    names: &Names,
+    kind: Kind,
+) -> Result<Vec<usize>, Fault> {
+    let word = kind.word();
+    let (labels, sets, all) = match kind {
+        Kind::Nodes => (&names.nodes, &names.node_sets, &deck.node_sets),
+        Kind::Elements => (&names.elements, &names.element_sets, &deck.element_sets),
+    };
+    if let Ok(label) = cell.text.parse::<u64>() {
+        let position = labels.get(&label).copied();
+        let position = position.ok_or_else(|| cell.wrong(format!("there is no {word} {label}")))?;
+        return Ok(vec![position]);
+    }
+    let name = plain(cell.text);
+    match sets.get(&name) {
+        Some(&set) => Ok(all[set].members.clone()),
+        None => Err(cell.wrong(format!(
+            "there is no {word} set {}; it must stand before",
+            short(&name)
+        ))),
+    }
+}
+
+/// Position of a set by its name.
+pub(super) fn set_of(name: &str, place: Place, names: &Names, kind: Kind) -> Result<usize, Fault> {
+    let sets = match kind {
+        Kind::Nodes => &names.node_sets,
+        Kind::Elements => &names.element_sets,
+    };
+    let known = sets.get(name).copied();
+    known.ok_or_else(|| {
+        Fault::new(
+            place,
+            format!("there is no {} set {}", kind.word(), short(name)),
+        )
+    })
+}
+
+/// Position of a surface by its name.
+pub(super) fn surface_of(cell: &Cell<'_>, names: &Names) -> Result<usize, Fault> {
+    let name = plain(cell.text);
+    let known = names.surfaces.get(&name).copied();
+    known.ok_or_else(|| {
+        cell.wrong(format!(
+            "there is no surface {}; *SURFACE, NAME=... defines one",
+            short(&name)
+        ))
+    })
+}
+
+/// Adds members to the set that a parameter names, if it does.
+fn add(
+    card: &Card<'_>,
+    deck: &mut Deck,
+    names: &mut Names,
+    kind: Kind,
+    parameter: &str,
+    members: Vec<usize>,
+) -> Result<(), Fault> {
+    let Some(name) = card.value(parameter)? else {
+        return Ok(());
+    };
+    let place = card.place_of(parameter);
+    if name.chars().all(|c| c.is_ascii_digit()) {
+        return Err(Fault::new(
+            place,
+            format!(
+                "a set called {} is like a number; call it by a letter",
+                short(name)
+            ),
+        ));
+    }
+    let (sets, all) = match kind {
+        Kind::Nodes => (&mut names.node_sets, &mut deck.node_sets),
+        Kind::Elements => (&mut names.element_sets, &mut deck.element_sets),
+    };
+    let set = *sets.entry(name.to_owned()).or_insert_with(|| {
+        all.push(Set {
+            name: name.to_owned(),
+            members: Vec::new(),
+        });
+        all.len() - 1
+    });
+    let own = &mut all[set].members;
+    let before = own.len();
+    own.extend(members);
+    own.sort_unstable();
+    own.dedup();
+    let more = own.len() - before.min(own.len());
+    names.count(more, place)
+}
+
+fn surface(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Fault> {
+    card.only(&["NAME", "TYPE", "INTERNAL"])?;
+    let name = card.required("NAME")?.to_owned();
+    let of = match card.choice("TYPE", &["ELEMENT", "NODE"])? {
+        0 => Faces::Elements(sides(card, deck, names)?),
+        _ => {
+            let mut members = Vec::new();
+            for line in &card.lines {
+                if let Some(cell) = cells(*line).first() {
+                    members.extend(members_of(cell, deck, names, Kind::Nodes)?);
+                    if members.len() > MEMBERS {
+                        return Err(
+                            cell.wrong(format!("a surface has more than {MEMBERS} members"))
+                        );
+                    }
+                }
+            }
+            Faces::Nodes(once(members))
+        }
+    };
+    let (count, empty) = match &of {
+        Faces::Elements(sides) => (sides.len(), sides.is_empty()),
+        Faces::Nodes(nodes) => (nodes.len(), nodes.is_empty()),
+    };
+    if empty {
+        return Err(card.wrong(format!("the surface {} has nothing in it", short(&name))));
+    }
+    names.count(count, card.place)?;
+    if names
+        .surfaces
+        .insert(name.clone(), deck.surfaces.len())
+        .is_some()
+    {
+        return Err(card.wrong(format!("the surface {} is there already", short(&name))));
+    }
+    deck.surfaces.push(Surface {
+        name,
+        of,
+        place: card.place,
+    });
+    Ok(())
+}
+
+/// In the order of their first appearance.
+fn once<T: Copy + Eq + std::hash::Hash>(members: Vec<T>) -> Vec<T> {
+    let mut seen = std::collections::HashSet::new();
+    members
+        .into_iter()
+        .filter(|member| seen.insert(*member))
+        .collect()
+}
+
+fn sides(card: &Card<'_>, deck: &Deck, names: &Names) -> Result<Vec<(usize, usize)>, Fault> {
+    let mut sides = Vec::new();
+    for line in &card.lines {
+        let words = cells(*line);
+        let Some(first) = words.first() else {
+            continue;
+        };
+        let Some(label) = words.get(1) else {
+            return Err(first.wrong(
+                "a side of an element is named by the element and the side, as \"12, S2\"; without a side nothing can be read",
+            ));
+        };
+        for element in members_of(first, deck, names, Kind::Elements)? {
+            sides.push((element, side_of(label, 'S', &deck.elements[element])?));
+        }
+        if sides.len() > MEMBERS {
+            return Err(first.wrong(format!("a surface has more than {MEMBERS} members")));
+        }
+    }
+    Ok(once(sides))
+}
+
+/// A side of an element by a letter and its number from 1, from 0.
+pub(super) fn side_of(cell: &Cell<'_>, letter: char, element: &Element) -> Result<usize, Fault> {
+    let most = match element.kind.cell {
+        CellKind::Triangle3 | CellKind::Triangle6 => 3,
+        CellKind::Quad4 | CellKind::Quad8 => 4,
+        _ => {
+            return Err(cell.wrong(format!(
+                "element {} is a beam, which has no sides; name its nodes instead, with TYPE=NODE",
+                element.label
+            )));
+        }
+    };
+    let number = plain(cell.text)
+        .strip_prefix(letter)
+        .and_then(|rest| rest.parse::<usize>().ok());
+    match number {
+        Some(side) if (1..=most).contains(&side) => Ok(side - 1),
+        _ => Err(cell.wrong(format!(
+            "{:?} is no side of element {}; it must be {letter}1 to {letter}{most}",
+            short(cell.text),
+            element.label
+        ))),
+    }
+}

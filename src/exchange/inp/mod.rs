@@ -1,0 +1,167 @@
+//! Decks of CalculiX and Abaqus (`.inp`), as far as they are of the plane: a list of keywords with data.
+//!
+//! - `source`: the lines, with those of included files, and places in them; `cards`: keywords with their parameters and data.
+//! - [`keywords`]: what becomes of each keyword.
+//! - [`deck`]: what stands in a deck; `mesh`, `property` and `step` read it, keyword by keyword.
+//!
+//! The meaning is that of CalculiX ("CalculiX CrunchiX user's manual", G. Dhondt), which takes it from Abaqus. Nodes, elements,
+//! sets and surfaces are read first, then materials and laws, then what uses them, so that the order of cards matters within
+//! these only.
+
+pub mod deck;
+pub mod keywords;
+
+mod cards;
+mod mesh;
+mod property;
+mod source;
+mod step;
+#[cfg(test)]
+mod tests;
+
+use cards::Card;
+pub use deck::Deck;
+use deck::{Remark, Value};
+use keywords::{Treatment, nearest, treatment};
+use mesh::Names;
+pub use source::{DECK_BYTES, Include, Place, Wrong};
+use source::{Fault, Sources};
+
+/// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
+pub fn is_one(text: &str) -> bool {
+    let lines = text.lines().enumerate();
+    let mut lines = lines.map(|(k, text)| source::Line {
+        text,
+        file: 0,
+        number: k + 1,
+    });
+    let comments = text.trim_start().starts_with("**");
+    match lines.find(|line| !line.is_nothing()) {
+        Some(line) => line.is_keyword(),
+        None => comments,
+    }
+}
+
+/// Reads a deck. `include` gives the texts of files that it includes, by the name that stands there, or says why not.
+///
+/// # Errors
+/// The first thing that is wrong or cannot be read, and what would be right.
+pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, Wrong> {
+    let (sources, gathered) = Sources::gather(name, text, include);
+    let deck = gathered.and_then(|()| whole(&sources));
+    deck.map_err(|fault| Wrong {
+        file: sources
+            .names
+            .get(fault.place.file)
+            .cloned()
+            .unwrap_or_default(),
+        place: fault.place,
+        message: fault.message,
+    })
+}
+
+fn whole(sources: &Sources) -> Result<Deck, Fault> {
+    let cards = cards::cards(sources.lines())?;
+    let mut deck = Deck {
+        files: sources.names.clone(),
+        ..Deck::default()
+    };
+    for card in &cards {
+        known(card, &mut deck)?;
+    }
+    let mut names = Names::default();
+    let (mut properties, mut steps) = (property::Open::default(), step::Open::default());
+    for card in &cards {
+        mesh::read(card, &mut deck, &mut names)?;
+    }
+    for card in &cards {
+        property::define(card, &mut deck, &mut properties)?;
+    }
+    for card in &cards {
+        if property::apply(card, &mut deck, &names)? {
+            step::before(card, &steps)?;
+        }
+        step::read(card, &mut deck, &mut names, &mut steps)?;
+    }
+    let last = cards.last().map_or(
+        Place {
+            file: 0,
+            line: 1,
+            column: 1,
+        },
+        |card| card.place,
+    );
+    step::finish(&deck, &steps, last)?;
+    deck.remarks
+        .sort_by_key(|remark| (remark.place.file, remark.place.line));
+    Ok(deck)
+}
+
+/// Refuses keywords that cannot be read, and notes those that are passed over.
+fn known(card: &Card<'_>, deck: &mut Deck) -> Result<(), Fault> {
+    match treatment(&card.key) {
+        Some(Treatment::Refused(why)) => {
+            return Err(card.wrong(format!("it cannot be read: {why}")));
+        }
+        None => {
+            let like = nearest(&card.key)
+                .map_or_else(String::new, |name| format!("; did you mean *{name}?"));
+            return Err(card.wrong(format!("it is no keyword that can be read{like}")));
+        }
+        Some(Treatment::Read(_)) => {}
+        Some(Treatment::Ignored(why)) => {
+            deck.remark(card.place, format!("*{} is passed over: {why}", card.shown))
+        }
+    }
+    match card.key.as_str() {
+        "HEADING" => {
+            let lines: Vec<&str> = card.lines.iter().map(|line| line.text.trim()).collect();
+            deck.heading = lines.join(" ");
+        }
+        "INITIALCONDITIONS" => {
+            card.choice("TYPE", &["TEMPERATURE"])?;
+            card.required("TYPE")?;
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+impl Deck {
+    fn remark(&mut self, place: Place, text: impl Into<String>) {
+        let text = text.into();
+        match self.remarks.iter_mut().find(|remark| remark.text == text) {
+            Some(remark) => remark.times += 1,
+            None => self.remarks.push(Remark {
+                place,
+                text,
+                times: 1,
+            }),
+        }
+    }
+
+    /// The name of the file in which something stands.
+    pub fn file(&self, place: Place) -> &str {
+        self.files.get(place.file).map_or("", String::as_str)
+    }
+
+    /// The nodes of a side of an element, anticlockwise around it: start, end, and the middle between them where it has one.
+    pub fn side(&self, element: usize, side: usize) -> Vec<usize> {
+        let element = &self.elements[element];
+        let corners = match element.kind.cell {
+            crate::mesh::CellKind::Triangle3 | crate::mesh::CellKind::Triangle6 => 3,
+            _ => 4,
+        };
+        let mut nodes = vec![element.nodes[side]];
+        nodes.extend(element.nodes.get(corners + side));
+        nodes.push(element.nodes[(side + 1) % corners]);
+        nodes
+    }
+}
+
+impl Value {
+    /// The component of the node that it is for.
+    pub fn target(&self) -> (usize, deck::Direction) {
+        (self.node, self.direction)
+    }
+}

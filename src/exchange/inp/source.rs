@@ -1,0 +1,252 @@
+//! The lines of a deck, those of included files in their places, and where something stands in them.
+
+/// Where something stands: the number of the file ([`Deck::files`](super::Deck::files)), and line and column in it, both from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Place {
+    /// 0 is the deck itself.
+    pub file: usize,
+    /// From 1.
+    pub line: usize,
+    /// From 1, counted in characters.
+    pub column: usize,
+}
+
+/// What is wrong with a deck.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{}:{}: {message}", place.line, place.column)]
+pub struct Wrong {
+    /// Name of the file in which it stands.
+    pub file: String,
+    /// Where.
+    pub place: Place,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+/// A word as CalculiX compares it: in capitals, without blanks and quotes.
+pub(super) fn plain(word: &str) -> String {
+    let letters = word.chars().filter(|c| !c.is_whitespace() && *c != '"');
+    letters.flat_map(char::to_uppercase).collect()
+}
+
+/// What is wrong, before the file has its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    pub place: Place,
+    pub message: String,
+}
+
+impl Fault {
+    pub fn new(place: Place, message: impl Into<String>) -> Self {
+        Fault {
+            place,
+            message: message.into(),
+        }
+    }
+}
+
+/// A deck and what it includes, as texts.
+#[derive(Debug, Default)]
+pub(super) struct Sources {
+    pub names: Vec<String>,
+    texts: Vec<String>,
+    /// Lines of files in the order in which they count: file, first line (from 0), and the bytes.
+    pieces: Vec<(usize, usize, std::ops::Range<usize>)>,
+}
+
+/// A line of a deck.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line<'t> {
+    pub text: &'t str,
+    pub file: usize,
+    /// From 1.
+    pub number: usize,
+}
+
+impl Line<'_> {
+    /// The place of a byte of it.
+    pub fn place(&self, byte: usize) -> Place {
+        let before = self.text.get(..byte).unwrap_or(self.text);
+        Place {
+            file: self.file,
+            line: self.number,
+            column: before.chars().count() + 1,
+        }
+    }
+
+    /// Whether it is a comment, or blank.
+    pub fn is_nothing(&self) -> bool {
+        let text = self.text.trim_start();
+        text.is_empty() || text.starts_with("**")
+    }
+
+    /// Whether it begins a card.
+    pub fn is_keyword(&self) -> bool {
+        self.text.trim_start().starts_with('*') && !self.is_nothing()
+    }
+}
+
+/// Most files in a row, each of which includes the next.
+const DEEPEST: usize = 16;
+/// Most inclusions in all.
+const INCLUSIONS: usize = 1000;
+/// Most bytes of a deck with all that it includes, however often.
+pub const DECK_BYTES: usize = 512 << 20;
+
+/// What gives the text of a file that a deck includes, or says why there is none.
+pub type Include<'a> = dyn FnMut(&str) -> Result<String, String> + 'a;
+
+impl Sources {
+    /// A deck and all that it includes. What is wrong comes with what has been read by then.
+    pub fn gather(
+        name: &str,
+        text: &str,
+        include: &mut Include<'_>,
+    ) -> (Sources, Result<(), Fault>) {
+        let mut sources = Sources {
+            names: vec![name.to_owned()],
+            texts: vec![text.to_owned()],
+            pieces: Vec::new(),
+        };
+        let mut budget = Budget {
+            bytes: text.len(),
+            inclusions: 0,
+        };
+        let result = sources.walk(0, &mut vec![0], &mut budget, include);
+        (sources, result)
+    }
+
+    fn walk(
+        &mut self,
+        file: usize,
+        above: &mut Vec<usize>,
+        budget: &mut Budget,
+        include: &mut Include<'_>,
+    ) -> Result<(), Fault> {
+        let text = std::mem::take(&mut self.texts[file]);
+        let found = inclusions(file, &text);
+        let whole = text.len();
+        self.texts[file] = text;
+        let (mut first, mut begin) = (0, 0);
+        for inclusion in found {
+            self.pieces.push((file, first, begin..inclusion.begin));
+            (first, begin) = (inclusion.line, inclusion.end);
+            let wrong = |message: String| Fault::new(inclusion.place, message);
+            let wanted = inclusion.file.map_err(|why| wrong(why.to_owned()))?;
+            let inner = self
+                .included(&wanted, above, budget, include)
+                .map_err(wrong)?;
+            above.push(inner);
+            self.walk(inner, above, budget, include)?;
+            above.pop();
+        }
+        self.pieces.push((file, first, begin..whole));
+        Ok(())
+    }
+
+    /// Number of the file of this name, which is read if it has not been.
+    fn included(
+        &mut self,
+        wanted: &str,
+        above: &[usize],
+        budget: &mut Budget,
+        include: &mut Include<'_>,
+    ) -> Result<usize, String> {
+        let known = self.names.iter().position(|name| name == wanted);
+        let inner = match known.filter(|&k| k > 0) {
+            Some(inner) => inner,
+            None => {
+                let text = include(wanted)?;
+                self.names.push(wanted.to_owned());
+                self.texts.push(text);
+                self.texts.len() - 1
+            }
+        };
+        if above.contains(&inner) {
+            return Err(format!("the file {wanted:?} includes itself"));
+        }
+        if above.len() > DEEPEST {
+            return Err(format!(
+                "more than {DEEPEST} files include one another in a row"
+            ));
+        }
+        budget.inclusions += 1;
+        budget.bytes += self.texts[inner].len();
+        if budget.inclusions > INCLUSIONS || budget.bytes > DECK_BYTES {
+            return Err(format!(
+                "the deck with all that it includes is too large; at most {INCLUSIONS} inclusions and {} MB can be read",
+                DECK_BYTES >> 20
+            ));
+        }
+        Ok(inner)
+    }
+
+    /// All lines.
+    pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+        self.pieces.iter().flat_map(|(file, first, bytes)| {
+            let text = self
+                .texts
+                .get(*file)
+                .and_then(|text| text.get(bytes.clone()));
+            let lines = text.unwrap_or_default().lines().enumerate();
+            lines.map(move |(k, text)| Line {
+                text,
+                file: *file,
+                number: first + k + 1,
+            })
+        })
+    }
+}
+
+struct Budget {
+    bytes: usize,
+    inclusions: usize,
+}
+
+/// An `*INCLUDE` of a text.
+struct Inclusion {
+    /// The bytes of its line.
+    begin: usize,
+    end: usize,
+    /// Lines up to it, it too.
+    line: usize,
+    place: Place,
+    file: Result<String, &'static str>,
+}
+
+fn inclusions(file: usize, text: &str) -> Vec<Inclusion> {
+    let mut found = Vec::new();
+    let mut begin = 0;
+    for (k, line) in text.split_inclusive('\n').enumerate() {
+        let end = begin + line.len();
+        let (keyword, rest) = line.split_once(',').unwrap_or((line, ""));
+        if plain(keyword) == "*INCLUDE" {
+            let whole = Line {
+                text: line,
+                file,
+                number: k + 1,
+            };
+            found.push(Inclusion {
+                begin,
+                end,
+                line: k + 1,
+                place: whole.place(line.len() - line.trim_start().len()),
+                file: input(rest),
+            });
+        }
+        begin = end;
+    }
+    found
+}
+
+/// The file that the parameters of an inclusion name.
+fn input(parameters: &str) -> Result<String, &'static str> {
+    const RIGHT: &str =
+        "*INCLUDE must name its file, and nothing else, as in \"*INCLUDE, INPUT=mesh.inp\"";
+    let (name, value) = parameters.split_once('=').ok_or(RIGHT)?;
+    let value = value.trim().trim_end_matches(',').trim().trim_matches('"');
+    match name.trim().eq_ignore_ascii_case("input") && !value.is_empty() {
+        true => Ok(value.to_owned()),
+        false => Err(RIGHT),
+    }
+}

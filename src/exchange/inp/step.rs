@@ -1,0 +1,537 @@
+//! The steps of a deck: increments, supports, loads.
+
+use super::cards::{Card, Cell, cells, number_or_zero, short};
+use super::deck::{
+    Deck, Direction, Element, Faces, Family, Pressure, Step, Time, Value, Volume, Weight,
+};
+use super::mesh::{Kind, Names, members_of, set_of, side_of, surface_of};
+use super::source::{Fault, Line, Place, plain};
+
+/// The step that is being read.
+#[derive(Debug, Default)]
+pub(super) struct Open {
+    step: Option<Step>,
+    has_time: bool,
+    /// NLGEOM stays until it is taken back.
+    nlgeom: bool,
+}
+
+/// Reads a card of a step, or a support of the model, if it is one.
+pub(super) fn read(
+    card: &Card<'_>,
+    deck: &mut Deck,
+    names: &mut Names,
+    open: &mut Open,
+) -> Result<bool, Fault> {
+    match card.key.as_str() {
+        "STEP" => begin(card, deck, open)?,
+        "ENDSTEP" => end(card, deck, open)?,
+        "STATIC" => time(card, deck, open)?,
+        "BOUNDARY" => boundary(card, deck, names, open)?,
+        "CLOAD" => force(card, deck, names, open)?,
+        "DLOAD" => load(card, deck, names, open)?,
+        "NODEPRINT" => print(card, deck, names)?,
+        "DSLOAD" => surface_load(card, deck, names, open)?,
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+/// Refuses a deck that ends within a step, or has none.
+pub(super) fn finish(deck: &Deck, open: &Open, last: Place) -> Result<(), Fault> {
+    match &open.step {
+        Some(step) => Err(Fault::new(
+            step.place,
+            "this step has no end; *END STEP is missing",
+        )),
+        None if deck.steps.is_empty() => Err(Fault::new(
+            last,
+            "the deck has no step; it must have one at least, with *STEP, *STATIC and *END STEP",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what defines the model once a step has begun.
+pub(super) fn before(card: &Card<'_>, open: &Open) -> Result<(), Fault> {
+    match open.step {
+        None => Ok(()),
+        Some(_) => Err(card.wrong("it belongs to the model, before the first *STEP")),
+    }
+}
+
+fn begin(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
+    card.only(&[
+        "NLGEOM",
+        "INC",
+        "AMPLITUDE",
+        "NAME",
+        "UNSYMM",
+        "INCF",
+        "INCF1",
+    ])?;
+    if open.step.is_some() {
+        return Err(card.wrong("the step before has no end; *END STEP is missing"));
+    }
+    if card.has("NLGEOM") {
+        open.nlgeom = match card.parameter("NLGEOM").and_then(|p| p.value.as_deref()) {
+            None => true,
+            Some(_) => card.choice("NLGEOM", &["YES", "NO"])? == 0,
+        };
+    }
+    if card.has("INC") {
+        deck.remark(
+            card.place_of("INC"),
+            "INC is not read: there is no limit to the number of increments",
+        );
+    }
+    open.has_time = false;
+    open.step = Some(Step {
+        place: card.place,
+        static_place: card.place,
+        nlgeom: open.nlgeom,
+        at_once: card.choice("AMPLITUDE", &["RAMP", "STEP"])? == 1,
+        time: Time {
+            initial: 1.0,
+            period: 1.0,
+            least: None,
+            most: None,
+            direct: false,
+        },
+        new_motions: false,
+        new_forces: false,
+        new_pressures: false,
+        motions: Vec::new(),
+        forces: Vec::new(),
+        pressures: Vec::new(),
+        weights: Vec::new(),
+    });
+    Ok(())
+}
+
+fn end(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
+    card.only(&[])?;
+    card.no_lines()?;
+    match open.step.take() {
+        Some(_) if !open.has_time => {
+            Err(card.wrong("the step has no procedure; *STATIC is missing"))
+        }
+        Some(step) => {
+            deck.steps.push(step);
+            Ok(())
+        }
+        None => Err(card.wrong("there is no step to end")),
+    }
+}
+
+fn in_step<'a>(card: &Card<'_>, open: &'a mut Open) -> Result<&'a mut Step, Fault> {
+    open.step
+        .as_mut()
+        .ok_or_else(|| card.wrong("it belongs to a step; *STEP should stand before"))
+}
+
+fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
+    card.only(&["DIRECT", "SOLVER", "TIMERESET", "STABILIZE"])?;
+    if card.has("STABILIZE") {
+        return Err(Fault::new(
+            card.place_of("STABILIZE"),
+            "*STATIC: STABILIZE adds damping that is not in the model; leave it out",
+        ));
+    }
+    if card.has("TIMERESET") {
+        return Err(Fault::new(
+            card.place_of("TIMERESET"),
+            "*STATIC: TIME RESET cannot be read; time goes on over the steps",
+        ));
+    }
+    if card.has("SOLVER") {
+        deck.remark(
+            card.place_of("SOLVER"),
+            "SOLVER is not read; see settings.solver",
+        );
+    }
+    let words = match card.lines.as_slice() {
+        [] => Vec::new(),
+        [line] => cells(*line),
+        [_, more, ..] => {
+            return Err(Fault::new(
+                more.place(0),
+                "*STATIC has one line of data; this is one more",
+            ));
+        }
+    };
+    let positive = |k: usize, what: &str| match words.get(k).filter(|cell| !cell.text.is_empty()) {
+        None => Ok(None),
+        Some(cell) => match cell.number(what)? {
+            0.0 => Ok(None),
+            value if value > 0.0 => Ok(Some(value)),
+            value => Err(cell.wrong(format!("{what} is {value:?}; it must be positive"))),
+        },
+    };
+    if let Some(more) = words.get(4) {
+        return Err(more.wrong("*STATIC has a first increment, a period, a least and a largest increment; this is one more"));
+    }
+    let period = positive(1, "the period of the step")?.unwrap_or(1.0);
+    let initial = positive(0, "the first increment")?.unwrap_or(period);
+    if initial > period {
+        return Err(words[0].wrong(format!(
+            "the first increment, {initial:?}, is longer than the step, {period:?}"
+        )));
+    }
+    let time = Time {
+        initial,
+        period,
+        least: positive(2, "the least increment")?,
+        most: positive(3, "the largest increment")?,
+        direct: card.has("DIRECT"),
+    };
+    let place = card.lines.first().map_or(card.place, |line| line.place(0));
+    if open.has_time {
+        return Err(card.wrong("the step has one *STATIC already"));
+    }
+    let step = in_step(card, open)?;
+    step.time = time;
+    step.static_place = place;
+    open.has_time = true;
+    Ok(())
+}
+
+/// Notes the nodes whose displacements are printed. What else could be printed is not read.
+fn print(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
+    let Some(name) = card.value("NSET")? else {
+        return Ok(());
+    };
+    let set = set_of(name, card.place_of("NSET"), names, Kind::Nodes)?;
+    let wanted = card.cells().any(|cell| plain(cell.text) == "U");
+    if wanted && !deck.printed.contains(&set) {
+        deck.printed.push(set);
+    }
+    Ok(())
+}
+
+/// The amplitude that a card names.
+fn amplitude(card: &Card<'_>, deck: &Deck) -> Result<Option<usize>, Fault> {
+    let Some(name) = card.value("AMPLITUDE")? else {
+        return Ok(None);
+    };
+    let known = deck.amplitudes.iter().position(|a| a.name == name);
+    known.map(Some).ok_or_else(|| {
+        Fault::new(
+            card.place_of("AMPLITUDE"),
+            format!("there is no *AMPLITUDE, NAME={}", short(name)),
+        )
+    })
+}
+
+/// Whether a card gives up what was before it.
+fn is_new(card: &Card<'_>) -> Result<bool, Fault> {
+    Ok(card.choice("OP", &["MOD", "NEW"])? == 1)
+}
+
+fn boundary(
+    card: &Card<'_>,
+    deck: &mut Deck,
+    names: &mut Names,
+    open: &mut Open,
+) -> Result<(), Fault> {
+    card.only(&["OP", "AMPLITUDE", "TYPE"])?;
+    card.choice("TYPE", &["DISPLACEMENT"])?;
+    let amplitude = amplitude(card, deck)?;
+    let new = is_new(card)?;
+    if let Some(step) = &mut open.step {
+        step.new_motions |= new;
+    }
+    for line in &card.lines {
+        let words = cells(*line);
+        let Some(first) = words.first() else {
+            continue;
+        };
+        let (from, to, value) = directions(first, &words)?;
+        let nodes = members_of(first, deck, names, Kind::Nodes)?;
+        let last = words.last().unwrap_or(first);
+        let mut read = Vec::new();
+        for direction in from..=to {
+            let held = match direction {
+                1 => Direction::X,
+                2 => Direction::Y,
+                6 => Direction::Rotation,
+                3..=5 if value == 0.0 => {
+                    deck.remark(
+                        first.place(),
+                        "directions 3, 4 and 5 are held by the plane itself",
+                    );
+                    continue;
+                }
+                3..=5 => {
+                    return Err(last.wrong(format!(
+                        "a motion of {value:?} along direction {direction} leaves the plane"
+                    )));
+                }
+                _ => {
+                    return Err(words.get(1).unwrap_or(first).wrong(format!(
+                        "direction {direction} cannot be read; it must be 1 or 2, or 6 on beams"
+                    )));
+                }
+            };
+            read.push(held);
+        }
+        names.count(nodes.len() * read.len(), first.place())?;
+        for direction in read {
+            let values = nodes.iter().map(|&node| Value {
+                node,
+                direction,
+                value,
+                amplitude,
+                place: first.place(),
+            });
+            match &mut open.step {
+                Some(step) => step.motions.extend(values),
+                None if value != 0.0 => {
+                    return Err(last.wrong(
+                        "before the first step nothing can move; write this value inside a step",
+                    ));
+                }
+                None => deck.supports.extend(values),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// First and last direction of a line of `*BOUNDARY`, and its value.
+fn directions(first: &Cell<'_>, words: &[Cell<'_>]) -> Result<(u64, u64, f64), Fault> {
+    let Some(second) = words.get(1) else {
+        return Err(
+            first.wrong("a node or a set should be followed by the directions that are held")
+        );
+    };
+    // Abaqus' names for what is held; those of symmetry hold the direction across it.
+    match plain(second.text).as_str() {
+        "XSYMM" => return Ok((1, 1, 0.0)),
+        "YSYMM" => return Ok((2, 2, 0.0)),
+        "ZSYMM" => return Ok((3, 3, 0.0)),
+        "PINNED" => return Ok((1, 2, 0.0)),
+        "ENCASTRE" => return Ok((1, 6, 0.0)),
+        _ => {}
+    }
+    let from = second.whole("a direction")?;
+    let to = match words.get(2).filter(|cell| !cell.text.is_empty()) {
+        Some(cell) => cell.whole("the last direction")?,
+        None => from,
+    };
+    if to < from || from == 0 || to > 11 {
+        return Err(second.wrong(format!(
+            "directions {from} to {to}; they must rise, from 1 to 6"
+        )));
+    }
+    if let Some(more) = words.get(4) {
+        return Err(more.wrong(
+            "a node, the first and the last direction and a value are all; this is one more",
+        ));
+    }
+    Ok((from, to, number_or_zero(words, 3, "the value")?))
+}
+
+fn force(
+    card: &Card<'_>,
+    deck: &mut Deck,
+    names: &mut Names,
+    open: &mut Open,
+) -> Result<(), Fault> {
+    card.only(&["OP", "AMPLITUDE"])?;
+    let amplitude = amplitude(card, deck)?;
+    let new = is_new(card)?;
+    let step = in_step(card, open)?;
+    step.new_forces |= new;
+    for line in &card.lines {
+        let words = cells(*line);
+        let [first, second, third] = words.as_slice() else {
+            return Err(Fault::new(
+                line.place(0),
+                "a node or a set, a direction and a force should stand here",
+            ));
+        };
+        let value = third.number("a force")?;
+        let direction = match second.whole("a direction")? {
+            1 => Direction::X,
+            2 => Direction::Y,
+            6 => Direction::Rotation,
+            3 if value == 0.0 => continue,
+            other => {
+                return Err(second.wrong(format!(
+                    "direction {other} cannot be read; it must be 1 or 2, or 6 on beams"
+                )));
+            }
+        };
+        let nodes = members_of(first, deck, names, Kind::Nodes)?;
+        names.count(nodes.len(), first.place())?;
+        step.forces.extend(nodes.into_iter().map(|node| Value {
+            node,
+            direction,
+            value,
+            amplitude,
+            place: first.place(),
+        }));
+    }
+    Ok(())
+}
+
+fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut Open) -> Result<(), Fault> {
+    card.only(&["OP", "AMPLITUDE"])?;
+    let amplitude = amplitude(card, deck)?;
+    let new = is_new(card)?;
+    let step = in_step(card, open)?;
+    step.new_pressures |= new;
+    for line in &card.lines {
+        let words = cells(*line);
+        let [first, label, rest @ ..] = words.as_slice() else {
+            return Err(Fault::new(
+                line.place(0),
+                "an element or a set, a load's name and its size should stand here",
+            ));
+        };
+        let elements = members_of(first, deck, names, Kind::Elements)?;
+        names.count(elements.len(), first.place())?;
+        let kind = plain(label.text);
+        let volume = volume(&kind, label, rest)?;
+        for element in elements {
+            match volume {
+                Some(load) => step.weights.push(Weight {
+                    element,
+                    load,
+                    amplitude,
+                    place: first.place(),
+                }),
+                None => step.pressures.push(Pressure {
+                    element,
+                    side: pressed(label, &kind, &deck.elements[element])?,
+                    value: one(label, rest, "the pressure")?,
+                    amplitude,
+                    place: first.place(),
+                }),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The side on which a load of `*DLOAD` presses.
+fn pressed(label: &Cell<'_>, kind: &str, element: &Element) -> Result<usize, Fault> {
+    let digits = kind.strip_prefix('P').unwrap_or_default();
+    let numbered = !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
+    match numbered && element.kind.family != Family::Beam {
+        true => side_of(label, 'P', element),
+        false => Err(label.wrong(format!(
+            "the load {} cannot be read on element {}; those that can are P1 to P4 on sides, GRAV, BX and BY",
+            short(kind),
+            element.label
+        ))),
+    }
+}
+
+/// The only number that is left of a line.
+fn one(before: &Cell<'_>, rest: &[Cell<'_>], what: &str) -> Result<f64, Fault> {
+    match rest {
+        [cell] => cell.number(what),
+        [] => Err(before.wrong(format!("{what} should follow"))),
+        [_, more, ..] => Err(more.wrong(format!("{what} is one number; this is one more"))),
+    }
+}
+
+fn volume(kind: &str, label: &Cell<'_>, rest: &[Cell<'_>]) -> Result<Option<Volume>, Fault> {
+    match kind {
+        "BX" => Ok(Some(Volume::Force([
+            one(label, rest, "the force by volume")?,
+            0.0,
+        ]))),
+        "BY" => Ok(Some(Volume::Force([
+            0.0,
+            one(label, rest, "the force by volume")?,
+        ]))),
+        "GRAV" => {
+            let [size, x, y, z @ ..] = rest else {
+                return Err(label.wrong(
+                    "an acceleration and the three components of its direction should follow",
+                ));
+            };
+            let size = size.number("the acceleration")?;
+            let (x, y) = (x.number("a direction")?, y.number("a direction")?);
+            let z = number_or_zero(z, 0, "a direction")?;
+            let length = x.hypot(y);
+            if z != 0.0 || length == 0.0 || !length.is_finite() {
+                return Err(label.wrong(
+                    "the direction of the acceleration must lie in the plane, and not be 0",
+                ));
+            }
+            Ok(Some(Volume::Gravity([
+                size * x / length,
+                size * y / length,
+            ])))
+        }
+        _ => Ok(None),
+    }
+}
+
+fn surface_load(
+    card: &Card<'_>,
+    deck: &mut Deck,
+    names: &mut Names,
+    open: &mut Open,
+) -> Result<(), Fault> {
+    card.only(&["OP", "AMPLITUDE"])?;
+    let amplitude = amplitude(card, deck)?;
+    let new = is_new(card)?;
+    let step = in_step(card, open)?;
+    step.new_pressures |= new;
+    for line in &card.lines {
+        let Pressed {
+            place,
+            sides,
+            value,
+        } = pressed_surface(*line, deck, names)?;
+        names.count(sides.len(), place)?;
+        step.pressures
+            .extend(sides.into_iter().map(|(element, side)| Pressure {
+                element,
+                side,
+                value,
+                amplitude,
+                place,
+            }));
+    }
+    Ok(())
+}
+
+/// A line of `*DSLOAD`.
+struct Pressed {
+    place: Place,
+    sides: Vec<(usize, usize)>,
+    value: f64,
+}
+
+fn pressed_surface(line: Line<'_>, deck: &Deck, names: &Names) -> Result<Pressed, Fault> {
+    let words = cells(line);
+    let [first, label, size] = words.as_slice() else {
+        return Err(Fault::new(
+            line.place(0),
+            "a surface, P and a pressure should stand here",
+        ));
+    };
+    if plain(label.text) != "P" {
+        return Err(label.wrong(format!(
+            "the load {:?} cannot be read; it must be P, a pressure",
+            short(label.text)
+        )));
+    }
+    let surface = surface_of(first, names)?;
+    match &deck.surfaces[surface].of {
+        Faces::Elements(sides) => Ok(Pressed {
+            place: first.place(),
+            sides: sides.clone(),
+            value: size.number("the pressure")?,
+        }),
+        Faces::Nodes(_) => Err(first.wrong(
+            "a surface of nodes has no area to press on; it must be one of sides (TYPE=ELEMENT)",
+        )),
+    }
+}

@@ -1,0 +1,420 @@
+//! Decks read, refused, and damaged.
+
+use super::deck::{Adjust, Direction, Faces, Family, Form, Normal, Volume};
+use super::*;
+use crate::mesh::CellKind;
+use proptest::prelude::*;
+
+const PLATES: &str = include_str!("../../../tests/decks/pressed-plates.inp");
+const RINGS: &str = include_str!("../../../tests/decks/shrunk-ring.inp");
+const BLOCK: &str = include_str!("../../../tests/decks/press-and-push.inp");
+const BEAM: &str = include_str!("../../../tests/decks/beam-on-a-post.inp");
+const GLUED: &str = include_str!("../../../tests/decks/glued.inp");
+const GLUED_MESH: &str = include_str!("../../../tests/decks/parts/glued-mesh.inp");
+
+fn alone(_: &str) -> Result<String, String> {
+    Err("no file can be had here".to_owned())
+}
+
+fn deck(text: &str) -> Deck {
+    read("job.inp", text, &mut alone).unwrap_or_else(|wrong| panic!("{wrong}"))
+}
+
+fn refusal(text: &str) -> String {
+    match read("job.inp", text, &mut alone) {
+        Ok(_) => panic!("it was read: {text}"),
+        Err(wrong) => wrong.to_string(),
+    }
+}
+
+/// The block's deck with one piece of text in place of another.
+fn but(text: &str, from: &str, to: &str) -> String {
+    assert!(text.contains(from), "{from:?} is not in the deck");
+    text.replacen(from, to, 1)
+}
+
+#[test]
+fn nodes_elements_sections_and_laws_are_what_the_deck_says() {
+    let deck = deck(PLATES);
+    assert_eq!(
+        deck.heading,
+        "Two plates of one CPS8R each, pressed together: linear penalty, point loads"
+    );
+    assert_eq!(deck.nodes.len(), 16);
+    assert_eq!((deck.nodes[8].label, deck.nodes[8].at), (11, [0.0, 2.0]));
+    let kind = deck.elements[1].kind;
+    assert_eq!(
+        (kind.family, kind.cell, kind.reduced),
+        (Family::PlaneStress, CellKind::Quad8, true)
+    );
+    assert_eq!(deck.side(0, 2), [2, 6, 3]);
+    assert_eq!(deck.sections[0].form, Form::Solid { thickness: 2.0 });
+    assert_eq!(deck.materials[0].elastic, Some((70000.0, 0.33)));
+    let law = &deck.interactions[0];
+    assert_eq!(
+        (law.normal, law.friction, law.stick),
+        (Normal::Linear { stiffness: 1e6 }, 0.0, None)
+    );
+    let pair = &deck.pairs[0];
+    assert_eq!(
+        (
+            deck.surfaces[pair.slave].name.as_str(),
+            pair.small_sliding,
+            pair.faces
+        ),
+        ("DOWN", true, false)
+    );
+    let step = &deck.steps[0];
+    assert!(step.nlgeom && !step.at_once);
+    let forces: Vec<_> = step
+        .forces
+        .iter()
+        .map(|f| (deck.nodes[f.node].label, f.direction, f.value))
+        .collect();
+    let y = Direction::Y;
+    assert_eq!(forces, [(13, y, -100.0), (14, y, -100.0), (17, y, -400.0)]);
+    assert_eq!(deck.node_sets[deck.printed[0]].name, "TOP");
+}
+
+#[test]
+fn sets_are_generated_and_made_of_sets_and_steps_follow_each_other() {
+    let deck = deck(BLOCK);
+    let set = |name: &str| {
+        deck.node_sets
+            .iter()
+            .find(|set| set.name == name)
+            .expect("a set")
+    };
+    assert_eq!(set("TOP").members, [3, 4, 5]);
+    assert_eq!(set("GROUND").members, [6, 7, 8, 9]);
+    assert_eq!(deck.element_sets[2].members, [0, 1, 2]);
+    assert_eq!(deck.surfaces[0].of, Faces::Elements(vec![(0, 0), (1, 0)]));
+    assert_eq!(deck.interactions[0].friction, 0.4);
+    assert_eq!(deck.steps.len(), 2);
+    let second = &deck.steps[1];
+    assert!(second.time.direct && second.time.initial == 0.125);
+    assert_eq!(second.motions[0].amplitude, Some(0));
+    assert_eq!(
+        deck.amplitudes[0].points,
+        [(0.0, 0.0), (0.5, 1.0), (1.0, -1.0)]
+    );
+}
+
+#[test]
+fn a_rectangular_beam_has_its_second_thickness_in_the_plane() {
+    let deck = deck(BEAM);
+    let form = Form::Rectangle {
+        width: 0.1,
+        height: 0.2,
+    };
+    assert_eq!(deck.sections[0].form, form);
+    assert_eq!(deck.elements[0].kind.family, Family::Beam);
+    let held: Vec<_> = deck
+        .supports
+        .iter()
+        .filter(|v| v.node == 0)
+        .map(|v| v.direction)
+        .collect();
+    assert_eq!(held, [Direction::X, Direction::Y, Direction::Rotation]);
+}
+
+#[test]
+fn case_blanks_comments_continued_lines_and_fortran_numbers_make_no_difference() {
+    let text = but(
+        BLOCK,
+        "*SURFACE INTERACTION, NAME=ROUGH",
+        "*surface Interaction ,\n** in between\n name = \" ro ugh\"",
+    );
+    let text = but(&text, "1, 1, 2, 5, 4\n", "1, 1, 2,\n5, 4,\n");
+    let text = but(&text, "1000., 0.3", "1.D3, 3d-1");
+    let text = but(&text, "*STATIC, DIRECT", "* Static , direct");
+    let (ours, theirs) = (deck(&text), deck(BLOCK));
+    assert_eq!(
+        ours.interactions[0].friction,
+        theirs.interactions[0].friction
+    );
+    assert_eq!(ours.materials[0].elastic, theirs.materials[0].elastic);
+    assert_eq!(ours.elements[0].nodes, theirs.elements[0].nodes);
+    assert_eq!(ours.steps[0].time, theirs.steps[0].time);
+}
+
+#[test]
+fn an_included_file_is_read_in_its_place_and_its_faults_have_their_own_lines() {
+    let mut give = |name: &str| match name {
+        "parts/glued-mesh.inp" => Ok(GLUED_MESH.to_owned()),
+        _ => Err("no such file".to_owned()),
+    };
+    let deck = read("glued.inp", GLUED, &mut give).expect("it is sound");
+    assert_eq!(
+        (deck.nodes.len(), deck.elements.len(), deck.ties.len()),
+        (8, 2, 1)
+    );
+    assert_eq!((deck.nodes[0].place.file, deck.nodes[0].place.line), (1, 3));
+    assert_eq!(deck.ties[0].place.line, 13);
+    let mut damaged = |_: &str| Ok(GLUED_MESH.replace("11, 12, 13, 14", "11, 12, 13, 15"));
+    let wrong = read("glued.inp", GLUED, &mut damaged).expect_err("node 15 is not there");
+    assert_eq!(
+        wrong.to_string(),
+        "parts/glued-mesh.inp:13:16: there is no node 15; *NODE must stand before"
+    );
+    let mut none = |_: &str| Err("there is no such file".to_owned());
+    let wrong = read("glued.inp", GLUED, &mut none).expect_err("no file");
+    assert_eq!(wrong.to_string(), "glued.inp:3:1: there is no such file");
+}
+
+#[test]
+fn files_that_include_each_other_end() {
+    let mut itself = |_: &str| Ok("*INCLUDE, INPUT=a.inp\n".to_owned());
+    let wrong = read("job.inp", "*INCLUDE, INPUT=a.inp\n", &mut itself).expect_err("endless");
+    assert_eq!(
+        wrong.to_string(),
+        "a.inp:1:1: the file \"a.inp\" includes itself"
+    );
+    let mut number = 0;
+    let mut deeper = |_: &str| {
+        number += 1;
+        Ok(format!("*INCLUDE, INPUT={number}.inp\n"))
+    };
+    let wrong = read("job.inp", "*INCLUDE, INPUT=a.inp\n", &mut deeper).expect_err("too deep");
+    assert!(
+        wrong.to_string().contains("include one another in a row"),
+        "{wrong}"
+    );
+    // Each file includes the next one twice: 2^k of the last.
+    let mut twice = |name: &str| {
+        let next = name.trim_end_matches(".inp").parse::<u32>().unwrap_or(0) + 1;
+        Ok(format!("*INCLUDE, INPUT={next}.inp\n").repeat(if next < 14 { 2 } else { 0 }))
+    };
+    let wrong = read("job.inp", "*INCLUDE, INPUT=1.inp\n", &mut twice).expect_err("too many");
+    assert!(wrong.to_string().contains("too large"), "{wrong}");
+}
+
+#[test]
+fn what_cannot_be_read_is_refused_where_it_stands_with_what_would_be_right() {
+    let cases = [
+        (
+            "TYPE=CPE4, ELSET=BLOCK",
+            "TYPE=CPE4R, ELSET=BLOCK",
+            "job.inp:14:11: CPE4R is integrated in one point and needs a stiffness against its hourglass modes, which codes choose differently; use CPE4 or, better, CPE8R",
+        ),
+        (
+            "TYPE=CPE4, ELSET=BLOCK",
+            "TYPE=C3D8, ELSET=BLOCK",
+            "job.inp:14:11: C3D8 is an element of space; those that can be read are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R",
+        ),
+        (
+            "PRESSURE-OVERCLOSURE=HARD",
+            "PRESSURE-OVERCLOSURE=EXPONENTIAL\n1.E-4, .1",
+            "job.inp:35:20: *SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=EXPONENTIAL cannot be read: a pressure that is not linear has no complementarity problem; it must be HARD, LINEAR or TIED",
+        ),
+        (
+            "*ELASTIC\n",
+            "*ELASTIC, TYPE=ORTHO\n",
+            "job.inp:30:11: *ELASTIC: TYPE=ORTHO cannot be read; it must be ISO or ISOTROPIC",
+        ),
+        (
+            "*AMPLITUDE, NAME=FORTH",
+            "*EQUATION",
+            "job.inp:40:1: *EQUATION: it cannot be read: nodes cannot be bound to one another by equations; give both bodies common nodes, or use *TIE",
+        ),
+        (
+            "*STATIC, DIRECT",
+            "*DYNAMIC",
+            "job.inp:45:1: *DYNAMIC: it cannot be read: only *STATIC steps can be read",
+        ),
+        (
+            "*STATIC, DIRECT",
+            "*STATICS",
+            "job.inp:45:1: *STATICS: it is no keyword that can be read; did you mean *STATIC?",
+        ),
+        (
+            "2, 1., 0.",
+            "2, 1., 0., 0.5",
+            "job.inp:5:13: node 2 stands at z = 0.5; only what lies in z = 0 can be read",
+        ),
+        (
+            "2, 1., 0.",
+            "2, 1., abc",
+            "job.inp:5:9: \"abc\" stands where a coordinate, a number, should",
+        ),
+        (
+            "2, 1., 0.",
+            "2, 1., 1e999",
+            "job.inp:5:9: \"1e999\" stands where a coordinate, a number, should",
+        ),
+        (
+            "2, 1., 0.",
+            "1, 1., 0.",
+            "job.inp:5:2: node 1 stands here a second time",
+        ),
+        (
+            "BLOCK, S1",
+            "BLOCK, S5",
+            "job.inp:26:8: \"S5\" is no side of element 1; it must be S1 to S4",
+        ),
+        (
+            "BLOCK, S1",
+            "BLOCKS, S1",
+            "job.inp:26:1: there is no element set BLOCKS; it must stand before",
+        ),
+        (
+            "BELOW, ABOVE",
+            "BELOW, UNDER",
+            "job.inp:39:8: there is no surface UNDER; *SURFACE, NAME=... defines one",
+        ),
+        (
+            "TOP, 2, 2, -0.02",
+            "TOP, 3, 3, -0.02",
+            "job.inp:49:12: a motion of -0.02 along direction 3 leaves the plane",
+        ),
+        (
+            "GROUND, 1, 2",
+            "GROUND, 1, 2, 0.5",
+            "job.inp:43:15: before the first step nothing can move; write this value inside a step",
+        ),
+        (
+            "*STEP\n",
+            "*STEP, PERTURBATION\n",
+            "job.inp:44:8: *STEP: the parameter PERTURBATION cannot be read; those that can be read are NLGEOM, INC, AMPLITUDE, NAME, UNSYMM, INCF, INCF1",
+        ),
+        (
+            "0.5, 1.\n*BOUNDARY",
+            "2., 1.\n*BOUNDARY",
+            "job.inp:46:1: the first increment, 2.0, is longer than the step, 1.0",
+        ),
+        (
+            "0., 0., 0.5, 1., 1., -1.",
+            "0., 0., 0.5",
+            "job.inp:41:9: a time without a factor; they come in pairs",
+        ),
+    ];
+    for (from, to, message) in cases {
+        assert_eq!(refusal(&but(BLOCK, from, to)), message);
+    }
+    assert!(
+        refusal(BLOCK.rsplit_once("*END STEP").map_or("", |(most, _)| most))
+            .contains("this step has no end")
+    );
+    assert!(refusal("*NODE\n1, 0., 0.\n").contains("the deck has no step"));
+    assert!(refusal("1, 2\n").contains("before the first keyword"));
+}
+
+#[test]
+fn what_is_passed_over_or_read_as_something_else_is_listed_with_its_line() {
+    let lines = |deck: &Deck| -> Vec<String> {
+        let remarks = deck.remarks.iter();
+        remarks
+            .map(|remark| format!("{}: {}", remark.place.line, remark.text))
+            .collect()
+    };
+    let found = lines(&deck(RINGS)).join("\n");
+    assert!(
+        found.contains("30: *EXPANSION is passed over: it acts with temperatures only"),
+        "{found}"
+    );
+    assert!(
+        found.contains("36: SURFACE TO SURFACE is read node to surface"),
+        "{found}"
+    );
+    let twice = but(
+        BLOCK,
+        "*BOUNDARY\nGROUND, 1, 2",
+        "*BOUNDARY\nGROUND, 1, 3\nTOP, 3",
+    );
+    let deck = deck(&twice);
+    let remark = deck
+        .remarks
+        .iter()
+        .find(|remark| remark.text.contains("plane itself"))
+        .expect("a remark");
+    assert_eq!((remark.place.line, remark.times), (43, 2));
+}
+
+#[test]
+fn loads_on_sides_and_volumes_and_adjusted_gaps_are_read() {
+    let text = but(
+        BLOCK,
+        "TYPE=NODE TO SURFACE",
+        "TYPE=NODE TO SURFACE, ADJUST=TOP",
+    );
+    let text = but(
+        &text,
+        "*END STEP",
+        "*DLOAD\nBLOCK, P2, 5.\n2, GRAV, 9.81, 0., -2., 0.\n1, BX, 3.\n*DSLOAD\nABOVE, P, 7.\n*END STEP",
+    );
+    let deck = deck(&text);
+    assert_eq!(deck.pairs[0].adjust, Some(Adjust::Set(0)));
+    let step = &deck.steps[0];
+    let pressures: Vec<_> = step
+        .pressures
+        .iter()
+        .map(|p| (p.element, p.side, p.value))
+        .collect();
+    assert_eq!(pressures, [(0, 1, 5.0), (1, 1, 5.0), (2, 2, 7.0)]);
+    let weights: Vec<_> = step.weights.iter().map(|w| (w.element, w.load)).collect();
+    assert_eq!(
+        weights,
+        [
+            (1, Volume::Gravity([0.0, -9.81])),
+            (0, Volume::Force([3.0, 0.0]))
+        ]
+    );
+}
+
+#[test]
+fn keywords_stand_once_and_in_order() {
+    let names: Vec<&str> = keywords::KEYWORDS.iter().map(|(name, _)| *name).collect();
+    assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{names:?}");
+}
+
+/// One deck with a few bytes, lines or words of it changed, or taken from another.
+fn damaged() -> impl Strategy<Value = String> {
+    let decks = prop::sample::select(vec![PLATES, RINGS, BLOCK, BEAM, GLUED]);
+    let change = (
+        any::<prop::sample::Index>(),
+        any::<prop::sample::Index>(),
+        0..6usize,
+        "\\PC{0,12}",
+    );
+    (decks, prop::collection::vec(change, 1..6)).prop_map(|(deck, changes)| {
+        let mut lines: Vec<String> = deck.lines().map(str::to_owned).collect();
+        for (at, other, kind, text) in changes {
+            let (at, other) = (at.index(lines.len()), other.index(lines.len()));
+            match kind {
+                0 => lines.swap(at, other),
+                1 => lines[at] = lines[other].clone(),
+                2 => lines[at] = text,
+                3 => lines[at].push_str(&text),
+                4 => lines[at] = lines[at].replace(',', "="),
+                _ => lines[at] = lines[at].replace(['0', '1'], "9999999999999999999"),
+            }
+        }
+        lines.join("\n")
+    })
+}
+
+proptest! {
+    #[test]
+    fn no_text_makes_the_reader_panic(text in "(?s).{0,300}") {
+        let _ = read("job.inp", &text, &mut alone);
+        let _ = is_one(&text);
+    }
+
+    #[test]
+    fn no_row_of_cards_makes_the_reader_panic(
+        cards in prop::collection::vec((prop::sample::select(keywords::KEYWORDS), "[A-Z, =0-9.*-]{0,40}", "[A-Z0-9,. \n-]{0,60}"), 0..12),
+    ) {
+        let lines = cards.iter().map(|((name, _), parameters, data)| format!("*{name},{parameters}\n{data}\n"));
+        let _ = read("job.inp", &lines.collect::<String>(), &mut alone);
+    }
+
+    #[test]
+    fn a_damaged_deck_is_read_or_refused_at_a_line_that_it_has(text in damaged()) {
+        let mut give = |_: &str| Ok(GLUED_MESH.to_owned());
+        if let Err(wrong) = read("job.inp", &text, &mut give) {
+            let lines = if wrong.place.file == 0 { text.lines().count() } else { GLUED_MESH.lines().count() };
+            prop_assert!((1..=lines).contains(&wrong.place.line), "{}", wrong);
+            prop_assert!(!wrong.message.is_empty());
+        }
+    }
+}

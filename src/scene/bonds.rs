@@ -1,0 +1,76 @@
+//! What the laws of the pairs cost and change, where any is not hard contact; as `check` shows it.
+
+use crate::model::{Contact, Model};
+
+/// A line for each law that any slave node has besides hard contact; empty where none has.
+pub fn words(model: &Model) -> Vec<String> {
+    let having = |k: usize| -> Vec<f64> {
+        let gives = model.contacts.iter().map(|contact| contact.bond.give()[k]);
+        gives.filter(|give| *give > 0.0).collect()
+    };
+    let mut lines = Vec::new();
+    let (normal, tangential) = (having(0), having(1));
+    if !normal.is_empty() {
+        lines.push(format!(
+            "penalty at {}: inside by c F_n, c {}; no unknowns more, a term on the interface's diagonal",
+            nodes(normal.len()),
+            range(&normal)
+        ));
+    }
+    if !tangential.is_empty() {
+        lines.push(format!(
+            "stick stiffness at {}: elastic slip of c F_t, c {}; no unknowns more",
+            nodes(tangential.len()),
+            range(&tangential)
+        ));
+    }
+    if !normal.is_empty() || !tangential.is_empty() {
+        lines.push("condensed bodies stand on springs then, and nodes of these laws are not held in corners".into());
+    }
+    let tied = model
+        .contacts
+        .iter()
+        .filter(|contact| contact.bond.is_tied())
+        .count();
+    if tied > 0 {
+        lines.push(format!(
+            "tied: {}, always fixed and without friction; no strategy has to choose their modes",
+            nodes(tied)
+        ));
+    }
+    if !lines.is_empty() {
+        lines.push(areas(&model.contacts));
+    }
+    lines
+}
+
+fn nodes(count: usize) -> String {
+    match count {
+        1 => "1 slave node".into(),
+        count => format!("{count} slave nodes"),
+    }
+}
+
+/// From the least to the largest.
+fn range(values: &[f64]) -> String {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    match least == largest {
+        true => format!("{least:.4e}"),
+        false => format!("{least:.4e} to {largest:.4e}"),
+    }
+}
+
+/// Tributary areas together, and how many nodes have none.
+fn areas(contacts: &[Contact]) -> String {
+    let known = || contacts.iter().filter_map(|contact| contact.area);
+    let (count, sum) = (known().count(), known().sum::<f64>());
+    let without = match contacts.len() - count {
+        0 => String::new(),
+        none => format!("; {} without", nodes(none)),
+    };
+    format!(
+        "areas of {} (undeformed): {sum:.6} together{without}",
+        nodes(count)
+    )
+}

@@ -1,0 +1,359 @@
+//! Contact pairs and ties of a deck.
+
+use super::bodies::Groups;
+use super::{Fault, MESH, Made};
+use crate::format::contact_law::{ContactLaw, FrictionSpec};
+use crate::format::error::at;
+use crate::format::given::SideSet;
+use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
+use crate::model::{InitialGaps, Mode};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use stickslip_exchange::inp::Place;
+use stickslip_exchange::inp::deck::{Adjust, Faces, Normal, Tie};
+
+/// Without a POSITION TOLERANCE, nodes are tied that are at most this part of a side's length away, as CalculiX has it.
+const TOLERANCE: f64 = 0.025;
+
+/// What holds between a slave node and the surfaces that it may touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Laws {
+    law: ContactLaw,
+    friction: f64,
+    stick: Option<f64>,
+}
+
+/// A pair or a tie: who touches what, and how.
+struct Touching {
+    slaves: Vec<usize>,
+    master: usize,
+    laws: Laws,
+    place: Place,
+}
+
+impl Made<'_> {
+    pub(super) fn contacts(&mut self) -> Result<(), Fault> {
+        let mut all = Vec::new();
+        for pair in &self.deck.pairs {
+            let interaction = &self.deck.interactions[pair.interaction];
+            let law = match interaction.normal {
+                Normal::Hard => ContactLaw::Hard,
+                Normal::Linear { stiffness } => ContactLaw::Penalty { stiffness },
+                Normal::Tied { .. } => ContactLaw::Tied,
+            };
+            let tied = law == ContactLaw::Tied;
+            if tied {
+                self.remark(
+                    interaction.normal_place,
+                    "TIED holds rigidly: its stiffness and its stick slope are not read",
+                );
+            }
+            if pair.small_sliding {
+                self.remark(
+                    pair.place,
+                    "SMALL SLIDING is not read: a slave node's place on its master is found anew in each iteration",
+                );
+            }
+            all.push(Touching {
+                slaves: self.slaves_of(pair.slave),
+                master: pair.master,
+                laws: Laws {
+                    law,
+                    friction: if tied { 0.0 } else { interaction.friction },
+                    stick: interaction.stick.filter(|_| !tied),
+                },
+                place: pair.place,
+            });
+        }
+        for tie in &self.deck.ties {
+            let slaves = self.near(tie)?;
+            all.push(Touching {
+                slaves,
+                master: tie.master,
+                laws: Laws {
+                    law: ContactLaw::Tied,
+                    friction: 0.0,
+                    stick: None,
+                },
+                place: tie.place,
+            });
+        }
+        self.adjusted()?;
+        let surfaces = self.masters(&all);
+        self.groups(&all, &surfaces)
+    }
+
+    /// Nodes of a surface, ascending.
+    fn nodes_of(&self, surface: usize) -> BTreeSet<usize> {
+        match &self.deck.surfaces[surface].of {
+            Faces::Nodes(nodes) => nodes.iter().copied().collect(),
+            Faces::Elements(sides) => sides
+                .iter()
+                .flat_map(|&(e, side)| self.deck.side(e, side))
+                .collect(),
+        }
+    }
+
+    fn slaves_of(&self, surface: usize) -> Vec<usize> {
+        let used = |node: &usize| self.used[*node];
+        self.nodes_of(surface).into_iter().filter(used).collect()
+    }
+
+    /// The master surfaces as lines of sides, each with the ids of its parts that hang together.
+    fn masters(&mut self, all: &[Touching]) -> BTreeMap<usize, Vec<String>> {
+        let deck = self.deck;
+        let mut made = BTreeMap::new();
+        for touching in all {
+            if made.contains_key(&touching.master) {
+                continue;
+            }
+            let surface = &deck.surfaces[touching.master];
+            let Faces::Elements(sides) = &surface.of else {
+                continue;
+            };
+            let ids: Vec<String> = self.lines(sides, &surface.name, surface.place);
+            for id in &ids {
+                self.origin
+                    .note(at!["surfaces", self.spec.surfaces.len()], surface.place);
+                self.spec.surfaces.push(SurfaceSpec {
+                    id: id.clone(),
+                    along: format!("{MESH}.{id}"),
+                    reverse: false,
+                    endless: false,
+                    smooth: false,
+                });
+            }
+            made.insert(touching.master, ids);
+        }
+        made
+    }
+
+    /// Enters sides of elements as lines of the mesh, one for those that hang together; their names.
+    pub(super) fn lines(
+        &mut self,
+        sides: &[(usize, usize)],
+        name: &str,
+        place: Place,
+    ) -> Vec<String> {
+        let deck = self.deck;
+        let mut groups = Groups::of(deck.nodes.len());
+        let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
+        for side in &sides {
+            side.windows(2)
+                .for_each(|pair| groups.join(pair[0], pair[1]));
+        }
+        let mut pieces: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
+        for side in sides {
+            let labels = side
+                .iter()
+                .map(|&node| deck.nodes[node].label as usize)
+                .collect();
+            pieces.entry(groups.root(side[0])).or_default().push(labels);
+        }
+        let enter = |sides: Vec<Vec<usize>>| {
+            let name = self.free.take(name);
+            if let Some(Nodes::Given { sides: sets, .. }) = self.spec.nodes.first_mut() {
+                self.origin
+                    .note(at!["nodes", 0, "sides", sets.len()], place);
+                sets.push(SideSet {
+                    name: name.clone(),
+                    sides,
+                });
+            }
+            name
+        };
+        pieces.into_values().map(enter).collect()
+    }
+
+    /// Slave nodes by what they may touch and how.
+    fn groups(
+        &mut self,
+        all: &[Touching],
+        surfaces: &BTreeMap<usize, Vec<String>>,
+    ) -> Result<(), Fault> {
+        let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (k, touching) in all.iter().enumerate() {
+            let rigid = self
+                .nodes_of(touching.master)
+                .iter()
+                .all(|&n| self.still[n] == [true; 2]);
+            // A node that stands still over a surface that does has no force to be found.
+            let moves = |node: &&usize| !(rigid && self.still[**node] == [true; 2]);
+            for &node in touching.slaves.iter().filter(moves) {
+                of_node.entry(node).or_default().push(k);
+            }
+        }
+        let mut groups: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
+        let mut known: HashMap<Vec<usize>, usize> = HashMap::new();
+        for (node, touched) in of_node {
+            let group = *known.entry(touched.clone()).or_insert(groups.len());
+            if group == groups.len() {
+                groups.push((touched, Vec::new()));
+            }
+            groups[group].1.push(node);
+        }
+        for (touched, nodes) in groups {
+            self.group_of(all, surfaces, &touched, &nodes)?;
+        }
+        Ok(())
+    }
+
+    fn group_of(
+        &mut self,
+        all: &[Touching],
+        surfaces: &BTreeMap<usize, Vec<String>>,
+        touched: &[usize],
+        nodes: &[usize],
+    ) -> Result<(), Fault> {
+        let Some(first) = touched.first().map(|&k| &all[k]) else {
+            return Ok(());
+        };
+        if let Some(other) = touched
+            .iter()
+            .map(|&k| &all[k])
+            .find(|other| other.laws != first.laws)
+        {
+            let label = self.deck.nodes[nodes[0]].label;
+            let message = format!(
+                "node {label} is a slave of another pair, with another law; a node has one law"
+            );
+            return Err(Fault::new(other.place, message));
+        }
+        let masters: BTreeSet<usize> = touched.iter().map(|&k| all[k].master).collect();
+        let on: Vec<String> = masters
+            .iter()
+            .filter_map(|master| surfaces.get(master))
+            .flatten()
+            .cloned()
+            .collect();
+        let laws = first.laws;
+        self.origin
+            .note(at!["slaves", self.spec.slaves.len()], first.place);
+        self.spec.slaves.push(SlaveSpec {
+            nodes: nodes.iter().map(|&node| self.node(node)).collect(),
+            on,
+            start: Mode::Free,
+            friction: (laws.law != ContactLaw::Tied).then(|| FrictionSpec {
+                angle: laws.friction.atan().to_degrees(),
+                ..FrictionSpec::default()
+            }),
+            law: laws.law,
+            stick: laws.stick,
+            area: None,
+            state: Default::default(),
+        });
+        Ok(())
+    }
+
+    /// What becomes of the gaps at the start: one choice for the whole scene.
+    fn adjusted(&mut self) -> Result<(), Fault> {
+        let pairs = &self.deck.pairs;
+        let Some(first) = pairs.first() else {
+            return Ok(());
+        };
+        if let Some(other) = pairs.iter().find(|pair| pair.adjust != first.adjust) {
+            return Err(Fault::new(
+                other.place,
+                "ADJUST must be the same for all pairs: initial gaps are adjusted in the whole scene or nowhere",
+            ));
+        }
+        let gap = match &first.adjust {
+            None => return Ok(()),
+            Some(Adjust::Within(gap)) => *gap,
+            Some(Adjust::Set(set)) => {
+                let members = &self.deck.node_sets[*set].members;
+                let missing = |node: &usize| members.binary_search(node).is_err();
+                let slaves = pairs
+                    .iter()
+                    .flat_map(|pair| self.slaves_of(pair.slave))
+                    .find(missing);
+                if let Some(node) = slaves {
+                    let message = format!(
+                        "ADJUST names a set without the slave node {}; either all slave nodes are moved, or those within a distance",
+                        self.deck.nodes[node].label
+                    );
+                    return Err(Fault::new(first.place, message));
+                }
+                self.size()
+            }
+        };
+        self.spec.settings.initial_gaps = InitialGaps::Adjust;
+        self.spec.settings.adjust_gap = gap;
+        self.origin.note(at!["settings"], first.place);
+        Ok(())
+    }
+
+    /// Diagonal of the box around all nodes.
+    fn size(&self) -> f64 {
+        let range = |axis: usize| {
+            let at = self.deck.nodes.iter().map(|node| node.at[axis]);
+            let (least, most) = at.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                (a.min(x), b.max(x))
+            });
+            most - least
+        };
+        range(0).hypot(range(1))
+    }
+
+    /// The nodes that a tie holds: those near enough to the master.
+    fn near(&mut self, tie: &Tie) -> Result<Vec<usize>, Fault> {
+        let at = |node: &usize| self.deck.nodes[*node].at;
+        let Faces::Elements(sides) = &self.deck.surfaces[tie.master].of else {
+            return Ok(Vec::new());
+        };
+        let sides: Vec<Vec<usize>> = sides
+            .iter()
+            .map(|&(e, side)| self.deck.side(e, side))
+            .collect();
+        let lines: Vec<([f64; 2], [f64; 2])> = sides
+            .iter()
+            .flat_map(|side| side.windows(2).map(|pair| (at(&pair[0]), at(&pair[1]))))
+            .collect();
+        let whole: f64 = lines
+            .iter()
+            .map(|(a, b)| (b[0] - a[0]).hypot(b[1] - a[1]))
+            .sum();
+        let tolerance = tie
+            .tolerance
+            .unwrap_or(TOLERANCE * whole / sides.len().max(1) as f64);
+        let slaves = self.slaves_of(tie.slave);
+        let is_near = |node: &usize| {
+            lines
+                .iter()
+                .any(|line| distance(at(node), *line) <= tolerance)
+        };
+        let near: Vec<usize> = slaves.iter().copied().filter(is_near).collect();
+        if near.is_empty() {
+            return Err(Fault::new(
+                tie.place,
+                format!(
+                    "no node of the first surface is within {tolerance:.3e} of the second; see POSITION TOLERANCE"
+                ),
+            ));
+        }
+        if near.len() < slaves.len() {
+            let text = format!(
+                "{} of {} nodes are farther than {tolerance:.3e} away and are not tied",
+                slaves.len() - near.len(),
+                slaves.len()
+            );
+            self.remark(tie.place, &text);
+        }
+        if !tie.adjust {
+            self.remark(
+                tie.place,
+                "ADJUST=NO is not read: tied nodes are put onto their master",
+            );
+        }
+        Ok(near)
+    }
+}
+
+/// Distance of a point from a straight piece.
+fn distance(at: [f64; 2], (a, b): ([f64; 2], [f64; 2])) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    let from = [at[0] - a[0], at[1] - a[1]];
+    let part = ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0);
+    let part = if part.is_nan() { 0.0 } else { part };
+    (from[0] - part * along[0]).hypot(from[1] - part * along[1])
+}

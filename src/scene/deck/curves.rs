@@ -1,0 +1,239 @@
+//! What acts as a function of time, over all steps.
+//!
+//! In each step a load that is given there goes from what it was to its value, in proportion to time, or at once, or as its
+//! amplitude says; one that is not given stays what it is. A load that is there at once is there in the step's first increment.
+//!
+//! The load factor counts time, so that a step from t0 to t1 is the leg of the path between them. Where steps have increments of
+//! different sizes it counts increments instead.
+
+use stickslip_exchange::inp::deck::{Amplitude, Deck, Time};
+
+/// With automatic increments, a step is cut into so many at most: the first one of a deck is often far smaller than all that
+/// follow.
+const AUTOMATIC: f64 = 10.0;
+
+/// The times of a deck's steps, and their load factors.
+pub(super) struct Clock {
+    steps: Vec<Leg>,
+    /// The increment of the load factor.
+    pub increment: f64,
+    /// Whether the load factor is time.
+    pub is_time: bool,
+}
+
+/// A step.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    /// Time at its beginning, since the first step's.
+    begin: f64,
+    period: f64,
+    increment: f64,
+    /// Load factors at its beginning and its end.
+    path: [f64; 2],
+}
+
+/// Size of the increments of a step.
+fn increment(time: &Time) -> f64 {
+    if time.direct {
+        return time.initial;
+    }
+    let wanted = time.initial.max(time.period / AUTOMATIC);
+    time.most.map_or(wanted, |most| wanted.min(most))
+}
+
+impl Clock {
+    pub fn of(deck: &Deck) -> Clock {
+        let sizes: Vec<f64> = deck
+            .steps
+            .iter()
+            .map(|step| increment(&step.time))
+            .collect();
+        let is_time = sizes.windows(2).all(|pair| pair[0] == pair[1]);
+        let (mut begin, mut at) = (0.0, 0.0);
+        let mut steps = Vec::with_capacity(sizes.len());
+        for (step, &size) in deck.steps.iter().zip(&sizes) {
+            let period = step.time.period;
+            let long = if is_time { period } else { count(period, size) };
+            steps.push(Leg {
+                begin,
+                period,
+                increment: size,
+                path: [at, at + long],
+            });
+            begin += period;
+            at += long;
+        }
+        Clock {
+            steps,
+            increment: if is_time {
+                sizes.first().copied().unwrap_or(1.0)
+            } else {
+                1.0
+            },
+            is_time,
+        }
+    }
+
+    /// The corners of the path.
+    pub fn path(&self) -> Vec<f64> {
+        let ends = self.steps.iter().map(|leg| leg.path[1]);
+        std::iter::once(0.0).chain(ends).collect()
+    }
+
+    /// The load factor at a time of a step, counted from its beginning.
+    fn factor(&self, step: usize, time: f64) -> f64 {
+        let leg = &self.steps[step];
+        leg.path[0] + (leg.path[1] - leg.path[0]) * (time / leg.period)
+    }
+}
+
+/// Whole increments of a size that a time is cut into.
+fn count(time: f64, size: f64) -> f64 {
+    // Ten tenths are ten increments, whatever the last bit of the quotient says.
+    const ROUNDING: f64 = 1e-9;
+    (time / size * (1.0 - ROUNDING)).ceil().max(1.0)
+}
+
+/// What a step says of a load.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Given {
+    /// Values with their amplitudes, which add up.
+    pub values: Vec<(f64, Option<usize>)>,
+    /// Whether what the steps before gave is given up.
+    pub new: bool,
+    /// Whether what has no amplitude is there at once.
+    pub at_once: bool,
+}
+
+/// A value as a function of the load factor: points, the load factors rising, from (0, 0) on.
+pub(super) fn curve(clock: &Clock, amplitudes: &[Amplitude], given: &[Given]) -> Vec<(f64, f64)> {
+    let mut points = vec![(0.0, 0.0)];
+    let mut before = 0.0;
+    let mut acting: Vec<(f64, Option<usize>)> = Vec::new();
+    for (step, given) in given.iter().enumerate() {
+        let leg = clock.steps[step];
+        let fresh = !given.values.is_empty();
+        if fresh {
+            acting = given.values.clone();
+        } else if given.new {
+            acting.clear();
+        }
+        let goes_on =
+            |&(_, amplitude): &(f64, Option<usize>)| amplitude.is_some_and(|a| amplitudes[a].total);
+        let of_step = Acting {
+            loads: &acting,
+            amplitudes,
+            begin: leg.begin,
+            period: leg.period,
+            before,
+            jump: given.at_once && fresh,
+        };
+        let still = !fresh && !acting.iter().any(goes_on);
+        match still {
+            true => before = if given.new { 0.0 } else { before },
+            false => {
+                let jumps = (of_step.at(0.0) - before).abs() > 0.0;
+                let from = if jumps {
+                    leg.increment.min(leg.period)
+                } else {
+                    0.0
+                };
+                for time in of_step.corners(from) {
+                    points.push((clock.factor(step, time), of_step.at(time)));
+                }
+                before = of_step.at(leg.period);
+            }
+        }
+        points.push((leg.path[1], before));
+    }
+    points
+}
+
+/// What acts in a step.
+struct Acting<'a> {
+    loads: &'a [(f64, Option<usize>)],
+    amplitudes: &'a [Amplitude],
+    begin: f64,
+    period: f64,
+    /// What acted when it began.
+    before: f64,
+    /// Whether what has no amplitude is there at once.
+    jump: bool,
+}
+
+impl Acting<'_> {
+    /// At a time since the step began.
+    fn at(&self, time: f64) -> f64 {
+        let own = |a: usize| {
+            if self.amplitudes[a].total {
+                self.begin + time
+            } else {
+                time
+            }
+        };
+        let by_amplitude = |&(value, amplitude): &(f64, Option<usize>)| {
+            amplitude.map(|a| value * interpolated(&self.amplitudes[a].points, own(a)))
+        };
+        let swung: f64 = self.loads.iter().filter_map(by_amplitude).sum();
+        let plain: Vec<f64> = self
+            .loads
+            .iter()
+            .filter(|(_, a)| a.is_none())
+            .map(|(value, _)| *value)
+            .collect();
+        if plain.is_empty() {
+            return swung;
+        }
+        let goal: f64 = plain.iter().sum();
+        // A load with an amplitude as well starts from nothing.
+        let start = if plain.len() == self.loads.len() {
+            self.before
+        } else {
+            0.0
+        };
+        let part = if self.jump { 1.0 } else { time / self.period };
+        swung + start + (goal - start) * part
+    }
+
+    /// Times inside the step at which its course has a corner, from one on that is a corner if it is not 0.
+    fn corners(&self, from: f64) -> Vec<f64> {
+        let of_amplitude = |&(_, amplitude): &(f64, Option<usize>)| {
+            let amplitude = &self.amplitudes[amplitude?];
+            let begin = if amplitude.total { self.begin } else { 0.0 };
+            Some(amplitude.points.iter().map(move |(time, _)| time - begin))
+        };
+        let mut corners: Vec<f64> = self
+            .loads
+            .iter()
+            .filter_map(of_amplitude)
+            .flatten()
+            .collect();
+        corners.push(from);
+        corners.retain(|&time| time > 0.0 && time >= from && time < self.period);
+        corners.sort_by(f64::total_cmp);
+        corners.dedup();
+        corners
+    }
+}
+
+/// Piecewise linear, constant beyond the ends.
+fn interpolated(points: &[(f64, f64)], time: f64) -> f64 {
+    crate::model::Factor(points.to_vec()).at(time)
+}
+
+/// A curve as a value and a scale: the largest size that it has, and what part of it acts. `None` where nothing ever acts.
+pub(super) fn scaled(points: &[(f64, f64)]) -> Option<(f64, Vec<(f64, f64)>)> {
+    let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+    let largest = points.iter().map(|p| p.1).fold(0.0, larger);
+    if largest == 0.0 {
+        return None;
+    }
+    match points {
+        [(_, _), (end, value)] if *end == 1.0 => Some((*value, Vec::new())),
+        _ => {
+            // No negative zeros.
+            let part = |&(at, value): &(f64, f64)| (at, value / largest + 0.0);
+            Some((largest, points.iter().map(part).collect()))
+        }
+    }
+}

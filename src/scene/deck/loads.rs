@@ -1,0 +1,495 @@
+//! Supports, motions and loads of a deck, its increments, and what it prints.
+
+use super::curves::{Clock, Given, curve, scaled};
+use super::{Fault, MESH, Made};
+use crate::format::error::at;
+use crate::format::given::NodeSet;
+use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
+use crate::model::{Axis, Component};
+use std::collections::{BTreeMap, HashMap};
+use stickslip_exchange::inp::Place;
+use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
+
+/// Most nodes of a printed set whose displacements become monitors.
+const PRINTED: usize = 20;
+
+/// What acts on something, step by step, and where it stands first.
+struct Course {
+    place: Place,
+    given: Vec<Given>,
+}
+
+/// A value, and the scale by which it acts.
+type Acts = (f64, Vec<(f64, f64)>);
+
+/// Values of nodes as [`Made::courses`] takes them.
+fn listed(values: &[Value]) -> Vec<((usize, Direction), f64, Option<usize>, Place)> {
+    let one = |value: &Value| (value.target(), value.value, value.amplitude, value.place);
+    values.iter().map(one).collect()
+}
+
+/// Points of a curve to compare by.
+fn bits(points: &[(f64, f64)]) -> Vec<u64> {
+    points
+        .iter()
+        .flat_map(|(at, value)| [at.to_bits(), value.to_bits()])
+        .collect()
+}
+
+impl Made<'_> {
+    pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), Fault> {
+        self.motions(clock)?;
+        self.forces(clock)?;
+        self.pressures(clock);
+        self.weights(clock)?;
+        self.monitors();
+        Ok(())
+    }
+
+    /// The courses of what steps give to targets: `values` lists target, value, amplitude and place; where `adds` does not hold, a
+    /// later value of a step stands for an earlier one.
+    fn courses<T: Ord>(
+        &self,
+        values: impl Fn(&Step) -> Vec<(T, f64, Option<usize>, Place)>,
+        new: impl Fn(&Step) -> bool,
+        adds: bool,
+    ) -> BTreeMap<T, Course> {
+        let steps = &self.deck.steps;
+        let empty = || -> Vec<Given> {
+            let of = |step: &Step| Given {
+                values: Vec::new(),
+                new: new(step),
+                at_once: step.at_once,
+            };
+            steps.iter().map(of).collect()
+        };
+        let mut courses = BTreeMap::new();
+        for (k, step) in steps.iter().enumerate() {
+            for (target, value, amplitude, place) in values(step) {
+                let course = courses.entry(target).or_insert_with(|| Course {
+                    place,
+                    given: empty(),
+                });
+                let here = &mut course.given[k].values;
+                if !adds {
+                    here.clear();
+                }
+                here.push((value, amplitude));
+            }
+        }
+        courses
+    }
+
+    fn is_beam_node(&self) -> Vec<bool> {
+        let mut on_beam = vec![false; self.deck.nodes.len()];
+        let beams = self
+            .deck
+            .elements
+            .iter()
+            .filter(|e| e.kind.family == Family::Beam);
+        beams
+            .flat_map(|e| &e.nodes)
+            .for_each(|&node| on_beam[node] = true);
+        on_beam
+    }
+
+    fn motions(&mut self, clock: &Clock) -> Result<(), Fault> {
+        let mut courses =
+            self.courses(|step| listed(&step.motions), |step| step.new_motions, false);
+        let mut from_model: BTreeMap<(usize, Direction), Place> = BTreeMap::new();
+        for support in &self.deck.supports {
+            from_model.entry(support.target()).or_insert(support.place);
+        }
+        let on_beam = self.is_beam_node();
+        let moves = |&(node, direction): &(usize, Direction)| {
+            self.used[node] && (direction != Direction::Rotation || on_beam[node])
+        };
+        courses.retain(|target, _| moves(target));
+        from_model.retain(|target, _| moves(target));
+        for target in from_model.keys().chain(courses.keys()) {
+            self.stays(target, courses.get(target), from_model.contains_key(target))?;
+        }
+        let mut held: BTreeMap<usize, (Vec<Component>, Place)> = BTreeMap::new();
+        let mut hold = |(node, direction): (usize, Direction), place: Place| {
+            held.entry(node)
+                .or_insert((Vec::new(), place))
+                .0
+                .push(component(direction));
+        };
+        let mut moved: Vec<Moved> = Vec::new();
+        let mut known: HashMap<(Direction, Vec<u64>), usize> = HashMap::new();
+        for (target, place) in from_model
+            .iter()
+            .filter(|(target, _)| !courses.contains_key(target))
+        {
+            hold(*target, *place);
+        }
+        for (&(node, direction), course) in &courses {
+            let points = curve(clock, &self.deck.amplitudes, &course.given);
+            let Some((value, scale)) = scaled(&points) else {
+                hold((node, direction), course.place);
+                continue;
+            };
+            let group = *known
+                .entry((direction, bits(&points)))
+                .or_insert(moved.len());
+            if group == moved.len() {
+                moved.push(Moved {
+                    nodes: Vec::new(),
+                    direction,
+                    value,
+                    scale,
+                    place: course.place,
+                });
+            }
+            moved[group].nodes.push(node);
+        }
+        self.supports(held);
+        for group in moved {
+            let node = self.group(&group.nodes, "MOVED");
+            self.origin
+                .note(at!["loads", self.spec.loads.len()], group.place);
+            self.spec.loads.push(LoadSpec::Displacement {
+                node,
+                component: component(group.direction),
+                value: group.value,
+                scale: group.scale,
+            });
+        }
+        Ok(())
+    }
+
+    /// Refuses what is held or moved in some steps and free in others.
+    fn stays(
+        &self,
+        target: &(usize, Direction),
+        course: Option<&Course>,
+        from_model: bool,
+    ) -> Result<(), Fault> {
+        let label = self.deck.nodes[target.0].label;
+        let direction = component(target.1);
+        let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
+        for (k, step) in self.deck.steps.iter().enumerate() {
+            if step.new_motions && !given(k) && (k > 0 || from_model) {
+                let message = format!(
+                    "OP=NEW sets the {direction} of node {label} free in this step; what is held must be held in all steps"
+                );
+                return Err(Fault::new(step.place, message));
+            }
+            if given(k) && k > 0 && !from_model && !(0..k).any(given) {
+                let place = course.map_or(step.place, |course| course.place);
+                let message = format!(
+                    "the {direction} of node {label} is free in the steps before; what is moved must be held from the first step on"
+                );
+                return Err(Fault::new(place, message));
+            }
+        }
+        Ok(())
+    }
+
+    fn supports(&mut self, held: BTreeMap<usize, (Vec<Component>, Place)>) {
+        let mut alike: Vec<(Vec<Component>, Place, Vec<usize>)> = Vec::new();
+        for (node, (components, place)) in held {
+            for component in &components {
+                match component {
+                    Component::X => self.still[node][0] = true,
+                    Component::Y => self.still[node][1] = true,
+                    Component::Rotation => {}
+                }
+            }
+            match alike.iter_mut().find(|(of, ..)| *of == components) {
+                Some((.., nodes)) => nodes.push(node),
+                None => alike.push((components, place, vec![node])),
+            }
+        }
+        for (fix, place, nodes) in alike {
+            let node = self.group(&nodes, "HELD");
+            self.origin
+                .note(at!["supports", self.spec.supports.len()], place);
+            self.spec.supports.push(SupportSpec { node, fix });
+        }
+    }
+
+    /// What nodes are called together: by the number of the only one, else as a set, the deck's where it has one.
+    fn group(&mut self, nodes: &[usize], wanted: &str) -> String {
+        if let [only] = nodes {
+            return self.node(*only);
+        }
+        let labels: Vec<usize> = nodes
+            .iter()
+            .map(|&n| self.deck.nodes[n].label as usize)
+            .collect();
+        let own = self.deck.node_sets.iter().find(|set| {
+            let used = set.members.iter().filter(|&&node| self.used[node]);
+            used.eq(nodes.iter())
+        });
+        let Some(Nodes::Given { id, sets, .. }) = self.spec.nodes.first_mut() else {
+            return wanted.to_owned();
+        };
+        if let Some(known) = sets.iter().find(|set| set.nodes == labels) {
+            return format!("{id}.{}", known.name);
+        }
+        let name = self.free.take(own.map_or(wanted, |set| &set.name));
+        let whole = format!("{id}.{name}");
+        sets.push(NodeSet {
+            name,
+            nodes: labels,
+        });
+        whole
+    }
+
+    fn forces(&mut self, clock: &Clock) -> Result<(), Fault> {
+        let courses = self.courses(|step| listed(&step.forces), |step| step.new_forces, true);
+        let on_beam = self.is_beam_node();
+        for ((node, direction), course) in courses {
+            let label = self.deck.nodes[node].label;
+            if !self.used[node] {
+                return Err(Fault::new(
+                    course.place,
+                    format!(
+                        "node {label} belongs to no element; a force must act on one that does"
+                    ),
+                ));
+            }
+            if direction == Direction::Rotation && !on_beam[node] {
+                return Err(Fault::new(
+                    course.place,
+                    format!("node {label} is on no beam; a moment must act on one that is"),
+                ));
+            }
+            let points = curve(clock, &self.deck.amplitudes, &course.given);
+            let Some((value, scale)) = scaled(&points) else {
+                continue;
+            };
+            let name = self.node(node);
+            self.origin
+                .note(at!["loads", self.spec.loads.len()], course.place);
+            self.spec.loads.push(match direction {
+                Direction::Rotation => LoadSpec::Moment {
+                    node: name,
+                    value,
+                    scale,
+                },
+                _ => LoadSpec::Force {
+                    node: name,
+                    x: if direction == Direction::X {
+                        value
+                    } else {
+                        0.0
+                    },
+                    y: if direction == Direction::Y {
+                        value
+                    } else {
+                        0.0
+                    },
+                    scale,
+                },
+            });
+        }
+        Ok(())
+    }
+
+    /// Pressures: sides that are pressed alike are one load.
+    fn pressures(&mut self, clock: &Clock) {
+        let listed = |step: &Step| {
+            let pressed = step.pressures.iter();
+            pressed
+                .map(|p| ((p.element, p.side), p.value, p.amplitude, p.place))
+                .collect()
+        };
+        let courses = self.courses(listed, |step| step.new_pressures, true);
+        let mut alike: Vec<(Vec<(usize, usize)>, Acts, Place)> = Vec::new();
+        let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+        for (side, course) in courses {
+            let points = curve(clock, &self.deck.amplitudes, &course.given);
+            let Some(acts) = scaled(&points) else {
+                continue;
+            };
+            let group = *known.entry(bits(&points)).or_insert(alike.len());
+            if group == alike.len() {
+                alike.push((Vec::new(), acts, course.place));
+            }
+            alike[group].0.push(side);
+        }
+        for (sides, (value, scale), place) in alike {
+            for name in self.lines(&sides, "PRESSED", place) {
+                self.origin.note(at!["loads", self.spec.loads.len()], place);
+                self.spec.loads.push(LoadSpec::Pressure {
+                    along: format!("{MESH}.{name}"),
+                    value,
+                    scale: scale.clone(),
+                });
+            }
+        }
+    }
+
+    /// Forces by volume, one load for each component on each body.
+    fn weights(&mut self, clock: &Clock) -> Result<(), Fault> {
+        let deck = self.deck;
+        let listed = |step: &Step| {
+            let parts = step.weights.iter().flat_map(|weight| {
+                let (components, is_weight) = match weight.load {
+                    Volume::Gravity(components) => (components, true),
+                    Volume::Force(components) => (components, false),
+                };
+                let target = |axis: usize| (weight.element, axis, is_weight);
+                [0, 1].map(|axis| {
+                    (
+                        target(axis),
+                        components[axis],
+                        weight.amplitude,
+                        weight.place,
+                    )
+                })
+            });
+            parts.filter(|(_, value, ..)| *value != 0.0).collect()
+        };
+        let courses = self.courses(listed, |step| step.new_pressures, true);
+        let mut alike: BTreeMap<(usize, usize, bool, Vec<u64>), (usize, Acts, Place)> =
+            BTreeMap::new();
+        for ((element, axis, is_weight), course) in courses {
+            let points = curve(clock, &deck.amplitudes, &course.given);
+            let (Some(acts), Some(body)) = (scaled(&points), self.body_of[element]) else {
+                let label = deck.elements[element].label;
+                match self.body_of[element] {
+                    Some(_) => continue,
+                    None => {
+                        return Err(Fault::new(
+                            course.place,
+                            format!("element {label} is of a beam; only continua have weight here"),
+                        ));
+                    }
+                }
+            };
+            alike
+                .entry((body, axis, is_weight, bits(&points)))
+                .or_insert((0, acts, course.place))
+                .0 += 1;
+        }
+        for ((body, axis, is_weight, _), (count, (value, scale), place)) in alike {
+            let members = self.body_of.iter().filter(|of| **of == Some(body)).count();
+            let on = self.spec.bodies[body].id().to_owned();
+            if count < members {
+                let message = format!(
+                    "the load acts on {count} of the {members} elements of {on}, which hang together; it must act on all of them"
+                );
+                return Err(Fault::new(place, message));
+            }
+            let density = match is_weight {
+                false => 1.0,
+                true => self.density(body, place)?,
+            };
+            let part = |k: usize| if k == axis { value * density } else { 0.0 };
+            self.origin.note(at!["loads", self.spec.loads.len()], place);
+            self.spec.loads.push(LoadSpec::Volume {
+                on,
+                x: part(0),
+                y: part(1),
+                scale,
+            });
+        }
+        Ok(())
+    }
+
+    /// Density of the material of a body.
+    fn density(&self, body: usize, place: Place) -> Result<f64, Fault> {
+        let element = self.body_of.iter().position(|of| *of == Some(body));
+        let material = element.map(|element| &self.deck.materials[self.material_of[element]]);
+        material
+            .and_then(|material| material.density)
+            .ok_or_else(|| Fault::new(place, "the material that is to have weight has no *DENSITY"))
+    }
+
+    /// The increments, and the path of the load factor.
+    pub(super) fn history(&mut self, clock: &Clock) {
+        let deck = self.deck;
+        let history = &mut self.spec.history;
+        history.path = clock.path();
+        history.increment = clock.increment;
+        let least = deck.steps.iter().filter_map(|step| step.time.least);
+        let least = least
+            .min_by(f64::total_cmp)
+            .filter(|&least| clock.is_time && least < clock.increment);
+        history.least = least;
+        for (k, step) in deck.steps.iter().enumerate() {
+            self.origin
+                .note(at!["history", "path", k + 1], step.static_place);
+        }
+        if let Some(first) = deck.steps.first() {
+            self.origin.note(at!["history"], first.static_place);
+        }
+        if let Some(step) = deck
+            .steps
+            .iter()
+            .find(|step| !step.time.direct && step.time.initial < step.time.period)
+        {
+            self.remark(
+                step.static_place,
+                "automatic increments: a step is cut into increments as long as its first one, but not into more than ten unless its \
+                 largest one says so; see history.increment",
+            );
+        }
+        if !clock.is_time {
+            let place = deck
+                .steps
+                .first()
+                .map(|step| step.static_place)
+                .unwrap_or_default();
+            self.remark(place, "the steps have increments of different sizes: the load factor counts increments, not time");
+        }
+    }
+
+    /// Displacements of printed nodes, and the contact force.
+    fn monitors(&mut self) {
+        let deck = self.deck;
+        let mut nodes: Vec<usize> = Vec::new();
+        for &set in &deck.printed {
+            let members = &deck.node_sets[set].members;
+            if members.len() <= PRINTED {
+                nodes.extend(members.iter().filter(|&&node| self.used[node]));
+            }
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        for node in nodes {
+            for component in [Component::X, Component::Y] {
+                self.spec.monitors.push(MonitorSpec {
+                    name: format!("u_{component} {}", deck.nodes[node].label),
+                    of: Quantity::Displacement {
+                        node: self.node(node),
+                        component,
+                    },
+                });
+            }
+        }
+        if deck.pairs.is_empty() && deck.ties.is_empty() {
+            return;
+        }
+        for (name, component) in [("contact x", Axis::X), ("contact y", Axis::Y)] {
+            self.spec.monitors.push(MonitorSpec {
+                name: name.to_owned(),
+                of: Quantity::Contact {
+                    node: None,
+                    component,
+                },
+            });
+        }
+    }
+}
+
+/// Nodes that move alike.
+struct Moved {
+    nodes: Vec<usize>,
+    direction: Direction,
+    value: f64,
+    scale: Vec<(f64, f64)>,
+    place: Place,
+}
+
+fn component(direction: Direction) -> Component {
+    match direction {
+        Direction::X => Component::X,
+        Direction::Y => Component::Y,
+        Direction::Rotation => Component::Rotation,
+    }
+}

@@ -1,0 +1,319 @@
+//! Decks of CalculiX and Abaqus as scenes.
+//!
+//! What a deck means here, file by file:
+//!
+//! - `bodies`: one given mesh `n` whose nodes keep the deck's numbers (`n.12`). Elements that hang together and have one
+//!   section are a body, which is called after the section's set. Steps with NLGEOM have large strains on St
+//!   Venant-Kirchhoff's law in total Lagrangian form, as CalculiX's linear elastic material has there; steps without it have
+//!   small ones.
+//! - `contact`: pairs and ties: the nodes of the first surface are slaves on the sides of the second.
+//! - `curves`: what acts as a function of time, over all steps; `loads`: supports, motions and loads with these.
+//!
+//! Where a value of the scene comes from is kept in [`Origin`], so that what is found wrong when the scene is compiled is told
+//! with the deck's line.
+
+mod bodies;
+mod contact;
+mod curves;
+mod loads;
+#[cfg(test)]
+mod tests;
+
+use crate::format::error::{self, Path, SceneError, Step, at};
+
+use crate::format::spec::Spec;
+use crate::model::{Control, Jumps, Settings};
+use crate::outside::{self, input};
+use std::collections::HashSet;
+use std::path::{Component, Path as FilePath};
+
+use stickslip_exchange::inp::{self, DECK_BYTES, Deck, Place, Wrong};
+
+pub(super) use stickslip_exchange::inp::is_one;
+
+/// Id of the mesh that has all nodes and elements.
+const MESH: &str = "n";
+
+/// A deck as a scene.
+pub(super) struct Read {
+    /// The scene.
+    pub spec: Spec,
+    /// Where its values come from.
+    pub origin: Origin,
+    /// What was passed over or read as something else, with file and line.
+    pub remarks: Vec<String>,
+}
+
+/// Where the values of a scene stand in its deck.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Origin {
+    /// Names of the deck and of the files that it includes.
+    files: Vec<String>,
+    /// Of each node of the mesh.
+    nodes: Vec<Place>,
+    /// Of each element of each list of cells.
+    cells: Vec<Vec<Place>>,
+    /// Of all else.
+    others: Vec<(Path, Place)>,
+}
+
+impl Origin {
+    /// File, line and column of a value, or of the nearest one around it that has them.
+    pub fn of(&self, path: &Path) -> Option<(&str, (usize, usize))> {
+        let place = self.place(path)?;
+        Some((self.files.get(place.file)?, (place.line, place.column)))
+    }
+
+    fn place(&self, path: &Path) -> Option<Place> {
+        let key = |k: usize| match path.0.get(k) {
+            Some(Step::Key(key)) => key.as_str(),
+            _ => "",
+        };
+        let number = |k: usize| match path.0.get(k) {
+            Some(Step::Index(number)) => Some(*number),
+            _ => None,
+        };
+        let of_mesh = key(0) == "nodes" && number(1) == Some(0);
+        let exact = match key(2) {
+            "nodes" if of_mesh => number(3).and_then(|k| self.nodes.get(k)),
+            "elements" if of_mesh => number(3)
+                .zip(number(5))
+                .and_then(|(list, k)| self.cells.get(list)?.get(k)),
+            _ => None,
+        };
+        let around = || {
+            let found = self.others.iter().filter(|(whole, _)| whole.contains(path));
+            found
+                .max_by_key(|(whole, _)| whole.0.len())
+                .map(|(_, place)| place)
+        };
+        exact.or_else(around).copied()
+    }
+
+    fn note(&mut self, path: Path, place: Place) {
+        self.others.push((path, place));
+    }
+}
+
+/// What is wrong with a deck that reads well.
+#[derive(Debug)]
+struct Fault {
+    place: Place,
+    message: String,
+}
+
+impl Fault {
+    fn new(place: Place, message: impl Into<String>) -> Self {
+        Fault {
+            place,
+            message: message.into(),
+        }
+    }
+}
+
+/// Names that are still free: those of sets, parts, surfaces and bodies of a deck all stand behind one mesh.
+#[derive(Debug, Default)]
+struct Free(HashSet<String>);
+
+impl Free {
+    /// A name like the wanted one that can stand in a scene and is not taken yet.
+    fn take(&mut self, wanted: &str) -> String {
+        const MOST: usize = 50;
+        let plain = |c: char| {
+            if c.is_alphanumeric() || c == '-' || c == '_' {
+                c
+            } else {
+                '_'
+            }
+        };
+        let mut base: String = wanted.chars().take(MOST).map(plain).collect();
+        if base.chars().all(|c| c.is_ascii_digit()) {
+            base.insert_str(0, "set");
+        }
+        let mut name = base.clone();
+        let mut number = 2;
+        while !self.0.insert(name.clone()) {
+            name = format!("{base}-{number}");
+            number += 1;
+        }
+        name
+    }
+}
+
+/// Reads a deck, with what it includes from beside it.
+pub(super) fn read(name: &str, text: &str) -> Result<Read, SceneError> {
+    let folder = FilePath::new(name).parent().unwrap_or(FilePath::new(""));
+    let mut include = |wanted: &str| included(folder, wanted);
+    let deck = inp::read(name, text, &mut include).map_err(|wrong| unread(name, wrong))?;
+    scene(name, &deck).map_err(|fault| SceneError {
+        at: Some((fault.place.line, fault.place.column)),
+        ..SceneError::whole(&shown(name, deck.file(fault.place)), fault.message)
+    })
+}
+
+fn unread(name: &str, wrong: Wrong) -> SceneError {
+    SceneError {
+        at: Some((wrong.place.line, wrong.place.column)),
+        ..SceneError::whole(&shown(name, &wrong.file), wrong.message)
+    }
+}
+
+/// The name of a file of a deck as it is opened from here.
+fn shown(deck: &str, file: &str) -> String {
+    match FilePath::new(deck).parent() {
+        Some(folder) if file != deck => folder.join(file).to_string_lossy().into_owned(),
+        _ => file.to_owned(),
+    }
+}
+
+/// The text of a file that a deck includes.
+fn included(folder: &FilePath, wanted: &str) -> Result<String, String> {
+    let path = FilePath::new(wanted);
+    let below = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    if !path.components().all(below) {
+        return Err(format!(
+            "{} lies elsewhere; an included file must lie beside the deck or in a folder below it",
+            error::quoted(wanted)
+        ));
+    }
+    let most = DECK_BYTES as u64;
+    input::text(&folder.join(path), most, "a deck is a list of keywords")
+        .map_err(|why| format!("{}: {why}", error::quoted(wanted)))
+}
+
+/// The scene that a deck means.
+fn scene(name: &str, deck: &Deck) -> Result<Read, Fault> {
+    let mut made = Made::new(name, deck);
+    let nlgeom = one_geometry(deck)?;
+    made.bodies(nlgeom)?;
+    let clock = curves::Clock::of(deck);
+    made.loads(&clock)?;
+    made.contacts()?;
+    made.history(&clock);
+    Ok(made.whole(name))
+}
+
+/// Whether strains are large, in all steps alike.
+fn one_geometry(deck: &Deck) -> Result<bool, Fault> {
+    let first = deck.steps.first().is_some_and(|step| step.nlgeom);
+    match deck.steps.iter().find(|step| step.nlgeom != first) {
+        None => Ok(first),
+        Some(step) => Err(Fault::new(
+            step.place,
+            "NLGEOM must hold in all steps or in none: strains do not change their meaning on the way",
+        )),
+    }
+}
+
+/// A scene in the making.
+struct Made<'d> {
+    deck: &'d Deck,
+    spec: Spec,
+    origin: Origin,
+    remarks: Vec<String>,
+    free: Free,
+    /// The body of each element of a continuum.
+    body_of: Vec<Option<usize>>,
+    /// The material of each element in the deck.
+    material_of: Vec<usize>,
+    /// Which nodes belong to an element.
+    used: Vec<bool>,
+    /// Which nodes stand still for ever, in x and in y.
+    still: Vec<[bool; 2]>,
+}
+
+impl<'d> Made<'d> {
+    fn new(name: &str, deck: &'d Deck) -> Self {
+        let file = FilePath::new(name)
+            .file_name()
+            .map_or_else(|| name.into(), |f| f.to_string_lossy());
+        let title = if deck.heading.is_empty() {
+            file.as_ref()
+        } else {
+            &deck.heading
+        };
+        let mut used = vec![false; deck.nodes.len()];
+        deck.elements
+            .iter()
+            .flat_map(|e| &e.nodes)
+            .for_each(|&node| used[node] = true);
+        let remark = |remark: &inp::deck::Remark| {
+            let times = if remark.times > 1 {
+                format!(" ({} times)", remark.times)
+            } else {
+                String::new()
+            };
+            format!(
+                "{}:{}: {}{times}",
+                shown(name, deck.file(remark.place)),
+                remark.place.line,
+                remark.text
+            )
+        };
+        Made {
+            spec: Spec {
+                title: outside::shown::cut(title, super::limits::TITLE - 3),
+                about: format!("Read from the deck {}.", error::shortened(&file)),
+                refine: 1,
+                nodes: Vec::new(),
+                materials: Vec::new(),
+                bodies: Vec::new(),
+                surfaces: Vec::new(),
+                slaves: Vec::new(),
+                friction: Default::default(),
+                supports: Vec::new(),
+                loads: Vec::new(),
+                history: crate::format::spec::History {
+                    path: vec![0.0, 1.0],
+                    increment: 1.0,
+                    least: None,
+                    jumps: Jumps::default(),
+                    control: Control::default(),
+                    arc: Default::default(),
+                },
+                settings: Settings::default(),
+                monitors: Vec::new(),
+            },
+            origin: Origin {
+                files: deck.files.iter().map(|file| shown(name, file)).collect(),
+                ..Origin::default()
+            },
+            remarks: deck.remarks.iter().map(remark).collect(),
+            free: Free::default(),
+            body_of: vec![None; deck.elements.len()],
+            material_of: Vec::new(),
+            still: vec![[false; 2]; deck.nodes.len()],
+            used,
+            deck,
+        }
+    }
+
+    /// What stands at a place is read in this way.
+    fn remark(&mut self, place: Place, text: &str) {
+        let file = self.origin.files.get(place.file).map_or("", String::as_str);
+        self.remarks.push(format!("{file}:{}: {text}", place.line));
+    }
+
+    /// The name of a node in the scene.
+    fn node(&self, node: usize) -> String {
+        format!("{MESH}.{}", self.deck.nodes[node].label)
+    }
+
+    fn whole(self, name: &str) -> Read {
+        let mut origin = self.origin;
+        origin.note(
+            at![],
+            Place {
+                file: 0,
+                line: 1,
+                column: 1,
+            },
+        );
+        debug_assert_eq!(origin.files.first().map(String::as_str), Some(name));
+        Read {
+            spec: self.spec,
+            origin,
+            remarks: self.remarks,
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Meshes of other programs: what a scene imports is read, and stands in it node by node from then on.
+//!
+//! The file lies beside the scene or in a folder below it: a scene that somebody sends reads nothing else. Groups keep their
+//! names as far as a scene can use them: points, @, quotes and backslashes in one become _, and one that is a number or means
+//! something else behind an id (`all`, `start`, `end`) has `surface`, `line` or `point` before it. Elements in no group are the
+//! part `rest`; nodes that no cell has are left out.
+
+use super::limits;
+use crate::format::error::{Fault, Path, at, quoted, some_of};
+use crate::format::given::{Cells, NodeSet, SideSet};
+use crate::format::spec::Nodes;
+use crate::format::{SceneError, Spec};
+use crate::model::ElementKind;
+use crate::outside::input;
+use std::collections::HashMap;
+use stickslip_exchange::gmsh;
+use stickslip_exchange::mesh::{Cell, CellKind, Mesh};
+
+/// Most bytes of a mesh.
+pub const MESH_BYTES: u64 = 512 << 20;
+/// The part of elements that are in no group.
+const REST: &str = "rest";
+
+/// Why a mesh is not imported.
+pub(super) enum Refused {
+    /// Something is wrong with what the scene says of it.
+    Here(Fault),
+    /// Something is wrong in its file.
+    There(SceneError),
+}
+
+/// Reads every mesh that a scene imports, and puts it into the scene, whose own file is `scene`; whether there is any.
+pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, Refused> {
+    let mut any = false;
+    for (k, nodes) in spec.nodes.iter_mut().enumerate() {
+        if let Nodes::Import {
+            id,
+            file,
+            reduced,
+            scale,
+        } = nodes
+        {
+            let here = at!["nodes", k];
+            if !(scale.is_finite() && *scale > 0.0) {
+                let message = format!("the scale is {scale:?}; it must be positive");
+                return Err(Refused::Here(Fault::new(here.then("scale"), message)));
+            }
+            let mesh = read(&here.then("file"), scene, file)?;
+            let given = given(id, &mesh, *reduced, *scale);
+            *nodes = given
+                .map_err(|(field, message)| Refused::Here(Fault::new(here.then(field), message)))?;
+            any = true;
+        }
+    }
+    Ok(any)
+}
+
+fn read(here: &Path, scene: &str, file: &str) -> Result<Mesh, Refused> {
+    let unread = |message: String| {
+        Refused::Here(Fault::new(
+            here.clone(),
+            format!("{}: {message}", quoted(file)),
+        ))
+    };
+    let path = input::beside(std::path::Path::new(scene), file).map_err(unread)?;
+    mesh(&path.to_string_lossy()).map_err(|error| match error {
+        NoMesh::Unread(message) => unread(message),
+        NoMesh::Broken(error) => Refused::There(error),
+    })
+}
+
+/// Why a file gives no mesh.
+pub(crate) enum NoMesh {
+    /// It cannot be read.
+    Unread(String),
+    /// It is broken.
+    Broken(SceneError),
+}
+
+/// The mesh of a file.
+pub(crate) fn mesh(file: &str) -> Result<Mesh, NoMesh> {
+    let bytes = input::bytes(
+        std::path::Path::new(file),
+        MESH_BYTES,
+        "a mesh that can be solved has less",
+    );
+    let bytes = bytes.map_err(|error| NoMesh::Unread(error.to_string()))?;
+    gmsh::read(&bytes).map_err(|broken| {
+        NoMesh::Broken(SceneError {
+            at: broken.at,
+            ..SceneError::whole(file, broken.message)
+        })
+    })
+}
+
+/// Parts of a mesh that have no element in common, and are bodies together: those first named.
+///
+/// # Errors
+/// If the file gives no mesh.
+pub fn bodies(file: &str) -> Result<Vec<String>, SceneError> {
+    let mesh = mesh(file).map_err(|error| match error {
+        NoMesh::Unread(message) => SceneError::whole(file, message),
+        NoMesh::Broken(error) => error,
+    })?;
+    let lists = elements(&mesh).map_err(|(_, message)| SceneError::whole(file, message))?;
+    let names = |cells: &Cells| [std::slice::from_ref(&cells.part), &cells.also].concat();
+    let mut chosen: Vec<String> = Vec::new();
+    for cells in &lists {
+        let part = &cells.part;
+        let shares = |cells: &&Cells| {
+            names(cells).contains(part) && names(cells).iter().any(|n| chosen.contains(n))
+        };
+        if !lists.iter().any(|cells| shares(&cells)) {
+            chosen.push(part.clone());
+        }
+    }
+    Ok(chosen)
+}
+
+/// Whether a file says that it is a mesh.
+pub fn is_mesh(file: &str) -> bool {
+    let start = input::start(std::path::Path::new(file), 64);
+    start.is_ok_and(|start| gmsh::is_one(&start))
+}
+
+/// A mesh as a scene has it; or the field of the import that is wrong, and why.
+pub(crate) fn given(
+    id: &str,
+    mesh: &Mesh,
+    reduced: bool,
+    scale: f64,
+) -> Result<Nodes, (&'static str, String)> {
+    let label = |&n: &usize| mesh.labels[n] as usize;
+    let mut used = vec![false; mesh.nodes.len()];
+    mesh.cells
+        .iter()
+        .flat_map(|cell| &cell.nodes)
+        .for_each(|&n| used[n] = true);
+    let nodes = (0..mesh.nodes.len()).filter(|&n| used[n]);
+    let nodes = nodes.map(|n| {
+        (
+            label(&n),
+            scale * mesh.nodes[n][0],
+            scale * mesh.nodes[n][1],
+        )
+    });
+    let mut lists = elements(mesh)?;
+    if reduced {
+        let mut any = false;
+        for cells in &mut lists {
+            if cells.kind == ElementKind::Quad8 {
+                (cells.kind, any) = (ElementKind::Quad8Reduced, true);
+            }
+        }
+        if !any {
+            let message = "the mesh has no quadrilaterals of eight nodes, which alone can be integrated in 2 x 2 points";
+            return Err(("reduced", message.to_owned()));
+        }
+    }
+    let groups = |dimension: u8| {
+        let groups = mesh.groups.iter();
+        groups.filter(move |group| mesh.cells[group.cells[0]].kind.dimension() == dimension)
+    };
+    let sets = groups(0).map(|group| NodeSet {
+        name: usable(&group.name, 0),
+        nodes: group
+            .cells
+            .iter()
+            .map(|&k| label(&mesh.cells[k].nodes[0]))
+            .collect(),
+    });
+    let sides = groups(1).map(|group| SideSet {
+        name: usable(&group.name, 1),
+        sides: group
+            .cells
+            .iter()
+            .map(|&k| side(&mesh.cells[k], label))
+            .collect(),
+    });
+    Ok(Nodes::Given {
+        id: id.to_owned(),
+        nodes: nodes.collect(),
+        elements: lists,
+        sets: sets.collect(),
+        sides: sides.collect(),
+    })
+}
+
+/// A side from its start to its end, its middle between them.
+fn side(cell: &Cell, label: impl Fn(&usize) -> usize) -> Vec<usize> {
+    match cell.nodes[..] {
+        [start, end, middle] => [start, middle, end].iter().map(label).collect(),
+        _ => cell.nodes.iter().map(label).collect(),
+    }
+}
+
+/// The lists of elements of a mesh: one for each kind and for each choice of groups that elements are in, in the order of the first of them.
+fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
+    let mut groups_of: Vec<Vec<usize>> = vec![Vec::new(); mesh.cells.len()];
+    for (k, group) in mesh.groups.iter().enumerate() {
+        for &cell in &group.cells {
+            groups_of[cell].push(k);
+        }
+    }
+    let mut lists: Vec<Cells> = Vec::new();
+    let mut place_of = HashMap::new();
+    let mut last: Option<(ElementKind, &[usize], usize)> = None;
+    for (cell, groups) in mesh.cells.iter().zip(&groups_of) {
+        let Some(kind) = kind(cell.kind) else {
+            continue;
+        };
+        // Elements of a group stand one after the other.
+        let place = match last {
+            Some((other, same, place)) if other == kind && same == groups => place,
+            _ => *place_of.entry((kind, groups)).or_insert(lists.len()),
+        };
+        last = Some((kind, groups, place));
+        if place == lists.len() {
+            let mut names = groups.iter().map(|&k| usable(&mesh.groups[k].name, 2));
+            lists.push(Cells {
+                part: names.next().unwrap_or_else(|| REST.to_owned()),
+                also: names.collect(),
+                kind,
+                nodes: Vec::new(),
+            });
+        }
+        let labels = cell.nodes.iter().map(|&n| mesh.labels[n] as usize);
+        lists[place].nodes.push(labels.collect());
+    }
+    let has_rest = place_of.keys().any(|(_, groups)| groups.is_empty());
+    if has_rest && mesh.groups.iter().any(|group| group.name == REST) {
+        let message = "the mesh has elements in no group, which would be the part \"rest\", and a group of that name";
+        return Err(("file", message.to_owned()));
+    }
+    Ok(lists)
+}
+
+fn kind(kind: CellKind) -> Option<ElementKind> {
+    match kind {
+        CellKind::Point | CellKind::Line2 | CellKind::Line3 => None,
+        CellKind::Triangle3 => Some(ElementKind::Triangle3),
+        CellKind::Triangle6 => Some(ElementKind::Triangle6),
+        CellKind::Quad4 => Some(ElementKind::Quad4),
+        CellKind::Quad8 => Some(ElementKind::Quad8),
+        CellKind::Quad9 => Some(ElementKind::Quad9),
+    }
+}
+
+/// The name of a group as a scene can use it.
+fn usable(name: &str, dimension: usize) -> String {
+    let bad = |c: char| matches!(c, '.' | '@' | '"' | '\\') || c.is_control();
+    let name: String = name
+        .trim()
+        .chars()
+        .map(|c| if bad(c) { '_' } else { c })
+        .collect();
+    let taken = limits::TAKEN.contains(&name.as_str()) || name.chars().all(|c| c.is_ascii_digit());
+    match taken {
+        true => format!("{}{name}", ["point", "line", "surface"][dimension]),
+        false => name,
+    }
+}
+
+/// What to say where a mesh is given as a scene.
+pub(super) fn no_scene(file: &str) -> String {
+    let groups = match mesh(file) {
+        Ok(mesh) => mesh.groups.iter().map(|group| group.name.clone()).collect(),
+        Err(_) => Vec::new(),
+    };
+    format!(
+        "this is a mesh of Gmsh, and no scene; `stickslip export {file} -o SCENE.ron` writes one around it (groups: {})",
+        some_of(groups.iter().map(String::as_str))
+    )
+}

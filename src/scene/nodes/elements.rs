@@ -1,0 +1,101 @@
+//! Elements of a given mesh: walked anticlockwise, and refused where they are folded or stand twice.
+
+use super::super::geometry::Folds;
+use crate::format::error::{Fault, Path};
+use crate::model::{ElementKind, Node};
+
+/// An element: its kind and its node numbers, anticlockwise.
+pub(crate) type Element = (ElementKind, Vec<usize>);
+
+/// Number of corners, which come first.
+fn corners(kind: ElementKind) -> usize {
+    kind.faces().len()
+}
+
+/// The element of these nodes, turned where it runs clockwise: meshers number the elements of a surface that faces away
+/// from the reader that way round. `path` is where it stands, `folds` what tells folded ones of its kind.
+///
+/// # Errors
+/// If it has the wrong number of nodes, one of them twice, or is folded.
+pub(super) fn sound(
+    path: impl Fn() -> Path,
+    nodes: &[Node],
+    folds: &Folds,
+    kind: ElementKind,
+    mut own: Vec<usize>,
+) -> Result<Element, Fault> {
+    if own.len() != kind.nodes() {
+        let message = format!(
+            "the element has {} nodes; a {} has {}",
+            own.len(),
+            kind.word(),
+            kind.nodes()
+        );
+        return Err(Fault::new(path(), message));
+    }
+    if let Some(k) = (1..own.len()).find(|&k| own[..k].contains(&own[k])) {
+        let message = format!("node {} stands twice in the element", nodes[own[k]].name);
+        return Err(Fault::new(path().then(k), message));
+    }
+    let count = corners(kind);
+    if area(nodes, &own[..count]) < 0.0 {
+        // From its first corner the other way round, so that the middle of its last side comes first.
+        own[1..count].reverse();
+        if own.len() >= 2 * count {
+            own[count..2 * count].reverse();
+        }
+    }
+    if folds.is_folded(own.iter().map(|&n| nodes[n].at)) {
+        let [x, y] = nodes[own[0]].at;
+        let message = format!(
+            "the element with the corners {} at ({x:?}, {y:?}) is folded or flat: its Jacobian is not positive everywhere",
+            named(nodes, &own[..count])
+        );
+        return Err(Fault::new(path(), message));
+    }
+    Ok((kind, own))
+}
+
+/// Names of a few nodes in a row.
+pub(super) fn named(nodes: &[Node], some: &[usize]) -> String {
+    let names: Vec<&str> = some.iter().map(|&n| nodes[n].name.as_str()).collect();
+    names.join(", ")
+}
+
+/// Twice the area of a polygon, positive where it runs anticlockwise.
+fn area(nodes: &[Node], around: &[usize]) -> f64 {
+    let origin = around.first().map_or([0.0; 2], |&n| nodes[n].at);
+    let from = |n: usize| [nodes[n].at[0] - origin[0], nodes[n].at[1] - origin[1]];
+    let pairs = around.iter().zip(around.iter().cycle().skip(1));
+    pairs
+        .map(|(&a, &b)| {
+            let ([x, y], [v, w]) = (from(a), from(b));
+            x * w - v * y
+        })
+        .sum()
+}
+
+/// Refuses two elements with the same corners.
+pub(super) fn check_doubled(
+    here: &Path,
+    nodes: &[Node],
+    elements: &[Element],
+) -> Result<(), Fault> {
+    let key = |(kind, nodes): &Element| {
+        let mut key = [usize::MAX; 4];
+        key[..corners(*kind)].copy_from_slice(&nodes[..corners(*kind)]);
+        key.sort_unstable();
+        key
+    };
+    let mut keys: Vec<[usize; 4]> = elements.iter().map(key).collect();
+    keys.sort_unstable();
+    let Some(pair) = keys.windows(2).find(|pair| pair[0] == pair[1]) else {
+        return Ok(());
+    };
+    let shared = pair[0].iter().copied().filter(|&n| n != usize::MAX);
+    let message = format!(
+        "two elements have the same corners, {}",
+        named(nodes, &shared.collect::<Vec<_>>())
+    );
+    Err(Fault::new(here.clone(), message))
+}

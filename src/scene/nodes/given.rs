@@ -1,0 +1,250 @@
+//! Meshes that are given node by node: labels become numbers, and parts, sets and sides get their names.
+
+use super::super::curves::point;
+use super::super::geometry::Folds;
+use super::super::limits;
+use super::elements::{Element, check_doubled, sound};
+use super::sides::{Faces, line};
+use super::{Entry, EntryKind, Names};
+use crate::format::error::{Fault, Path, at, quoted};
+use crate::format::given::{Cells, NodeSet, SideSet};
+use crate::format::spec::Nodes;
+use crate::model::Node;
+use std::collections::HashMap;
+
+impl Names {
+    /// Enters a mesh that is given node by node: the whole of it, then its parts, sets and sides.
+    pub(super) fn given(&mut self, at: usize, nodes: &Nodes) -> Result<(), Fault> {
+        let Nodes::Given {
+            id,
+            nodes: listed,
+            elements,
+            sets,
+            sides,
+        } = nodes
+        else {
+            return Ok(());
+        };
+        let here = at!["nodes", at];
+        check_names(&here, elements, sets, sides)?;
+        let labels = self.labelled(&here.then("nodes"), id, listed)?;
+        let first = self.nodes.len() - labels.len();
+        let mesh = Labels { labels, first };
+        let (made, parts) = self.elements_of(&here.then("elements"), &mesh, elements)?;
+        let own = |name: &str| format!("{id}.{name}");
+        let mut entries = Vec::new();
+        for (part, members) in parts {
+            let elements: Vec<Element> = members.iter().map(|&k| made[k].clone()).collect();
+            let mut entry = Entry::new(at, &own(part), nodes_of(&elements), EntryKind::Part);
+            entry.elements = elements;
+            entries.push(entry);
+        }
+        for (k, set) in sets.iter().enumerate() {
+            let nodes = mesh.set(&here.then("sets").then(k), set)?;
+            entries.push(Entry::new(at, &own(&set.name), nodes, EntryKind::Set));
+        }
+        let mut numbered = Vec::with_capacity(sides.len());
+        for (k, set) in sides.iter().enumerate() {
+            let path = here.then("sides").then(k).then("sides");
+            let side = |(j, side): (usize, &Vec<usize>)| mesh.numbers(|| path.then(j), side);
+            let all: Result<Vec<_>, _> = set.sides.iter().enumerate().map(side).collect();
+            numbered.push((path.clone(), all?));
+        }
+        let named = numbered
+            .iter()
+            .flat_map(|(_, sides)| sides.iter().flatten());
+        let faces = Faces::among(named, &made);
+        for ((path, numbered), set) in numbered.iter().zip(sides) {
+            let line = line(path, &self.nodes, &faces, numbered)?;
+            let kind = EntryKind::Sides(line.per_element());
+            let mut entry = Entry::new(at, &own(&set.name), line.nodes(), kind);
+            entry.line = line;
+            entries.push(entry);
+        }
+        let all = (first..self.nodes.len()).collect();
+        let mut whole = Entry::new(at, id, all, EntryKind::Given);
+        whole.elements = made;
+        whole.labels = mesh.labels;
+        self.add(whole);
+        entries.into_iter().for_each(|entry| self.add(entry));
+        Ok(())
+    }
+
+    /// Makes the nodes in the order of their labels, and gives these.
+    fn labelled(
+        &mut self,
+        here: &Path,
+        id: &str,
+        listed: &[(usize, f64, f64)],
+    ) -> Result<Vec<usize>, Fault> {
+        let mut order: Vec<usize> = (0..listed.len()).collect();
+        order.sort_by_key(|&k| listed[k].0);
+        let mut labels: Vec<usize> = Vec::with_capacity(listed.len());
+        for k in order {
+            let (label, x, y) = listed[k];
+            let path = || here.then(k);
+            if labels.last() == Some(&label) {
+                let message = format!("the label {label} is that of another node already");
+                return Err(Fault::new(path().then(0), message));
+            }
+            if !(x.is_finite() && y.is_finite()) || x.abs().max(y.abs()) > limits::MAGNITUDE {
+                point(&path(), (x, y))?;
+            }
+            labels.push(label);
+            self.nodes.push(Node {
+                name: format!("{id}.{label}"),
+                at: [x, y],
+            });
+        }
+        Ok(labels)
+    }
+
+    /// The elements of all lists, and for each part which of them it has.
+    #[allow(clippy::type_complexity)]
+    fn elements_of<'s>(
+        &self,
+        here: &Path,
+        mesh: &Labels,
+        lists: &'s [Cells],
+    ) -> Result<(Vec<Element>, Vec<(&'s str, Vec<usize>)>), Fault> {
+        let mut made = Vec::with_capacity(lists.iter().map(|cells| cells.nodes.len()).sum());
+        let mut parts: Vec<(&str, Vec<usize>)> = Vec::new();
+        let mut place_of = HashMap::new();
+        for (k, cells) in lists.iter().enumerate() {
+            let first = made.len();
+            let here = here.then(k).then("nodes");
+            let folds = Folds::of(cells.kind);
+            for (e, labels) in cells.nodes.iter().enumerate() {
+                let path = || here.then(e);
+                let nodes = mesh.numbers(path, labels)?;
+                made.push(sound(path, &self.nodes, &folds, cells.kind, nodes)?);
+            }
+            for part in std::iter::once(&cells.part).chain(&cells.also) {
+                let place = *place_of.entry(part.as_str()).or_insert(parts.len());
+                if place == parts.len() {
+                    parts.push((part, Vec::new()));
+                }
+                parts[place].1.extend(first..made.len());
+            }
+        }
+        check_doubled(here, &self.nodes, &made)?;
+        Ok((made, parts))
+    }
+}
+
+/// The distinct nodes of elements, ascending.
+pub(super) fn nodes_of(elements: &[Element]) -> Vec<usize> {
+    let mut nodes: Vec<usize> = elements.iter().flat_map(|(_, own)| own).copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// The labels of a mesh, ascending: the k-th is that of node number `first + k`.
+struct Labels {
+    labels: Vec<usize>,
+    first: usize,
+}
+
+impl Labels {
+    /// The numbers of nodes by their labels, which stand at `path`.
+    fn numbers(&self, path: impl Fn() -> Path, labels: &[usize]) -> Result<Vec<usize>, Fault> {
+        let number = |(k, label): (usize, &usize)| match self.labels.binary_search(label) {
+            Ok(place) => Ok(self.first + place),
+            Err(_) => {
+                let message = format!("no node of the mesh has the label {label}");
+                Err(Fault::new(path().then(k), message))
+            }
+        };
+        labels.iter().enumerate().map(number).collect()
+    }
+
+    fn set(&self, here: &Path, set: &NodeSet) -> Result<Vec<usize>, Fault> {
+        let here = here.then("nodes");
+        let mut nodes = self.numbers(|| here.clone(), &set.nodes)?;
+        if nodes.is_empty() {
+            return Err(Fault::new(here, "the set has no nodes"));
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        Ok(nodes)
+    }
+}
+
+/// Refuses names of parts, sets and sides that cannot stand behind the mesh's id, or that mean two things.
+fn check_names(
+    here: &Path,
+    elements: &[Cells],
+    sets: &[NodeSet],
+    sides: &[SideSet],
+) -> Result<(), Fault> {
+    if elements.iter().all(|cells| cells.nodes.is_empty()) && sides.is_empty() {
+        return Err(Fault::new(
+            here.then("elements"),
+            "the mesh has neither elements nor sides",
+        ));
+    }
+    let mut seen: HashMap<&str, &str> = HashMap::new();
+    let mut check = |path: Path, name, what: &'static str| {
+        usable(&path, name)?;
+        match seen.insert(name, what) {
+            // Several lists may be of one part.
+            Some("part") if what == "part" => Ok(()),
+            Some(other) => {
+                let message = format!(
+                    "the mesh has a {other} called {} already; parts, sets and sides need a name each",
+                    quoted(name)
+                );
+                Err(Fault::new(path, message))
+            }
+            None => Ok(()),
+        }
+    };
+    for (k, cells) in elements.iter().enumerate() {
+        let here = here.then("elements").then(k);
+        check(here.then("part"), &cells.part, "part")?;
+        for (j, part) in cells.also.iter().enumerate() {
+            if cells.part == *part || cells.also[..j].contains(part) {
+                let message = format!("the part {} is named twice", quoted(part));
+                return Err(Fault::new(here.then("also").then(j), message));
+            }
+            check(here.then("also").then(j), part, "part")?;
+        }
+    }
+    for (k, set) in sets.iter().enumerate() {
+        check(here.then("sets").then(k).then("name"), &set.name, "set")?;
+    }
+    for (k, set) in sides.iter().enumerate() {
+        check(
+            here.then("sides").then(k).then("name"),
+            &set.name,
+            "line of sides",
+        )?;
+    }
+    limits::entries("names of the mesh", seen.len())
+        .map_err(|fault| Fault::new(here.clone(), fault.message))
+}
+
+/// Refuses a name that could not be told from a label, or be cut from what follows it.
+fn usable(path: &Path, name: &str) -> Result<(), Fault> {
+    let wrong = if name.is_empty() {
+        "is empty"
+    } else if name.chars().count() > limits::NAME {
+        "is longer than 64 characters"
+    } else if name.trim() != name {
+        "begins or ends with a blank"
+    } else if name
+        .chars()
+        .any(|c| matches!(c, '.' | '@' | '"' | '\\') || c.is_control())
+    {
+        "has a point, an @, a quote or a backslash in it"
+    } else if name.chars().all(|c| c.is_ascii_digit()) {
+        "is a number, which is the label of a node"
+    } else if limits::TAKEN.contains(&name) {
+        "means something else behind the id of a mesh"
+    } else {
+        return Ok(());
+    };
+    let message = format!("the name {} {wrong}; take another", quoted(name));
+    Err(Fault::new(path.clone(), message))
+}

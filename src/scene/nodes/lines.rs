@@ -1,0 +1,65 @@
+//! The lines of sides of a given mesh, for whoever looks for one by its shape.
+
+use super::super::geometry::distance;
+use super::{Entry, EntryKind, Names};
+
+/// A line of sides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Its name, as a scene names it.
+    pub name: String,
+    /// The name of the first part of the mesh that has all of its nodes; `None` for a line of no body.
+    pub part: Option<String>,
+    /// Where its nodes are, in walking order.
+    pub at: Vec<[f64; 2]>,
+    /// Whether it has sides between two elements.
+    pub is_inside: bool,
+    /// What it is, on a line of text.
+    pub words: String,
+}
+
+impl Names {
+    /// The lines of sides of the given mesh with an id, in the order of the scene.
+    pub fn lines(&self, id: &str) -> Vec<Line> {
+        let Some(mesh) = self.index.get(id).map(|&k| &self.entries[k]) else {
+            return Vec::new();
+        };
+        let own = || self.entries.iter().filter(|entry| entry.at == mesh.at);
+        let has_all = |part: &&Entry, line: &Entry| {
+            part.kind == EntryKind::Part
+                && line
+                    .nodes
+                    .iter()
+                    .all(|n| part.nodes.binary_search(n).is_ok())
+        };
+        let line = |entry: &Entry| {
+            let part = own()
+                .find(|part| has_all(part, entry))
+                .map(|part| part.id.clone());
+            let at: Vec<[f64; 2]> = entry.nodes.iter().map(|&n| self.nodes[n].at).collect();
+            let place = |n: usize| self.nodes[n].at;
+            let sides = entry.elements();
+            let length: f64 = sides
+                .iter()
+                .flat_map(|side| side.windows(2))
+                .map(|pair| distance(place(pair[0]), place(pair[1])))
+                .sum();
+            let words = format!(
+                "{}: {} sides, length {length:.4}, of {}; {}",
+                entry.id,
+                sides.len(),
+                part.as_deref().unwrap_or("no part"),
+                entry.line.words(&self.nodes)
+            );
+            Line {
+                name: entry.id.clone(),
+                part,
+                at,
+                is_inside: entry.is_inside(),
+                words,
+            }
+        };
+        let lines = own().filter(|entry| matches!(entry.kind, EntryKind::Sides(_)));
+        lines.map(line).collect()
+    }
+}

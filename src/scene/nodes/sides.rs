@@ -1,0 +1,242 @@
+//! Sides of a given mesh: put in walking order with the body on the left, piece by piece.
+
+use super::elements::{Element, named};
+use crate::format::error::{Fault, Path};
+use crate::model::Node;
+use std::collections::{HashMap, HashSet};
+
+/// Sides in walking order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Line {
+    /// What hangs together, each as its sides, start to end.
+    pub pieces: Vec<Vec<Vec<usize>>>,
+    /// Whether one of its sides lies between two elements, so that it has no outward side.
+    pub inside: bool,
+}
+
+impl Line {
+    /// Its nodes in walking order, each once.
+    pub fn nodes(&self) -> Vec<usize> {
+        let mut seen = HashSet::new();
+        let sides = self.pieces.iter().flatten().flatten().copied();
+        sides.filter(|n| seen.insert(*n)).collect()
+    }
+
+    /// Number of nodes of its sides, if it is one open piece of sides that have as many each: what a chain is.
+    pub fn per_element(&self) -> Option<usize> {
+        let [piece] = &self.pieces[..] else {
+            return None;
+        };
+        let (first, last) = (piece.first()?, piece.last()?);
+        let even = piece.iter().all(|side| side.len() == first.len());
+        (even && first.first() != last.last()).then_some(first.len())
+    }
+
+    /// What its pieces are, for a message.
+    pub fn words(&self, nodes: &[Node]) -> String {
+        const MOST: usize = 4;
+        let piece = |piece: &Vec<Vec<usize>>| {
+            let name = |n: Option<&usize>| n.map_or("", |&n| nodes[n].name.as_str());
+            let (first, last) = (piece.first(), piece.last());
+            let (start, end) = (first.and_then(|s| s.first()), last.and_then(|s| s.last()));
+            match start == end {
+                true => format!("a closed one at {}", name(start)),
+                false => format!("{} to {}", name(start), name(end)),
+            }
+        };
+        let shown: Vec<String> = self.pieces.iter().take(MOST).map(piece).collect();
+        let more = match self.pieces.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let count = match self.pieces.len() {
+            1 => "1 piece".to_owned(),
+            count => format!("{count} pieces"),
+        };
+        format!("{count} ({}{more})", shown.join(", "))
+    }
+
+    /// All numbers of nodes in it, to be changed.
+    pub fn numbers_mut(&mut self) -> impl Iterator<Item = &mut usize> {
+        self.pieces.iter_mut().flatten().flatten()
+    }
+}
+
+/// The faces of elements between nodes that sides name, by start and end.
+pub(super) struct Faces {
+    middles: HashMap<(usize, usize), Option<usize>>,
+    /// Nodes of sides that are on elements.
+    on_elements: HashSet<usize>,
+}
+
+impl Faces {
+    pub fn among<'a>(named: impl Iterator<Item = &'a usize>, elements: &[Element]) -> Faces {
+        let named: HashSet<usize> = named.copied().collect();
+        let last = named.iter().max().map_or(0, |n| n + 1);
+        let mut is_named = vec![false; last];
+        named.iter().for_each(|&n| is_named[n] = true);
+        let has = |n: usize| is_named.get(n) == Some(&true);
+        let mut faces = Faces {
+            middles: HashMap::new(),
+            on_elements: HashSet::new(),
+        };
+        for (kind, nodes) in elements {
+            for face in kind.faces() {
+                let (start, end) = (nodes[face[0]], nodes[face[face.len() - 1]]);
+                let middle = (face.len() == 3).then(|| nodes[face[1]]);
+                match (has(start), has(end)) {
+                    (true, true) => {
+                        faces.middles.insert((start, end), middle);
+                        faces.on_elements.extend([start, end]);
+                    }
+                    (true, false) => drop(faces.on_elements.insert(start)),
+                    _ => {}
+                }
+            }
+        }
+        faces
+    }
+}
+
+/// Sides in walking order: with the element on the left; where they belong to none, as the first of a piece is given.
+pub(super) fn line(
+    here: &Path,
+    nodes: &[Node],
+    faces: &Faces,
+    sides: &[Vec<usize>],
+) -> Result<Line, Fault> {
+    if sides.is_empty() {
+        return Err(Fault::new(here.clone(), "there are no sides"));
+    }
+    let mut inside = false;
+    let mut free = Vec::new();
+    let mut made: Vec<Vec<usize>> = Vec::with_capacity(sides.len());
+    for (k, side) in sides.iter().enumerate() {
+        let fault = |message: String| Fault::new(here.then(k), message);
+        let (start, end) = match side[..] {
+            [start, end] | [start, _, end] => (start, end),
+            _ => {
+                return Err(fault(format!(
+                    "the side has {} nodes; it has 2 or 3",
+                    side.len()
+                )));
+            }
+        };
+        if (1..side.len()).any(|j| side[..j].contains(&side[j])) {
+            return Err(fault("a node stands twice in the side".to_owned()));
+        }
+        let found = |from, to| faces.middles.get(&(from, to)).copied();
+        let middle = match (found(start, end), found(end, start)) {
+            (None, None) if [start, end].iter().all(|n| faces.on_elements.contains(n)) => {
+                let message = format!(
+                    "the side {} is no side of an element",
+                    named(nodes, &[start, end])
+                );
+                return Err(fault(message));
+            }
+            (None, None) => {
+                free.push(k);
+                made.push(side.clone());
+                continue;
+            }
+            (Some(middle), other) => {
+                inside |= other.is_some();
+                made.push(side.clone());
+                middle
+            }
+            (None, Some(middle)) => {
+                made.push(side.iter().rev().copied().collect());
+                middle
+            }
+        };
+        if middle != (side.len() == 3).then(|| side[1]) {
+            return Err(fault(format!(
+                "the side {} has {} in the middle, and the element there {}",
+                named(nodes, &[start, end]),
+                side.get(1)
+                    .filter(|_| side.len() == 3)
+                    .map_or("no node", |&n| &nodes[n].name),
+                middle.map_or("none", |n| &nodes[n].name),
+            )));
+        }
+    }
+    align(&mut made, &free);
+    let mut walked = HashSet::new();
+    if let Some(k) = made.iter().position(|side| !walked.insert(ends(side))) {
+        let message = format!("the side {} stands there twice", named(nodes, &made[k]));
+        return Err(Fault::new(here.then(k), message));
+    }
+    Ok(Line {
+        pieces: pieces(&made),
+        inside,
+    })
+}
+
+fn ends(side: &[usize]) -> (usize, usize) {
+    (side[0], side[side.len() - 1])
+}
+
+/// Turns sides that belong to no element so that those that meet at a node run on, as the first of them does.
+fn align(sides: &mut [Vec<usize>], free: &[usize]) {
+    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
+    for &k in free {
+        let (start, end) = ends(&sides[k]);
+        at.entry(start).or_default().push(k);
+        at.entry(end).or_default().push(k);
+    }
+    let mut done = HashSet::new();
+    for &k in free {
+        let mut open = vec![k];
+        done.insert(k);
+        while let Some(k) = open.pop() {
+            let (start, end) = ends(&sides[k]);
+            for (node, is_end) in [(start, false), (end, true)] {
+                // Where more than two meet, none goes on.
+                let [a, b] = at[&node][..] else { continue };
+                let other = if a == k { b } else { a };
+                if !done.insert(other) {
+                    continue;
+                }
+                let starts_there = ends(&sides[other]).0 == node;
+                if starts_there != is_end {
+                    sides[other].reverse();
+                }
+                open.push(other);
+            }
+        }
+    }
+}
+
+/// Sides put one after the other: a piece begins where no one side comes before, and a closed one at the first that is left.
+fn pieces(sides: &[Vec<usize>]) -> Vec<Vec<Vec<usize>>> {
+    let mut starting: HashMap<usize, Vec<usize>> = HashMap::new();
+    let mut ending: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (k, side) in sides.iter().enumerate() {
+        let (start, end) = ends(side);
+        starting.entry(start).or_default().push(k);
+        ending.entry(end).or_default().push(k);
+    }
+    let one =
+        |map: &HashMap<usize, Vec<usize>>, node: usize| match map.get(&node).map(Vec::as_slice) {
+            Some(&[k]) => Some(k),
+            _ => None,
+        };
+    // A side goes on only where one ends and one starts.
+    let goes_on = |node: usize| one(&ending, node).and_then(|_| one(&starting, node));
+    let begins = |k: &usize| goes_on(ends(&sides[*k]).0).is_none();
+    let mut taken = vec![false; sides.len()];
+    let mut pieces = Vec::new();
+    for first in (0..sides.len()).filter(begins).chain(0..sides.len()) {
+        let mut piece = Vec::new();
+        let mut next = Some(first);
+        while let Some(k) = next.filter(|&k| !taken[k]) {
+            taken[k] = true;
+            piece.push(sides[k].clone());
+            next = goes_on(ends(&sides[k]).1);
+        }
+        if !piece.is_empty() {
+            pieces.push(piece);
+        }
+    }
+    pieces
+}

@@ -1,0 +1,223 @@
+//! A chart of how iterations converge: two numbers of each on a log scale, with the limits that they must get under.
+
+use crate::tui::canvas::Canvas;
+use crate::tui::chartframe::ChartFrame;
+use crate::tui::theme::Theme;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Modifier;
+
+/// Width of the labels at the axis, the axis included.
+pub const LABELS: u16 = 7;
+/// Most columns between two iterations.
+const SPREAD: usize = 14;
+
+/// An iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Its number.
+    pub number: u32,
+    /// The number that counts, ●, and its limit.
+    pub main: f64,
+    /// What it must get under.
+    pub limit: f64,
+    /// The other number, ○.
+    pub other: f64,
+    /// What that must get under, if it has a limit of its own.
+    pub other_limit: Option<f64>,
+    /// Whether it is looked at.
+    pub here: bool,
+}
+
+impl Point {
+    fn numbers(&self) -> impl Iterator<Item = f64> + Clone + use<> {
+        [self.main, self.other, self.limit]
+            .into_iter()
+            .chain(self.other_limit)
+    }
+}
+
+/// The vertical axis: decades from the top down, and under them a row for what is exactly zero, if anything is.
+struct Scale {
+    top: f64,
+    bottom: f64,
+    /// Rows of decades.
+    rows: u16,
+    zero: bool,
+}
+
+impl Scale {
+    fn new(points: &[Point], rows: u16) -> Self {
+        let all = points.iter().flat_map(Point::numbers);
+        let logs = || {
+            let sound = all.clone().filter(|v| v.is_finite() && *v > 0.0);
+            sound.map(f64::log10)
+        };
+        let zero = points
+            .iter()
+            .any(|point| point.main <= 0.0 || point.other <= 0.0);
+        let top = logs().fold(f64::NEG_INFINITY, f64::max).ceil();
+        let bottom = logs().fold(f64::INFINITY, f64::min).floor();
+        let (top, bottom) = if top.is_finite() {
+            (top, bottom.min(top - 1.0))
+        } else {
+            (0.0, -1.0)
+        };
+        Scale {
+            top,
+            bottom,
+            rows: rows.saturating_sub(u16::from(zero)).max(1),
+            zero,
+        }
+    }
+
+    /// Height of a value in rows from the top; what is not finite is at the top.
+    fn height(&self, value: f64) -> f64 {
+        match value {
+            v if v <= 0.0 => f64::from(self.rows) + 0.5,
+            v if !v.is_finite() => 0.0,
+            v => {
+                let part = (self.top - v.log10()) / (self.top - self.bottom);
+                0.5 + part * f64::from(self.rows - 1)
+            }
+        }
+    }
+}
+
+/// Whether a chart has room in an area.
+pub fn fits(area: Rect) -> bool {
+    area.height >= 4 && area.width > LABELS + 4
+}
+
+/// Draws the iterations, or as many as there is room for: those around the one that is looked at, else the last.
+pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
+    let frame = ChartFrame::within(area, LABELS);
+    let field = frame.field;
+    let room = (field.width as usize / 2).max(1);
+    let last = points.len().saturating_sub(room);
+    let here = points.iter().position(|point| point.here);
+    let from = here.map_or(last, |here| here.saturating_sub(room / 2).min(last));
+    let shown = &points[from..points.len().min(from + room)];
+    let scale = Scale::new(shown, field.height);
+    let spread = (field.width as usize / shown.len().max(6)).clamp(2, SPREAD);
+    let column = |index: usize| index * spread + spread / 2;
+
+    // What is drawn stands on faint ground.
+    let ground = Rect {
+        height: field.height,
+        ..area
+    };
+    buffer.set_style(ground, theme.faint);
+    axis(buffer, frame, &scale, theme);
+    let dot =
+        |index: usize, value: f64| [column(index) as f64 * 2.0 + 0.5, scale.height(value) * 4.0];
+    let mut canvas = Canvas::new(field);
+    let line: Vec<_> = shown
+        .iter()
+        .enumerate()
+        .map(|(index, point)| dot(index, point.main))
+        .collect();
+    canvas.polyline(&line, theme.faint);
+    canvas.render(buffer);
+    for (index, point) in shown.iter().enumerate() {
+        let at = |value: f64| (column(index), scale.height(value));
+        for value in [Some(point.limit), point.other_limit].into_iter().flatten() {
+            limit(buffer, frame, at(value), spread, theme);
+        }
+        frame.mark(buffer, at(point.other), "○", theme.faint);
+        let good = point.main <= point.limit;
+        let style = if good { theme.good } else { theme.strong };
+        frame.mark(buffer, at(point.main), "●", style);
+        // The number of an iteration under its column, where it fits.
+        let text = point.number.to_string();
+        let middle = field.x as usize + column(index);
+        let start = middle.saturating_sub(text.len() / 2);
+        let wanted = index == 0 || spread > 3 || point.number.is_multiple_of(5) || point.here;
+        if wanted && start + text.len() <= area.right() as usize {
+            let style = match point.here {
+                true => theme.strong.add_modifier(Modifier::REVERSED),
+                false => theme.faint,
+            };
+            frame.below(buffer, start as u16, &text, style);
+        }
+    }
+}
+
+/// Decades at the axis.
+fn axis(buffer: &mut Buffer, frame: ChartFrame, scale: &Scale, theme: &Theme) {
+    let decades = (scale.top - scale.bottom) as usize;
+    let every = decades
+        .div_ceil((scale.rows as usize).saturating_sub(1).max(1))
+        .max(1);
+    frame.axis(buffer, theme.faint);
+    for decade in (0..=decades).step_by(every) {
+        let power = scale.top as i32 - decade as i32;
+        let row = scale.height(10f64.powi(power)).floor() as u16;
+        let row = row.min(scale.rows - 1);
+        frame.tick(buffer, row, &format!("1e{power}"), theme.faint);
+    }
+    if scale.zero {
+        frame.tick(buffer, scale.rows, "0", theme.faint);
+    }
+}
+
+/// The limit, as far as one iteration reaches.
+fn limit(
+    buffer: &mut Buffer,
+    frame: ChartFrame,
+    (column, height): (usize, f64),
+    spread: usize,
+    theme: &Theme,
+) {
+    let from = column.saturating_sub(spread / 2);
+    for x in from..from + spread {
+        let taken = frame
+            .cell(buffer, x, height)
+            .is_some_and(|cell| cell.symbol() != " ");
+        if !taken {
+            frame.mark(buffer, (x, height), "┄", theme.warning);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(main: f64) -> Point {
+        Point {
+            number: 1,
+            main,
+            limit: 1e-10,
+            other: main,
+            other_limit: None,
+            here: false,
+        }
+    }
+
+    #[test]
+    fn zero_has_a_row_of_its_own_under_the_decades() {
+        let one = Point {
+            other: 0.0,
+            ..point(1.0)
+        };
+        let scale = Scale::new(&[one, point(0.0)], 12);
+        assert_eq!((scale.top, scale.bottom, scale.rows), (0.0, -10.0, 11));
+        assert_eq!(scale.height(1.0), 0.5);
+        assert_eq!(scale.height(1e-10), 10.5);
+        assert_eq!(scale.height(0.0), 11.5);
+    }
+
+    #[test]
+    fn odd_numbers_have_a_place() {
+        for value in [f64::NAN, f64::INFINITY, 0.0, 1e-320] {
+            let odd = Point {
+                limit: 0.0,
+                other: 0.0,
+                ..point(value)
+            };
+            let scale = Scale::new(&[odd], 1);
+            assert!((0.0..3.0).contains(&scale.height(value)), "{value}");
+        }
+    }
+}

@@ -1,0 +1,394 @@
+//! Meshes that are given node by node, and meshes of Gmsh: names, walking order, and what is refused.
+
+use stickslip::model::{BodyKind, ElementKind, Model};
+use stickslip::record::export::skeleton::skeleton;
+use stickslip::scene::Scene;
+use stickslip::step::drive::{RunEnd, Until};
+use stickslip::step::stepper::Stepper;
+
+/// Two squares one over the other: two triangles below, one quadrilateral above, of their own nodes.
+const TWO: &str = "Given(id: \"m\",
+    nodes: [(7, 0, 0), (1, 1, 0), (3, 1, 1), (2, 0, 1), (14, 0, 1), (11, 1, 1), (12, 1, 2), (13, 0, 2), (99, 5, 5)],
+    elements: [
+        (part: \"low\", kind: triangle3, nodes: [[7, 1, 3], [7, 2, 3]]),
+        (part: \"high\", also: [\"lid\"], kind: quad4, nodes: [[14, 11, 12, 13]]),
+    ],
+    sets: [(name: \"tip\", nodes: [13])],
+    sides: [
+        (name: \"floor\", sides: [[7, 1]]),
+        (name: \"master\", sides: [[3, 2]]),
+        (name: \"slave\", sides: [[14, 11]]),
+        (name: \"both\", sides: [[13, 12], [1, 7]]),
+        (name: \"around\", sides: [[1, 7], [2, 3], [3, 1], [7, 2]]),
+        (name: \"inner\", sides: [[7, 3]]),
+    ],
+)";
+
+fn scene(nodes: &str, more: &str) -> Result<Scene, String> {
+    let text = format!(
+        "(title: \"t\", nodes: [{nodes}], materials: [Elastic(id: \"e\", E: 100, nu: 0.3)],
+        bodies: [Solid(id: \"low\", mesh: \"m.low\", material: \"e\"), Solid(id: \"high\", mesh: \"m.high\", material: \"e\")],
+        history: (path: [0, 1], increment: 1), {more})"
+    );
+    Scene::from_text("t.ron", &text, &[]).map_err(|error| error.to_string())
+}
+
+fn two(more: &str) -> Result<Scene, String> {
+    scene(TWO, more)
+}
+
+fn names(model: &Model, surface: usize) -> Vec<Vec<&str>> {
+    let elements = model.surfaces[surface].elements.iter();
+    let name = |n: &usize| model.nodes[*n].name.as_str();
+    elements
+        .map(|element| element.iter().map(name).collect())
+        .collect()
+}
+
+#[test]
+fn nodes_are_called_by_their_labels_and_parts_sets_and_sides_by_their_names() {
+    let scene = two("").unwrap();
+    let at = |name: &str| scene.model.nodes[scene.node(name).unwrap()].at;
+    assert_eq!(
+        (at("m.7"), at("m.12"), at("m.tip")),
+        ([0.0, 0.0], [1.0, 2.0], [0.0, 2.0])
+    );
+    let places = |name: &str| {
+        let nodes = scene.names().nodes(name).unwrap();
+        nodes
+            .iter()
+            .map(|&n| scene.model.nodes[n].name.clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(places("m.low"), ["m.1", "m.2", "m.3", "m.7"]);
+    assert_eq!(places("m.lid"), places("m.high"));
+    // In walking order, the body on the left.
+    assert_eq!(places("m.master"), ["m.3", "m.2"]);
+    assert_eq!(places("m.slave.start"), ["m.14"]);
+    assert_eq!(places("m.all").len(), 9);
+    for wrong in [
+        "m",
+        "m.8",
+        "m.low.9",
+        "m.nothing",
+        "m.master",
+        "m.both.start",
+        "m.around.end",
+        "m.start",
+    ] {
+        assert!(scene.node(wrong).is_err(), "{wrong} names a node");
+    }
+    let told = scene.node("m.8").unwrap_err();
+    assert!(told.contains("m.7 and m.11"), "{told}");
+}
+
+#[test]
+fn clockwise_elements_are_turned_and_a_node_of_no_element_is_on_no_body() {
+    let scene = two("").unwrap();
+    let BodyKind::Solid(low) = &scene.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    let label = |n: &usize| scene.model.nodes[*n].name.as_str();
+    let turned: Vec<&str> = low.elements[1].nodes.iter().map(label).collect();
+    assert_eq!(turned, ["m.7", "m.3", "m.2"]);
+    assert_eq!(low.edges.len(), 4);
+    assert_eq!(
+        scene
+            .model
+            .bodies
+            .iter()
+            .map(|b| b.nodes.len())
+            .sum::<usize>(),
+        8
+    );
+}
+
+#[test]
+fn sides_are_walked_with_the_body_on_the_left_and_pieces_are_surfaces_of_their_own() {
+    let scene = two("surfaces: [(id: \"s\", along: \"m.both\"), (id: \"r\", along: \"m.around\"), (id: \"b\", along: \"m.master\", reverse: true)]").unwrap();
+    let model = &scene.model;
+    let called: Vec<&str> = model.surfaces.iter().map(|s| s.name.as_str()).collect();
+    assert_eq!(called, ["s.1", "s.2", "r", "b"]);
+    assert_eq!(names(model, 0), [["m.12", "m.13"]]);
+    assert_eq!(names(model, 1), [["m.7", "m.1"]]);
+    let loop_ = names(model, 2);
+    assert_eq!(loop_.len(), 4);
+    for (side, next) in loop_.iter().zip(loop_.iter().cycle().skip(1)) {
+        assert_eq!(side[1], next[0]);
+    }
+    assert!(loop_.contains(&vec!["m.7", "m.1"]));
+    assert_eq!(names(model, 3), [["m.2", "m.3"]]);
+}
+
+#[test]
+fn slaves_touch_all_pieces_of_a_surface_by_its_one_name() {
+    let split = TWO.replace(
+        "(name: \"master\", sides: [[3, 2]])",
+        "(name: \"master\", sides: [[3, 2], [7, 1]])",
+    );
+    let scene = scene(&split, "surfaces: [(id: \"s\", along: \"m.master\")], slaves: [(nodes: [\"m.slave\"], on: [\"s\"])]").unwrap();
+    assert_eq!(scene.model.contacts.len(), 2);
+    assert!(
+        scene
+            .model
+            .contacts
+            .iter()
+            .all(|contact| contact.surfaces == [0, 1])
+    );
+}
+
+#[test]
+fn a_line_of_no_body_runs_as_its_first_side_does() {
+    let rigid = TWO
+        .replace("(99, 5, 5)", "(90, 0, -1), (91, 1, -1), (92, 2, -1)")
+        .replace(
+            "(name: \"inner\", sides: [[7, 3]])",
+            "(name: \"rail\", sides: [[92, 91], [90, 91]])",
+        );
+    let scene = scene(
+        &rigid,
+        "surfaces: [(id: \"s\", along: \"m.rail\", endless: true)]",
+    )
+    .unwrap();
+    assert_eq!(names(&scene.model, 0), [["m.92", "m.90"]]);
+    assert!(scene.model.surfaces[0].rigid);
+}
+
+#[test]
+fn what_makes_no_mesh_is_refused_with_its_place() {
+    let cases = [
+        (
+            "(1, 1, 0)",
+            "(7, 1, 0)",
+            "nodes[0].nodes[1][0]",
+            "label 7 is that of another",
+        ),
+        (
+            "[7, 1, 3]",
+            "[7, 1, 33]",
+            "nodes[0].elements[0].nodes[0][2]",
+            "no node of the mesh has the label 33",
+        ),
+        (
+            "[7, 1, 3]",
+            "[7, 1]",
+            "nodes[0].elements[0].nodes[0]",
+            "has 2 nodes; a triangle3 has 3",
+        ),
+        (
+            "[7, 1, 3]",
+            "[7, 1, 7]",
+            "nodes[0].elements[0].nodes[0][2]",
+            "stands twice",
+        ),
+        (
+            "[7, 2, 3]",
+            "[7, 14, 2]",
+            "nodes[0].elements[0].nodes[1]",
+            "folded or flat",
+        ),
+        (
+            "[7, 2, 3]",
+            "[3, 1, 7]",
+            "nodes[0].elements",
+            "two elements have the same corners",
+        ),
+        (
+            "[14, 11, 12, 13]",
+            "[14, 12, 11, 13]",
+            "nodes[0].elements[1].nodes[0]",
+            "folded",
+        ),
+        (
+            "sides: [[3, 2]]",
+            "sides: [[1, 2]]",
+            "nodes[0].sides[1].sides[0]",
+            "is no side of an element",
+        ),
+        (
+            "sides: [[3, 2]]",
+            "sides: [[3, 7, 2]]",
+            "nodes[0].sides[1].sides[0]",
+            "has m.7 in the middle, and the element there none",
+        ),
+        (
+            "sides: [[3, 2]]",
+            "sides: [[3, 2], [2, 3]]",
+            "nodes[0].sides[1].sides[1]",
+            "stands there twice",
+        ),
+        (
+            "\"tip\"",
+            "\"low\"",
+            "nodes[0].sets[0].name",
+            "a part called \"low\" already",
+        ),
+        ("\"tip\"", "\"12\"", "nodes[0].sets[0].name", "is a number"),
+        ("\"tip\"", "\"a.b\"", "nodes[0].sets[0].name", "a point"),
+        (
+            "\"tip\"",
+            "\"all\"",
+            "nodes[0].sets[0].name",
+            "means something else",
+        ),
+    ];
+    for (old, new, place, told) in cases {
+        assert!(TWO.contains(old), "{old}");
+        let error = scene(&TWO.replacen(old, new, 1), "").unwrap_err();
+        assert!(
+            error.contains(&format!(": {place}: ")) && error.contains(told),
+            "{new}: {error}"
+        );
+    }
+    let inner = two("surfaces: [(id: \"s\", along: \"m.inner\")]").unwrap_err();
+    assert!(inner.contains("sides between two elements"), "{inner}");
+}
+
+#[test]
+fn coordinates_and_elements_are_no_values_to_set() {
+    let scene = two("").unwrap();
+    let listed = stickslip::format::paths::list(&scene.spec);
+    assert!(listed.iter().all(|l| !l.path.starts_with("nodes.")));
+}
+
+const FORMS: [&str; 4] = ["text22", "binary22", "text41", "binary41"];
+
+/// A folder with one of the meshes in it, as `mesh.msh`.
+fn folder(form: &str) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let file = format!("{}/tests/meshes/{form}.msh", env!("CARGO_MANIFEST_DIR"));
+    std::fs::copy(file, directory.path().join("mesh.msh")).unwrap();
+    directory
+}
+
+fn imported(
+    directory: &tempfile::TempDir,
+    import: &str,
+    set: &[(&str, &str)],
+) -> Result<Scene, String> {
+    let file = directory.path().join("scene.ron");
+    let parts = ["block".to_owned(), "disc".to_owned()];
+    let text = skeleton(file.to_str().unwrap(), "mesh.msh", &parts).map_err(|e| e.to_string())?;
+    let text = text.replace("file: \"mesh.msh\"", import);
+    std::fs::write(&file, text).unwrap();
+    let set: Vec<_> = set
+        .iter()
+        .map(|(p, v)| ((*p).to_owned(), (*v).to_owned()))
+        .collect();
+    Scene::open(file.to_str().unwrap(), &set).map_err(|e| e.to_string())
+}
+
+#[test]
+fn all_four_forms_of_a_file_give_one_model_whose_scene_runs_to_its_end() {
+    let scenes = FORMS.map(|form| imported(&folder(form), "file: \"mesh.msh\"", &[]).unwrap());
+    let first = &scenes[0].model;
+    let kinds = |k: usize| match &first.bodies[k].kind {
+        BodyKind::Solid(solid) => solid.elements.iter().map(|e| e.kind).collect::<Vec<_>>(),
+        _ => Vec::new(),
+    };
+    assert!(kinds(0).iter().all(|kind| *kind == ElementKind::Quad8) && kinds(0).len() == 16);
+    assert!(kinds(1).iter().all(|kind| *kind == ElementKind::Triangle6));
+    // The nearest lines of the two bodies: the round one, and the top below it.
+    assert_eq!(
+        first.contacts.len(),
+        scenes[0].names().nodes("m.arc").unwrap().len()
+    );
+    assert_eq!(first.surfaces[0].elements.len(), 8);
+    for scene in &scenes[1..] {
+        let model = &scene.model;
+        assert_eq!(
+            (&model.bodies, &model.surfaces, &model.contacts),
+            (&first.bodies, &first.surfaces, &first.contacts)
+        );
+        for (a, b) in model.nodes.iter().zip(&first.nodes) {
+            assert_eq!(a.name, b.name);
+            assert!((a.at[0] - b.at[0]).abs().max((a.at[1] - b.at[1]).abs()) < 1e-14);
+        }
+    }
+    let mut stepper = Stepper::new(std::sync::Arc::new(first.clone()));
+    let end = stepper.drive(Until::end(), |_| std::ops::ControlFlow::<()>::Continue(()));
+    assert!(matches!(end, RunEnd::Finished));
+    let force: f64 = stepper.state().nodes.iter().map(|node| node.f_n).sum();
+    assert!(force > 0.0);
+}
+
+#[test]
+fn the_options_of_an_import_are_obeyed_and_set() {
+    let directory = folder("text41");
+    let scene = imported(
+        &directory,
+        "file: \"mesh.msh\", reduced: true",
+        &[("nodes.m.scale", "2")],
+    )
+    .unwrap();
+    let BodyKind::Solid(block) = &scene.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    assert!(
+        block
+            .elements
+            .iter()
+            .all(|e| e.kind == ElementKind::Quad8Reduced)
+    );
+    let far = scene
+        .model
+        .nodes
+        .iter()
+        .map(|n| n.at[0])
+        .fold(0.0, f64::max);
+    assert_eq!(far, 8.0);
+    let wrong = imported(&directory, "file: \"mesh.msh\", scale: 0", &[]).unwrap_err();
+    assert!(wrong.contains("nodes[0].scale: the scale is 0"), "{wrong}");
+}
+
+#[test]
+fn a_scene_that_is_kept_has_its_mesh_inside() {
+    let directory = folder("binary41");
+    let scene = imported(&directory, "file: \"mesh.msh\"", &[]).unwrap();
+    let text = stickslip::record::export::written::scene(&scene).unwrap();
+    assert!(!text.contains("Import(") && text.contains("Given("));
+    drop(directory);
+    let again = Scene::from_text("elsewhere.ron", &text, &[]).unwrap();
+    assert_eq!(again.model, scene.model);
+    assert_eq!(
+        Scene::from_spec("kept", scene.spec.clone()).unwrap().model,
+        scene.model
+    );
+    // And it is changed without the file.
+    assert!(scene.with("friction.angle", "20").is_ok());
+}
+
+#[test]
+fn only_files_beside_the_scene_are_read_and_broken_ones_are_told_by_their_own_lines() {
+    let directory = folder("text41");
+    for (file, told) in [
+        ("../mesh.msh", "beside this one or in a folder below"),
+        ("/etc/passwd", "beside this one or in a folder below"),
+        ("none.msh", "cannot be read"),
+    ] {
+        let error = imported(&directory, &format!("file: {file:?}"), &[]).unwrap_err();
+        assert!(
+            error.contains("scene.ron:3:")
+                && error.contains("nodes[0].file: ")
+                && error.contains(told),
+            "{error}"
+        );
+    }
+    let path = directory.path().join("mesh.msh");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(
+        directory.path().join("broken.msh"),
+        text.replacen("$Nodes\n", "$Nodes\nx", 1),
+    )
+    .unwrap();
+    let error = imported(&directory, "file: \"broken.msh\"", &[]).unwrap_err();
+    let line = 2 + text[..text.find("$Nodes").unwrap()].lines().count();
+    assert!(error.contains(&format!("broken.msh:{line}:1: ")), "{error}");
+    let own = Scene::open(path.to_str().unwrap(), &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        own.contains("this is a mesh of Gmsh") && own.contains("stickslip export"),
+        "{own}"
+    );
+}
