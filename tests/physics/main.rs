@@ -17,6 +17,8 @@ mod solids;
 mod start_gaps;
 // Penalty, stick stiffness, ties and cohesion by area meet closed forms, and each other.
 mod laws;
+// Decks of another program mean what scenes written by hand mean.
+mod decks;
 // The paper's problems meet solutions found without any contact algorithm, at the rate that they claim.
 mod references;
 // A cantilever beside an elastic block: its end, its work, its mesh, the paper's figures.

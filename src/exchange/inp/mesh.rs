@@ -60,7 +60,10 @@ fn nodes(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Faul
         let coordinate = |k: usize| super::cards::number_or_zero(&cells, k, "a coordinate");
         let (x, y, z) = (coordinate(1)?, coordinate(2)?, coordinate(3)?);
         if let Some(more) = cells.get(4) {
-            return Err(more.wrong("a node has a number and three coordinates; this is one more"));
+            deck.remark(
+                more.place(),
+                "what follows a node's three coordinates is not read",
+            );
         }
         if z != 0.0 {
             let at = cells.get(3).map_or(label.place(), Cell::place);
@@ -97,6 +100,13 @@ fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), F
     let name = card.required("TYPE")?;
     let kind = element_type(name).map_err(|why| Fault::new(card.place_of("TYPE"), why))?;
     let count = kind.cell.nodes();
+    if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
+        deck.remark(
+            card.place_of("TYPE"),
+            "elements of 3 and 4 nodes are fully integrated as they are; CalculiX makes elements of space of them, whose answers \
+             differ by percents where the mesh is coarse",
+        );
+    }
     let first = deck.elements.len();
     let mut lines = card.lines.iter();
     while let Some(line) = lines.next() {
@@ -157,6 +167,13 @@ fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), F
         "ELSET",
         (first..deck.elements.len()).collect(),
     )
+}
+
+/// Refuses elements that cannot be read.
+pub(super) fn known_type(card: &Card<'_>) -> Result<(), Fault> {
+    let kind = element_type(card.required("TYPE")?);
+    kind.map(|_| ())
+        .map_err(|why| Fault::new(card.place_of("TYPE"), why))
 }
 
 /// A kind of element by its name, or why it cannot be read.

@@ -118,6 +118,7 @@ fn known(card: &Card<'_>, deck: &mut Deck) -> Result<(), Fault> {
             let lines: Vec<&str> = card.lines.iter().map(|line| line.text.trim()).collect();
             deck.heading = lines.join(" ");
         }
+        "ELEMENT" => mesh::known_type(card)?,
         "INITIALCONDITIONS" => {
             card.choice("TYPE", &["TEMPERATURE"])?;
             card.required("TYPE")?;

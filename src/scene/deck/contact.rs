@@ -24,6 +24,8 @@ struct Laws {
 
 /// A pair or a tie: who touches what, and how.
 struct Touching {
+    /// The slaves' surface.
+    name: String,
     slaves: Vec<usize>,
     master: usize,
     laws: Laws,
@@ -54,6 +56,7 @@ impl Made<'_> {
                 );
             }
             all.push(Touching {
+                name: self.deck.surfaces[pair.slave].name.clone(),
                 slaves: self.slaves_of(pair.slave),
                 master: pair.master,
                 laws: Laws {
@@ -67,6 +70,7 @@ impl Made<'_> {
         for tie in &self.deck.ties {
             let slaves = self.near(tie)?;
             all.push(Touching {
+                name: self.deck.surfaces[tie.slave].name.clone(),
                 slaves,
                 master: tie.master,
                 laws: Laws {
@@ -76,6 +80,17 @@ impl Made<'_> {
                 },
                 place: tie.place,
             });
+        }
+        if let Some(pair) = self
+            .deck
+            .pairs
+            .first()
+            .filter(|_| self.deck.steps.iter().all(|step| !step.nlgeom))
+        {
+            self.remark(
+                pair.place,
+                "without NLGEOM strains are small, but contact is where nodes and surfaces have gone, not where they were",
+            );
         }
         self.adjusted()?;
         let surfaces = self.masters(&all);
@@ -194,7 +209,21 @@ impl Made<'_> {
         for (touched, nodes) in groups {
             self.group_of(all, surfaces, &touched, &nodes)?;
         }
+        self.common_friction();
         Ok(())
+    }
+
+    /// Friction that all pairs have is the scene's, so that it is set at one place.
+    fn common_friction(&mut self) {
+        let mut own = self.spec.slaves.iter().filter_map(|slaves| slaves.friction);
+        let Some(first) = own.next().filter(|first| own.all(|other| other == *first)) else {
+            return;
+        };
+        self.spec.friction = first;
+        self.spec
+            .slaves
+            .iter_mut()
+            .for_each(|slaves| slaves.friction = None);
     }
 
     fn group_of(
@@ -226,16 +255,18 @@ impl Made<'_> {
             .cloned()
             .collect();
         let laws = first.laws;
+        let wanted = match all.iter().find(|other| other.slaves == nodes) {
+            Some(whole) => whole.name.as_str(),
+            None => "SLAVES",
+        };
+        let nodes = vec![self.group(nodes, wanted)];
         self.origin
             .note(at!["slaves", self.spec.slaves.len()], first.place);
         self.spec.slaves.push(SlaveSpec {
-            nodes: nodes.iter().map(|&node| self.node(node)).collect(),
+            nodes,
             on,
             start: Mode::Free,
-            friction: (laws.law != ContactLaw::Tied).then(|| FrictionSpec {
-                angle: laws.friction.atan().to_degrees(),
-                ..FrictionSpec::default()
-            }),
+            friction: (laws.law != ContactLaw::Tied).then(|| rough(laws.friction)),
             law: laws.law,
             stick: laws.stick,
             area: None,
@@ -345,6 +376,14 @@ impl Made<'_> {
             );
         }
         Ok(near)
+    }
+}
+
+/// Coulomb friction of a coefficient.
+fn rough(coefficient: f64) -> FrictionSpec {
+    FrictionSpec {
+        angle: coefficient.atan().to_degrees(),
+        ..FrictionSpec::default()
     }
 }
 

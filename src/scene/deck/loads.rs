@@ -211,7 +211,7 @@ impl Made<'_> {
     }
 
     /// What nodes are called together: by the number of the only one, else as a set, the deck's where it has one.
-    fn group(&mut self, nodes: &[usize], wanted: &str) -> String {
+    pub(super) fn group(&mut self, nodes: &[usize], wanted: &str) -> String {
         if let [only] = nodes {
             return self.node(*only);
         }

@@ -1,1 +1,241 @@
+//! What decks become, and where what is wrong with them stands.
 
+use crate::format::spec::LoadSpec;
+use crate::model::{Bond, Plane, Update};
+use crate::scene::Scene;
+use proptest::prelude::*;
+
+const BLOCK: &str = include_str!("../../../tests/decks/press-and-push.inp");
+const PLATES: &str = include_str!("../../../tests/decks/pressed-plates.inp");
+const RINGS: &str = include_str!("../../../tests/decks/shrunk-ring.inp");
+
+fn but(text: &str, from: &str, to: &str) -> String {
+    assert!(text.contains(from), "{from:?} is not in the deck");
+    text.replacen(from, to, 1)
+}
+
+fn scene(text: &str) -> Scene {
+    Scene::from_text("job.inp", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refusal(text: &str) -> String {
+    match Scene::from_text("job.inp", text, &[]) {
+        Ok(_) => panic!("it was read:\n{text}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn bodies_are_what_hangs_together_and_nodes_keep_their_numbers() {
+    let scene = scene(BLOCK);
+    let bodies: Vec<&str> = scene
+        .model
+        .bodies
+        .iter()
+        .map(|body| body.name.as_str())
+        .collect();
+    assert_eq!(bodies, ["EVERYTHING", "EVERYTHING-2"]);
+    let at = |name: &str| scene.model.nodes[scene.node(name).expect("a node")].at;
+    assert_eq!((at("n.6"), at("n.104")), ([2.0, 1.0], [-2.0, 0.0]));
+    assert_eq!(scene.names().nodes("n.TOP").expect("a set").len(), 3);
+    let angle = scene.spec.friction.angle;
+    assert!((angle.to_radians().tan() - 0.4).abs() < 1e-15);
+    assert_eq!(scene.spec.history.path, [0.0, 2.0, 10.0]);
+}
+
+#[test]
+fn the_penalty_is_by_area_and_nlgeom_chooses_the_strains() {
+    let materials = |text: &str| -> Vec<(Plane, Update, f64)> {
+        let scene = scene(text);
+        let solids = scene
+            .spec
+            .materials
+            .iter()
+            .filter_map(|material| match material {
+                crate::format::spec::Material::Elastic {
+                    plane,
+                    update,
+                    thickness,
+                    ..
+                } => Some((*plane, *update, *thickness)),
+                _ => None,
+            });
+        solids.collect()
+    };
+    assert_eq!(materials(PLATES), [(Plane::Stress, Update::Total, 2.0)]);
+    assert_eq!(materials(BLOCK), [(Plane::Strain, Update::Small, 1.0)]);
+    assert_eq!(
+        materials(RINGS),
+        [(Plane::Axisymmetric, Update::Total, 1.0)]
+    );
+    // A side of 3 by 2 has areas of 1, 4 and 1; a ring of radius 4.999 and length 1 has 2 pi r / 6 at its ends.
+    let compliances = |text: &str| -> Vec<f64> {
+        let contacts = scene(text).model.contacts;
+        contacts
+            .iter()
+            .map(|contact| match contact.bond {
+                Bond::Giving([normal, _]) => normal,
+                _ => 0.0,
+            })
+            .collect()
+    };
+    for (given, area) in compliances(PLATES).iter().zip([1.0, 1.0, 4.0]) {
+        assert!((given * 1e6 * area - 1.0).abs() < 1e-12);
+    }
+    let ring = std::f64::consts::TAU * 4.999;
+    for (given, part) in compliances(RINGS).iter().zip([6.0, 6.0, 1.5]) {
+        assert!((given * 1e7 * ring / part - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn loads_follow_their_amplitudes_over_the_steps() {
+    let text = but(
+        BLOCK,
+        "*AMPLITUDE, NAME=FORTH",
+        "*AMPLITUDE, NAME=ALONG, TIME=TOTAL TIME\n0., 0., 1.5, 3.\n*AMPLITUDE, NAME=FORTH",
+    );
+    let text = but(
+        &text,
+        "*END STEP",
+        "*CLOAD, AMPLITUDE=ALONG\n5, 2, -2.\n*CLOAD\n4, 2, -1.\n4, 2, -0.5\n*DLOAD\n1, P3, 7.\n*END STEP",
+    );
+    let text = text.replacen(
+        "*BOUNDARY, AMPLITUDE",
+        "*CLOAD, OP=NEW\n5, 1, 4.\n*BOUNDARY, AMPLITUDE",
+        1,
+    );
+    let loads = scene(&text).spec.loads;
+    let forces: Vec<_> = loads
+        .iter()
+        .filter_map(|load| match load {
+            LoadSpec::Force { node, x, y, scale } => {
+                Some((node.as_str(), *x, *y, scale.as_slice()))
+            }
+            _ => None,
+        })
+        .collect();
+    // The load factor counts increments: 2 in the first step, 8 in the second.
+    let down = [(0.0, 0.0), (2.0, 1.0), (10.0, 0.0)];
+    assert_eq!(forces[0], ("n.4", 0.0, -1.5, &down[..]));
+    assert_eq!(
+        forces[1],
+        ("n.5", 4.0, 0.0, &[(0.0, 0.0), (2.0, 0.0), (10.0, 1.0)][..])
+    );
+    assert_eq!(forces[2], ("n.5", 0.0, -4.0, &down[..]));
+    let pressure = loads.iter().find_map(|load| match load {
+        LoadSpec::Pressure { value, scale, .. } => Some((*value, scale.clone())),
+        _ => None,
+    });
+    assert_eq!(
+        pressure,
+        Some((7.0, vec![(0.0, 0.0), (2.0, 1.0), (10.0, 1.0)]))
+    );
+}
+
+#[test]
+fn weight_is_density_times_acceleration_on_a_whole_body() {
+    let dense = but(BLOCK, "*ELASTIC", "*DENSITY\n3.\n*ELASTIC");
+    let heavy = but(
+        &dense,
+        "*END STEP",
+        "*DLOAD\nBLOCK, GRAV, 10., 0., -2.\n*END STEP",
+    );
+    let loads = scene(&heavy).spec.loads;
+    let volume = loads.iter().find_map(|load| match load {
+        LoadSpec::Volume { on, x, y, .. } => Some((on.clone(), *x, *y)),
+        _ => None,
+    });
+    assert_eq!(volume, Some(("EVERYTHING".to_owned(), 0.0, -30.0)));
+    let half = heavy.replace("BLOCK, GRAV", "1, GRAV");
+    assert!(
+        refusal(&half)
+            .starts_with("job.inp:51:1: the load acts on 1 of the 2 elements of EVERYTHING"),
+        "{}",
+        refusal(&half)
+    );
+    let light = heavy.replace("*DENSITY\n3.\n", "");
+    assert!(refusal(&light).contains("no *DENSITY"));
+}
+
+#[test]
+fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
+    let cases = [
+        (
+            "1000., 0.3",
+            "1000., 0.5",
+            "job.inp:31:1: materials[0].nu: ",
+        ),
+        (
+            " 6, 2., 1.",
+            " 6, 2., -1.",
+            "job.inp:16:1: nodes[0].elements[0].nodes[1]: ",
+        ),
+        (
+            "TOP, 2, 2, -0.02",
+            "TOP, 2, 2, -2e15",
+            "job.inp:49:1: loads[1].value: ",
+        ),
+        (
+            "*SOLID SECTION, ELSET=EVERYTHING",
+            "*SOLID SECTION, ELSET=BLOCK",
+            "job.inp:18:1: element 9 has no section",
+        ),
+        (
+            "TOP, 1, 1, 0.\n",
+            "",
+            "job.inp:54:1: the x of node 4 is free in the steps before",
+        ),
+        (
+            "*STEP\n*STATIC, DIRECT\n0.125",
+            "*STEP, NLGEOM\n*STATIC, DIRECT\n0.125",
+            "job.inp:51:1: NLGEOM must hold in all steps",
+        ),
+        (
+            "*BOUNDARY, AMPLITUDE=FORTH",
+            "*BOUNDARY, OP=NEW, AMPLITUDE=FORTH",
+            "job.inp:51:1: OP=NEW sets the ",
+        ),
+        (
+            "BELOW, ABOVE",
+            "ABOVE, BELOW\n*CONTACT PAIR, INTERACTION=ROUGH, TYPE=NODE TO SURFACE, ADJUST=0.\nBELOW, ABOVE",
+            "job.inp:41:1: ADJUST must be the same",
+        ),
+    ];
+    for (from, to, begin) in cases {
+        let found = refusal(&but(BLOCK, from, to));
+        assert!(found.starts_with(begin), "{found}\nis not\n{begin}");
+    }
+}
+
+#[test]
+fn included_files_must_lie_beside_the_deck() {
+    for outside in ["../mesh.inp", "/etc/passwd", "a/../../b"] {
+        let found = refusal(&format!("*INCLUDE, INPUT={outside}\n"));
+        assert!(found.contains("must lie beside the deck"), "{found}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn no_damaged_deck_makes_the_way_to_a_model_panic(
+        deck in prop::sample::select(vec![BLOCK, PLATES, RINGS]),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4usize), 1..5),
+    ) {
+        let mut lines: Vec<String> = deck.lines().map(str::to_owned).collect();
+        for (at, other, kind) in changes {
+            let (at, other) = (at.index(lines.len()), other.index(lines.len()));
+            match kind {
+                0 => lines.swap(at, other),
+                1 => lines[at] = lines[other].clone(),
+                2 => lines[at] = lines[at].replace('1', "-1"),
+                _ => { lines.remove(at); if lines.is_empty() { lines.push(String::new()); } }
+            }
+        }
+        if let Err(error) = Scene::from_text("job.inp", &lines.join("\n"), &[]) {
+            prop_assert!(!error.message.is_empty());
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Decks of CalculiX: what they mean is what a scene written by hand means, or what a closed form says.
+
+use crate::common::{Run, run, scene};
+use stickslip::scene::Scene;
+
+fn solved(name: &str) -> Run {
+    let run = run(&scene(name, &[]));
+    assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+    run
+}
+
+/// A deck with another text in a place, solved to its end.
+fn changed(name: &str, changes: &[(&str, &str)]) -> Run {
+    let mut text = std::fs::read_to_string(name).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from:?}");
+        text = text.replace(from, to);
+    }
+    let scene = Scene::from_text(name, &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let run = run(&scene);
+    assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+    run
+}
+
+fn last(run: &Run, monitor: &str) -> f64 {
+    run.accepted.last().unwrap().monitors[monitor]
+}
+
+fn near(a: f64, b: f64, part: f64) {
+    assert!((a - b).abs() <= part * b.abs(), "{a:e} and {b:e}");
+}
+
+#[test]
+fn a_deck_and_a_scene_written_by_hand_have_the_same_answers() {
+    for name in ["press-and-push", "pressed-plates"] {
+        let [deck, own] = ["inp", "ron"].map(|end| solved(&format!("tests/decks/{name}.{end}")));
+        assert_eq!(deck.accepted.len(), own.accepted.len());
+        for (ours, theirs) in deck.accepted.iter().zip(&own.accepted) {
+            assert_eq!(ours.load, theirs.load);
+            for (monitor, value) in &theirs.monitors {
+                let size = theirs
+                    .monitors
+                    .values()
+                    .fold(0.0, |most: f64, v| most.max(v.abs()));
+                let apart = (ours.monitors[monitor] - value).abs();
+                assert!(
+                    apart <= 1e-9 * size,
+                    "{name}, load {}: {monitor}",
+                    ours.load
+                );
+            }
+        }
+    }
+}
+
+/// Forces 100, 400, 100 at the ends and the middle are a uniform pressure of 100 by area: p = 600 / (3 * 2), to first order in
+/// p / E = 0.0014 the top goes down by 4 p / E + p / K.
+#[test]
+fn the_pressed_plates_give_way_by_their_stiffness_and_the_penalty() {
+    let run = changed(
+        "tests/decks/pressed-plates.inp",
+        &[("-100.", "-1."), ("-400.", "-4.")],
+    );
+    near(last(&run, "contact y"), 6.0, 1e-9);
+    near(last(&run, "u_y 17"), -(4.0 / 70000.0 + 1.0 / 1e6), 1e-4);
+}
+
+/// Lamé: two rings of one material, a, b, c = 4, 5, 6 and an overlap d at b, held along the axis: the pressure is
+/// p = E d / (1 - nu^2) / (2 b^3) (b^2 - a^2) (c^2 - b^2) / (c^2 - a^2) in plane strain, and here the ends are free on one side.
+/// With free ends (plane stress) 1 - nu^2 becomes 1; the penalty adds p / K to what d must do.
+#[test]
+fn the_shrunk_ring_presses_as_lame_says() {
+    let run = solved("tests/decks/shrunk-ring.inp");
+    let (a, b, c): (f64, f64, f64) = (4.0, 5.0, 6.0);
+    let area = std::f64::consts::TAU * b;
+    let soft = 2.0 * b.powi(3) * (c * c - a * a) / (210000.0 * (b * b - a * a) * (c * c - b * b))
+        + 1.0 / 1e7;
+    // One element across each wall: the interface bends a little with its free end.
+    near(last(&run, "contact x") / area, 0.001 / soft, 0.01);
+}
+
+#[test]
+fn a_press_fit_does_not_hang_on_its_increments() {
+    let [one, many] = ["1., 1.", "0.125, 1."]
+        .map(|size| changed("tests/decks/shrunk-ring.inp", &[("0.5, 1.", size)]));
+    assert!(many.accepted.len() > one.accepted.len());
+    for (monitor, value) in &one.accepted.last().unwrap().monitors {
+        assert!((last(&many, monitor) - value).abs() < 1e-7, "{monitor}");
+    }
+}
+
+/// Tension 3 on a square of side 1 of two blocks, E = 100: the top goes up by 2 * 3 / 100.
+#[test]
+fn a_tie_holds_in_tension_as_if_it_were_one_body() {
+    let run = changed(
+        "tests/decks/glued.inp",
+        &[
+            ("*END STEP", "*NODE PRINT, NSET=TOP\nU\n*END STEP"),
+            ("*MATERIAL", "*NSET, NSET=TOP\n13, 14\n*MATERIAL"),
+        ],
+    );
+    near(last(&run, "u_y 13"), 0.06, 1e-9);
+    near(last(&run, "contact y"), -3.0, 1e-9);
+}
+
+/// Without the post the tip goes down by F l^3 / (3 E I) + P a^2 (3 l - a) / (6 E I) and, with shear, (F l + P a) / GA.
+#[test]
+fn a_beam_bends_by_its_section() {
+    let run = changed(
+        "tests/decks/beam-on-a-post.inp",
+        &[
+            ("-0.1\n5, 2, -0.05", "-1e-4\n5, 2, -5e-5"),
+            ("*CLOAD", "*NODE PRINT, NSET=END\nU\n*CLOAD"),
+            ("*MATERIAL", "*NSET, NSET=END\n5\n*MATERIAL"),
+        ],
+    );
+    let (young, i, area) = (200000.0, 0.1 * 0.2_f64.powi(3) / 12.0, 0.1 * 0.2);
+    let shear = 5.0 / 6.0 * area * young / 2.6;
+    let (l, a, tip, middle) = (4.0_f64, 2.0_f64, 5e-5, 1e-4);
+    let bent = tip * l.powi(3) / 3.0 + middle * a * a * (3.0 * l - a) / 6.0;
+    // Elements of three nodes with two points are exact at nodes for point loads.
+    near(
+        last(&run, "u_y 5"),
+        -(bent / (young * i) + (tip * l + middle * a) / shear),
+        1e-6,
+    );
+}
+
+#[test]
+fn an_adjusted_gap_is_closed_before_the_first_step() {
+    let text = std::fs::read_to_string("tests/decks/press-and-push.inp").unwrap();
+    let lower = text
+        .replace("103, 4., 0.", "103, 4., -0.01")
+        .replace("104, -2., 0.", "104, -2., -0.01");
+    let adjusted = lower.replace("TYPE=NODE TO SURFACE", "TYPE=NODE TO SURFACE, ADJUST=0.02");
+    for (text, height) in [(lower, 0.0), (adjusted, -0.01)] {
+        let scene = Scene::from_text("job.inp", &text, &[]).unwrap();
+        for contact in &scene.model.contacts {
+            assert!((scene.model.nodes[contact.node].at[1] - height).abs() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn a_deck_is_written_as_a_scene_that_is_the_same() {
+    for name in [
+        "press-and-push",
+        "pressed-plates",
+        "shrunk-ring",
+        "glued",
+        "beam-on-a-post",
+    ] {
+        let deck = scene(&format!("tests/decks/{name}.inp"), &[]);
+        let written = stickslip::record::export::written::scene(&deck).unwrap();
+        let read = Scene::from_text("scene.ron", &written, &[]).unwrap();
+        assert_eq!(read.model, deck.model, "{name}");
+    }
+}
