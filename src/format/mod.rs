@@ -19,6 +19,7 @@ pub mod given;
 pub mod kind;
 pub mod locate;
 pub mod markdown;
+pub mod monitor;
 pub mod notation;
 pub mod paths;
 pub mod read;

@@ -12,6 +12,7 @@ pub mod picture;
 pub mod shown;
 pub mod written;
 
+mod pressures;
 mod timeline;
 
 use crate::step::stepper::Stepper;
