@@ -21,6 +21,7 @@ pub mod kind;
 pub mod loads;
 pub mod locate;
 pub mod markdown;
+pub mod monitor;
 pub mod notation;
 pub mod paths;
 pub mod read;

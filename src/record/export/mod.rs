@@ -15,6 +15,7 @@ pub mod shown;
 pub mod skeleton;
 pub mod written;
 
+mod pressures;
 mod timeline;
 
 use crate::scene::problems::market;
