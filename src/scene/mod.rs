@@ -68,7 +68,13 @@ impl Scene {
         if import::is_mesh(name) {
             return Err(SceneError::whole(name, import::no_scene(name)));
         }
-        let text = read::text(name).map_err(|mut error| {
+        let text = match deck::is_called_so(name) {
+            true => {
+                deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
+            }
+            false => read::text(name),
+        };
+        let text = text.map_err(|mut error| {
             if !std::path::Path::new(name).exists() {
                 error.message = no_such_scene(name);
             }

@@ -109,6 +109,7 @@ impl Made<'_> {
         for target in from_model.keys().chain(courses.keys()) {
             self.stays(target, courses.get(target), from_model.contains_key(target))?;
         }
+        self.held = from_model.keys().chain(courses.keys()).copied().collect();
         let mut held: BTreeMap<usize, (Vec<Component>, Place)> = BTreeMap::new();
         let mut hold = |(node, direction): (usize, Direction), place: Place| {
             held.entry(node)
@@ -261,6 +262,13 @@ impl Made<'_> {
             let Some((value, scale)) = scaled(&points) else {
                 continue;
             };
+            if self.held.contains(&(node, direction)) {
+                self.remark(
+                    course.place,
+                    "a force along a direction that is held goes into the support, and is left out",
+                );
+                continue;
+            }
             let name = self.node(node);
             self.origin
                 .note(at!["loads", self.spec.loads.len()], course.place);
