@@ -313,6 +313,13 @@ impl Made<'_> {
             let Some(acts) = scaled(&points) else {
                 continue;
             };
+            if self.is_held(side) {
+                self.remark(
+                    course.place,
+                    "pressure on a side that is held goes into the supports, and is left out",
+                );
+                continue;
+            }
             let group = *known.entry(bits(&points)).or_insert(alike.len());
             if group == alike.len() {
                 alike.push((Vec::new(), acts, course.place));
@@ -329,6 +336,15 @@ impl Made<'_> {
                 });
             }
         }
+    }
+
+    /// Whether no node of a side can move freely.
+    fn is_held(&self, (element, side): (usize, usize)) -> bool {
+        let held = |node: usize, direction| self.held.contains(&(node, direction));
+        let nodes = self.deck.side(element, side);
+        nodes
+            .into_iter()
+            .all(|node| held(node, Direction::X) && held(node, Direction::Y))
     }
 
     /// Forces by volume, one load for each component on each body.

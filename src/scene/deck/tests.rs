@@ -98,7 +98,7 @@ fn loads_follow_their_amplitudes_over_the_steps() {
     let text = but(
         &text,
         "*END STEP",
-        "*CLOAD, AMPLITUDE=ALONG\n2, 2, -2.\n*CLOAD\n1, 2, -1.\n1, 2, -0.5\n4, 2, -9.\n*DLOAD\n1, P3, 7.\n*END STEP",
+        "*CLOAD, AMPLITUDE=ALONG\n2, 2, -2.\n*CLOAD\n1, 2, -1.\n1, 2, -0.5\n4, 2, -9.\n*DLOAD\n1, P1, 7.\n1, P3, 7.\n*END STEP",
     );
     let text = text.replacen(
         "*BOUNDARY, AMPLITUDE",
