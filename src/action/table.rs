@@ -226,7 +226,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Program, "snapshot!", "FILE", &[], "", "The same, over a file that is there already", Verb::Snapshot { overwrite: true }),
     entry(Group::Program, "core", "FILE", &[], "", "Write the fewest nodes that still cycle as a scene of their own", Verb::Export { what: Exported::Core, overwrite: false }),
     entry(Group::Program, "core!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Core, overwrite: true }),
-    entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Make a file of the shown state, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat that for Siconos", Verb::Export { what: Exported::Shown, overwrite: false }),
+    entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Make a file of the shown state, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat, .mtx, .h5 that for other solvers; .vtu the state for ParaView", Verb::Export { what: Exported::Shown, overwrite: false }),
     entry(Group::Program, "export!", "[--frozen] FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Shown, overwrite: true }),
     entry(Group::Program, "journal", "[FILE]", &[], "", "Keep the journal in this new file, with all that was done; or tell where it is", Verb::Journal),
     entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one; a journal goes on where it was", Verb::Open),

@@ -38,7 +38,7 @@ fn model() -> Model {
         contacts: vec![slave(1), slave(2)],
         dofs: Default::default(),
         loads: vec![],
-        pressures: vec![],
+        pressures: Vec::new(),
         prescribed: vec![],
         path: vec![0.0, 1.0],
         increment: 0.1,

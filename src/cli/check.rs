@@ -27,6 +27,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         for remark in &scene.remarks {
             tell(&format!("note: {remark}"));
         }
+        for note in scene.names().notes(scene.spec.refine) {
+            tell(&format!("note: {note}"));
+        }
         for warning in gaps::warnings(&scene.model) {
             tell(&format!("warning: {warning}"));
         }

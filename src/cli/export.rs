@@ -28,8 +28,11 @@ use std::sync::Arc;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 .svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline.
-.ron: the scene as it was opened; of a mesh of Gmsh a scene around it, to be edited; with --frozen the interface problem that is solved next, as a scene of its own.
-.dat: that interface problem in the form of Siconos.
+.ron: the scene as it was opened; of a mesh of Gmsh a scene around it, to be edited; with --frozen the interface problem
+that is solved next, as a scene of its own.
+.dat, .mtx, .h5: that interface problem for other solvers: in the form of Siconos, as matrices of the Matrix Market
+(NAME_W.mtx, NAME_q.mtx, NAME_mu.mtx), for fclib.
+.vtu: the state for ParaView; stickslip run --vtu writes them all.
 .cast: a journal as a film for asciinema.
 
 A scene is taken at its end, or where it fails. Exit codes: 0 the file was written, though the scene may have failed;
@@ -61,23 +64,29 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let kind = export::kind(&args.output).map_err(|e| usage(e.to_string()))?;
     if args.frozen && !kind.may_be_frozen {
         let told = format!(
-            "a .{} file is of no frozen problem; .ron and .dat are",
+            "a .{} file is of no frozen problem; .ron, .dat, .mtx and .h5 are",
             kind.extension
         );
         return Err(usage(told));
     }
     // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
-    drop(Output::create(&args.output, args.force)?);
-    let bytes = match kind.made_of {
-        _ if import::is_mesh(&args.input) => around_mesh(args, kind)?,
-        MadeOf::Journal => film(args)?,
-        MadeOf::State(_) => match state(args, kind, &interrupt)? {
-            Ok(bytes) => bytes,
+    let names = kind.files(&args.output).map_err(usage)?;
+    for name in &names {
+        drop(Output::create(name, args.force)?);
+    }
+    let contents = match kind.made_of {
+        _ if import::is_mesh(&args.input) => vec![around_mesh(args, kind)?],
+        MadeOf::Journal => vec![film(args)?],
+        MadeOf::State(_) | MadeOf::Parts(_) => match state(args, kind, &interrupt)? {
+            Ok(contents) => contents,
             Err(exit) => return Ok(exit),
         },
     };
-    files::write(&args.output, &bytes, args.force)?;
-    tell(&format!("wrote {}", args.output.display()));
+    let whole: Vec<_> = names.into_iter().zip(contents).collect();
+    files::write_all(&whole, args.force)?;
+    for (name, _) in &whole {
+        tell(&format!("wrote {}", name.display()));
+    }
     Ok(Exit::Good)
 }
 
@@ -204,11 +213,12 @@ enum Ended {
     Not(Exit),
 }
 
-/// The bytes of a file of a state, or with which code to end where there are none.
-fn state(args: &Args, kind: &Kind, interrupt: &Interrupt) -> Result<Result<Vec<u8>, Exit>, Error> {
-    let MadeOf::State(make) = kind.made_of else {
-        return Ok(Err(Exit::Bad));
-    };
+/// What is in the files of a state, or with which code to end where there is nothing.
+fn state(
+    args: &Args,
+    kind: &Kind,
+    interrupt: &Interrupt,
+) -> Result<Result<Vec<Vec<u8>>, Exit>, Error> {
     let course = open(args)?;
     let scene = &course.scene;
     let mut stepper = solver(Arc::new(scene.model.clone()));
@@ -238,9 +248,10 @@ fn state(args: &Args, kind: &Kind, interrupt: &Interrupt) -> Result<Result<Vec<u
         ended,
         frozen: args.frozen,
     };
-    match make(&shown, &mut stepper) {
-        Ok(bytes) => Ok(Ok(bytes)),
-        Err(why) => {
+    match kind.made(&shown, &mut stepper) {
+        None => Ok(Err(Exit::Bad)),
+        Some(Ok(contents)) => Ok(Ok(contents)),
+        Some(Err(why)) => {
             tell(&format!("{}: {why}", scene.name));
             Ok(Err(Exit::Unconverged))
         }

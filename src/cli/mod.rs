@@ -13,6 +13,7 @@ mod course;
 mod debugger;
 mod diff;
 mod export;
+mod grids;
 mod groups;
 mod help;
 mod interrupt;

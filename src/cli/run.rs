@@ -1,6 +1,7 @@
 //! `stickslip run`: solves a scene from start to end.
 
 use super::base::{Error, Exit, SceneArgs, tell};
+use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
 use super::outputs::aligned;
 use super::sink::{Sent, Sink};
@@ -51,6 +52,18 @@ pub struct Args {
     /// Writes the state at the end, or where the solve failed
     #[arg(long, value_name = "FILE")]
     snapshot: Option<PathBuf>,
+    /// Writes files for ParaView into a folder, and a collection of them (.pvd)
+    #[arg(long, value_name = "DIR")]
+    vtu: Option<PathBuf>,
+    /// After what --vtu writes a file
+    #[arg(
+        long,
+        value_name = "WHAT",
+        value_enum,
+        default_value = "increment",
+        requires = "vtu"
+    )]
+    each: Each,
     /// Tells whether each accepted state is stable: a column of --csv, and a line at the end
     #[arg(long)]
     stability: bool,
@@ -66,7 +79,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let scene = args.scene.open()?;
     // Before the solve, so that nobody waits for a result that then has no place to go.
-    let mut outputs = Outputs::open(args)?;
+    let mut outputs = Outputs::open(args, &scene)?;
     if !args.quiet {
         for warning in gaps::warnings(&scene.model) {
             tell(&format!("warning: {warning}"));
@@ -75,7 +88,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut run = Run::new(&scene, args);
     let end = run.go(&mut outputs, &interrupt)?;
     run.tally.progress.clear();
-    let snapshot = outputs.close()?;
+    let (snapshot, wrote) = outputs.close()?;
+    if let Some(wrote) = wrote.filter(|_| !args.quiet) {
+        tell(&wrote);
+    }
     if let Some(output) = snapshot {
         write_snapshot(output, &run)?;
     }
@@ -87,10 +103,11 @@ struct Outputs {
     csv: Option<Sink>,
     trace: Option<Sink>,
     snapshot: Option<Output>,
+    grids: Option<Grids>,
 }
 
 impl Outputs {
-    fn open(args: &Args) -> Result<Outputs, Error> {
+    fn open(args: &Args, scene: &Scene) -> Result<Outputs, Error> {
         let snapshot = args.snapshot.as_ref().map(|path| path.to_string_lossy());
         let named = [
             args.csv.as_deref(),
@@ -110,10 +127,12 @@ impl Outputs {
             None => Ok(None),
         };
         let output = |path: &PathBuf| Output::create(path, args.force);
+        let grids = |folder: &PathBuf| Grids::open(folder, &scene.name, args.each, args.force);
         Ok(Outputs {
             csv: sink(&args.csv)?,
             trace: sink(&args.trace)?,
             snapshot: args.snapshot.as_ref().map(output).transpose()?,
+            grids: args.vtu.as_ref().map(grids).transpose()?,
         })
     }
 
@@ -125,15 +144,19 @@ impl Outputs {
 
     /// What to do after lines were sent: where nobody reads on and nothing else is written there is nothing to solve for.
     fn after(&self, sent: Sent) -> Sent {
-        let wanted = self.csv.is_some() || self.trace.is_some() || self.snapshot.is_some();
+        let wanted = self.csv.is_some()
+            || self.trace.is_some()
+            || self.snapshot.is_some()
+            || self.grids.is_some();
         if wanted { Sent::Well } else { sent }
     }
 
-    /// Ends the tables; what is left is the snapshot to be written.
-    fn close(self) -> Result<Option<Output>, Error> {
+    /// Ends the tables and the files for ParaView, of which it tells; what is left is the snapshot to be written.
+    fn close(self) -> Result<(Option<Output>, Option<String>), Error> {
         self.csv.map(Sink::finish).transpose()?;
         self.trace.map(Sink::finish).transpose()?;
-        Ok(self.snapshot)
+        let wrote = self.grids.map(Grids::finish).transpose()?;
+        Ok((self.snapshot, wrote))
     }
 }
 
@@ -224,6 +247,9 @@ impl<'a> Run<'a> {
         let stability = tally.stability.is_some();
         if outputs.headers(&tally.scene.model, stability)? == Sent::Closed {
             return Ok(RunEnd::Stopped(Closed));
+        }
+        if let Some(grids) = &mut outputs.grids {
+            grids.start(stepper)?;
         }
         let came = || interrupt.came();
         let until = Until::end().interrupted_by(&came);
@@ -325,6 +351,9 @@ impl<'a> Run<'a> {
 impl Tally<'_> {
     /// Writes and tells what a minor iteration did.
     fn see(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
+        if let Some(grids) = &mut outputs.grids {
+            grids.see(stepper)?;
+        }
         let event = stepper.event();
         (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
         self.progress.show(event, self.steps);

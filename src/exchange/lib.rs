@@ -6,15 +6,27 @@
 //! for.
 //!
 //! - [`broken`]: what is wrong with a file, and where.
-//! - [`calculix`]: how a run of CalculiX went.
-//! - [`inp`]: decks of CalculiX and Abaqus.
-//! - [`gmsh`]: meshes of Gmsh.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
+//! - [`gmsh`]: meshes of Gmsh.
+//! - [`inp`]: decks of CalculiX and Abaqus.
+//! - [`calculix`]: how a run of CalculiX went, and the stiffness that it stores.
+//! - [`problem`]: friction problems, as all readers of interface problems give them.
+//! - [`siconos`]: friction problems of Siconos, as text.
+//! - [`matrix_market`]: single matrices in the Matrix Market's exchange format.
+//! - [`fclib`]: friction problems in the HDF5 files of the library fclib.
+//! - [`vtu`]: results for ParaView: VTK's unstructured grids, and collections of them.
 
 #![forbid(unsafe_code)]
 
 pub mod broken;
 pub mod calculix;
+pub mod fclib;
 pub mod gmsh;
 pub mod inp;
+pub mod matrix_market;
 pub mod mesh;
+pub mod problem;
+pub mod siconos;
+pub mod vtu;
+
+mod words;

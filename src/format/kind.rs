@@ -9,7 +9,7 @@ use crate::outside::{calculix, input, shown};
 /// The kinds of files that the program writes or reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileKind {
-    /// A scene, an interface problem in RON or in the form of Siconos.
+    /// A scene, or an interface problem: in RON, or in the form of another program.
     Scene,
     /// A recorded state.
     Snapshot,
@@ -48,12 +48,15 @@ impl FileKind {
     /// What a text is, as far as its beginning and its outermost fields tell; `None` where they do not.
     pub fn of(text: &str) -> Option<FileKind> {
         let text = text.trim_start_matches(input::MARK);
+        if text.starts_with("%%MatrixMarket") {
+            return Some(FileKind::Scene);
+        }
         let rows = text.lines().filter(|line| !line.starts_with('#'));
         let first = rows.map(str::trim).find(|line| !line.is_empty())?;
         if first.starts_with("stickslip ") && first.contains(" results, ") {
             return Some(FileKind::Results);
         }
-        if first.starts_with("*ELEMENT") && first.contains("=contactelements_st") {
+        if is_contacts(first) {
             return Some(FileKind::Contacts);
         }
         if PROGRESS.contains(&first) {
@@ -85,7 +88,10 @@ impl FileKind {
         if too_deep(text).is_some() {
             return None;
         }
-        if head(text) == Some(super::condensed::HEAD) {
+        if [super::condensed::HEAD, super::stored::HEAD]
+            .map(Some)
+            .contains(&head(text))
+        {
             return Some(FileKind::Scene);
         }
         let whole = locate(text, &Path::default());
@@ -154,6 +160,12 @@ pub(crate) fn has_field(text: &str, field: &str) -> bool {
     too_deep(text).is_none() && locate(text, &Path(vec![Step::from(field)])) != whole()
 }
 
+/// Whether a text begins as the contact elements of a CalculiX run do.
+pub fn is_contacts(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    first.starts_with("*ELEMENT") && first.contains("=contactelements_st")
+}
+
 /// The message where a text is of another kind than `wanted`: ``this is a snapshot; `stickslip replay FILE` reads it``.
 pub fn mistaken(file: &str, text: &str, wanted: FileKind) -> Option<String> {
     let kind = FileKind::of(text).filter(|kind| *kind != wanted)?;
@@ -189,7 +201,12 @@ mod tests {
             ("(scene: \"b\", series: [])", FileKind::Chart),
             ("(title: \"a\", nodes: [], bodies: [])", FileKind::Scene),
             ("Contacts(title: \"a\")", FileKind::Scene),
+            ("Stored(title: \"a\")", FileKind::Scene),
             ("2\n1\n0\n", FileKind::Scene),
+            (
+                "%%MatrixMarket matrix array real general\n",
+                FileKind::Scene,
+            ),
             (
                 "# words\nscene,series,run,settings,status,error\n",
                 FileKind::ChartTable,

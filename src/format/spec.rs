@@ -8,9 +8,10 @@ use super::arc::ArcSpec;
 use super::contact_law::{ContactLaw, FrictionSpec};
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
+pub use super::loads::{LoadSpec, Scale};
+pub use super::monitor::{MonitorSpec, Quantity};
 use crate::model::{
-    Axis, Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
-    least,
+    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update, least,
 };
 use serde::{Deserialize, Serialize};
 
@@ -536,98 +537,6 @@ described! {
 }
 
 described! {
-    /// A reference load; what acts is its value times the load factor (or times `scale` of it).
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    pub enum LoadSpec {
-        /// A dead point load.
-        Force {
-            /// Name of the node.
-            node: String,
-            /// Component along x, a force. Default: 0.
-            #[serde(default)]
-            x: f64,
-            /// Component along y, a force. Default: 0.
-            #[serde(default)]
-            y: f64,
-            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
-            #[serde(default)]
-            scale: Scale,
-        },
-        /// A moment on a beam node, anticlockwise positive.
-        Moment {
-            /// Name of the node.
-            node: String,
-            /// Force times length.
-            value: f64,
-            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
-            #[serde(default)]
-            scale: Scale,
-        },
-        /// A uniform dead load along a chain: on each unit of its undeformed length; in axisymmetry on each unit of undeformed
-        /// area, all around (2 pi x).
-        Traction {
-            /// Id of the chain, or name of the edge.
-            along: String,
-            /// Along the outward normal of the undeformed chain, to the right of its walk. Default: 0.
-            #[serde(default)]
-            normal: f64,
-            /// Component along x, force by length (axisymmetry: by area). Default: 0.
-            #[serde(default)]
-            x: f64,
-            /// Component along y, force by length (axisymmetry: by area). Default: 0.
-            #[serde(default)]
-            y: f64,
-            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
-            #[serde(default)]
-            scale: Scale,
-        },
-        /// A pressure on the faces of solids along a chain, which follows them: force by current area (times the thickness, or
-        /// the circumference 2 pi x in axisymmetry), along the current normal. On a solid with `update: small` it stays as it is
-        /// on the undeformed face.
-        Pressure {
-            /// Id of the chain, or name of the edge.
-            along: String,
-            /// Force by area; positive pushes into the body, whichever way the chain is walked.
-            value: f64,
-            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
-            #[serde(default)]
-            scale: Scale,
-        },
-        /// A dead load on each unit of undeformed volume of a solid, as its weight: density times gravity.
-        Volume {
-            /// Id of the solid, or of a block or mesh that solids stand on.
-            on: String,
-            /// Component along x, force by volume. Default: 0.
-            #[serde(default)]
-            x: f64,
-            /// Component along y, force by volume. Default: 0.
-            #[serde(default)]
-            y: f64,
-            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
-            #[serde(default)]
-            scale: Scale,
-        },
-        /// A prescribed displacement (or rotation) of a node; `ID.all` moves a whole chain.
-        Displacement {
-            /// Name of a node; `ID.all` for a whole chain.
-            node: String,
-            /// Along which degree of freedom.
-            component: Component,
-            /// Length, or angle in radians.
-            value: f64,
-            /// Load factor of the scene to that of this load, as points `(load factor, own factor)`. Default: the same.
-            #[serde(default)]
-            scale: Scale,
-        },
-    }
-}
-
-/// Piecewise-linear map from the scene's load factor to a load's own, as points `(load factor, own factor)` with
-/// rising load factors; constant beyond its ends. Default (no points): the load factor itself.
-pub type Scale = Vec<Point>;
-
-described! {
     /// The path of the load factor.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
@@ -656,71 +565,5 @@ impl History {
     /// Size below which an increment is not cut.
     pub fn least(&self) -> f64 {
         least(self.least, self.increment)
-    }
-}
-
-described! {
-    /// A number to report after every converged increment.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    pub struct MonitorSpec {
-        /// Column name in `--csv`.
-        pub name: String => name,
-        /// What is reported.
-        pub of: Quantity,
-    }
-}
-
-described! {
-    /// What a monitor reports.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    pub enum Quantity {
-        /// A displacement (or rotation) of a node.
-        Displacement {
-            /// Name of the node.
-            node: String,
-            /// Along which degree of freedom.
-            component: Component,
-        },
-        /// The interaction force on one slave node, or on all of them together.
-        Contact {
-            /// Name of the slave node. Default: all of them together.
-            #[serde(default)]
-            node: Option<String>,
-            /// Along which axis.
-            component: Axis,
-        },
-        /// The force of the support at a restrained degree of freedom.
-        Reaction {
-            /// Name of the node.
-            node: String,
-            /// Along which degree of freedom.
-            component: Component,
-        },
-        /// How many slave nodes have a mode.
-        Modes {
-            /// The mode: free, sliding or fixed.
-            mode: Mode,
-        },
-        /// The contact pressure F_n / A of one slave node, with its undeformed tributary area A, or the largest of all.
-        Pressure {
-            /// Name of the slave node. Default: the one where it is largest.
-            #[serde(default)]
-            node: Option<String>,
-        },
-        /// The contact shear F_t / A of one slave node, along t, or that of all which is largest in size.
-        Shear {
-            /// Name of the slave node. Default: the one where it is largest in size.
-            #[serde(default)]
-            node: Option<String>,
-        },
-        /// How far one slave node that sticks has gone along its surface from the point where it stuck (length, with the
-        /// sign of slip; 0 where it slides or is free), or that of all which has gone furthest.
-        Drift {
-            /// Name of the slave node. Default: the one that has gone furthest.
-            #[serde(default)]
-            node: Option<String>,
-        },
     }
 }

@@ -138,6 +138,22 @@ fn straight(path: &Path) -> io::Result<File> {
     Ok(open)
 }
 
+/// Writes several files, none of which takes its name before all can.
+///
+/// # Errors
+/// As [`Output::create`] and [`Output::finish`].
+pub fn write_all(files: &[(PathBuf, impl AsRef<[u8]>)], overwrite: bool) -> Result<(), FileError> {
+    let mut outputs = Vec::with_capacity(files.len());
+    for (path, bytes) in files {
+        let mut output = Output::create(path, overwrite)?;
+        output
+            .write_all(bytes.as_ref())
+            .map_err(|e| output.failed(e))?;
+        outputs.push(output);
+    }
+    outputs.into_iter().try_for_each(Output::finish)
+}
+
 /// Refuses what exists and is no regular file: whoever must not wait cannot write there.
 ///
 /// # Errors

@@ -7,23 +7,23 @@
 //! A_i = ∫ N_i w |dx/dξ| dξ,
 //! ```
 //!
-//! where w is the thickness across the plane, 2 pi x on bodies of revolution; 1 for beams, whose elements are their sides. On a straight side of length L that
+//! where w is the thickness across the plane, or 2π x in axisymmetry; 1 for beams, whose elements are their sides. On a straight side of length L that
 //! is L/2 for each of 2 nodes, and L/6, 4L/6, L/6 for 3. A side belongs to the slave surface if all its nodes are slaves of
 //! one pair. A node without such a side (one slave node by itself, say) has half of each side of its body that it is on.
 //! Bodies that are given by matrices have no sides.
 
 use crate::fem::lagrange::{gauss, shape};
-use crate::model::{Beam, Body, BodyKind, Elastic, Node, Solid};
+use crate::model::{Body, BodyKind, Elastic, Node, Solid};
 use std::collections::HashMap;
 
 /// Parts of a side's area that are round-off.
 const NONE: f64 = 1e-9;
 
-/// A side of a body, with the material behind it, which tells how wide it is across the plane; none on beams.
+/// A side of a body, with what a solid is made of there, which says how wide it is across the plane.
 #[derive(Debug, Clone, Copy)]
 struct Side<'a> {
     nodes: &'a [usize],
-    of: Option<Elastic>,
+    made_of: Option<&'a Elastic>,
 }
 
 /// Areas of the nodes of a scene that are slaves, `pair_of` being the pair of each; `None` for all others, and where a node is
@@ -59,20 +59,21 @@ pub(super) fn tributary(
 
 /// The sides of a body.
 fn sides(body: &Body) -> Vec<Side<'_>> {
-    let beam = |beam: &'_ Beam| vec![None; beam.elements.len()];
-    let widths = match &body.kind {
-        BodyKind::Beam(of) => beam(of),
-        BodyKind::Solid(solid) => widths(solid),
-        BodyKind::Truss(_) | BodyKind::Linear(_) => return Vec::new(),
+    let materials = match &body.kind {
+        BodyKind::Beam(beam) => vec![None; beam.elements.len()],
+        BodyKind::Solid(solid) => materials(solid),
+        BodyKind::Linear(_) | BodyKind::Truss(_) => return Vec::new(),
     };
-    let lines = body.kind.lines().iter().zip(widths);
-    lines.map(|(nodes, of)| Side { nodes, of }).collect()
+    let lines = body.kind.lines().iter().zip(materials);
+    lines
+        .map(|(nodes, made_of)| Side { nodes, made_of })
+        .collect()
 }
 
-/// What is behind each edge of a solid.
-fn widths(solid: &Solid) -> Vec<Option<Elastic>> {
+/// What a solid is made of at each of its edges.
+fn materials(solid: &Solid) -> Vec<Option<&Elastic>> {
     if let [only] = solid.materials.as_slice() {
-        return vec![Some(*only); solid.edges.len()];
+        return vec![Some(only); solid.edges.len()];
     }
     // The element behind an edge is the one that has all its nodes.
     let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
@@ -89,11 +90,12 @@ fn widths(solid: &Solid) -> Vec<Option<Elastic>> {
         };
         around.get(&edge[0])?.iter().find(all).copied()
     };
-    let width = |edge| {
-        let material = behind(edge).map_or(0, |k| solid.elements[k].material);
-        Some(solid.materials[material])
+    let material = |edge| {
+        solid
+            .materials
+            .get(solid.elements.get(behind(edge)?)?.material)
     };
-    solid.edges.iter().map(width).collect()
+    solid.edges.iter().map(material).collect()
 }
 
 /// What each node of a side has of its area. Lagrange polynomials of many nodes have negative integrals; there a node has what is
@@ -125,11 +127,13 @@ fn integrals(side: &Side<'_>, nodes: &[Node], from: f64, to: f64) -> Vec<f64> {
             let at = side.nodes.iter().map(|&node| nodes[node].at[axis]);
             at.zip(here.d).map(|(at, d)| at * d).sum()
         });
-        let radius = || -> f64 {
-            let shares = side.nodes.iter().zip(here.n);
-            shares.map(|(&node, n)| nodes[node].at[0] * n).sum()
-        };
-        let width = side.of.map_or(1.0, |of| of.width(radius()));
+        let radius = side
+            .nodes
+            .iter()
+            .zip(here.n)
+            .map(|(&node, n)| nodes[node].at[0] * n)
+            .sum();
+        let width = side.made_of.map_or(1.0, |made_of| made_of.width(radius));
         let size = 0.5 * (to - from) * weight * width * slope[0].hypot(slope[1]);
         sums.iter_mut()
             .zip(here.n)
@@ -141,6 +145,7 @@ fn integrals(side: &Side<'_>, nodes: &[Node], from: f64, to: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Beam;
 
     fn beam(elements: Vec<Vec<usize>>) -> Body {
         let (ea, ei) = (1.0, 1.0);

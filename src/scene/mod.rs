@@ -5,7 +5,7 @@
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
 //! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
-//! - [`siconos`]: interface problems of another code.
+//! - [`problems`]: interface problems that other programs have written.
 //! - [`builtin`]: the scenes that the program carries.
 
 pub mod base;
@@ -17,7 +17,7 @@ pub mod import;
 pub mod limits;
 pub mod memory;
 pub mod nodes;
-pub mod siconos;
+pub mod problems;
 pub mod solver;
 
 mod areas;
@@ -27,10 +27,12 @@ mod curves;
 mod deck;
 mod geometry;
 
+use crate::format::kind;
 use crate::format::paths::Override;
 use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read};
 use crate::model::Model;
 pub use builtin::Builtin;
+pub use problems::siconos;
 
 pub(crate) use compile::increments;
 use nodes::Names;
@@ -68,6 +70,9 @@ impl Scene {
         if import::is_mesh(name) {
             return Err(SceneError::whole(name, import::no_scene(name)));
         }
+        if let Some(problem) = problems::from_file(name, overrides) {
+            return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
+        }
         let text = match deck::is_called_so(name) {
             true => {
                 deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
@@ -83,8 +88,8 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// Reads a scene from a text, or what [`condensed`] and [`siconos`] make one of; `name` is what messages call it, and the
-    /// meshes that it imports lie beside a file of that name.
+    /// Reads a scene from a text, or what [`condensed`] and [`problems`] make one of; `name` is what messages call it, and the
+    /// files that it names lie beside a file of that name.
     ///
     /// # Errors
     /// If the scene is unsound.
@@ -93,11 +98,12 @@ impl Scene {
         text: &str,
         overrides: &[(String, String)],
     ) -> Result<Scene, SceneError> {
-        if deck::is_one(text) {
+        // The contact elements of a run begin as a deck does.
+        if deck::is_one(text) && !kind::is_contacts(text) {
             return Scene::from_deck(name, text, overrides);
         }
-        if siconos::is_one(text) {
-            return Scene::from_siconos(name, text, overrides);
+        if let Some(problem) = problems::from_text(name, text, overrides) {
+            return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
         if locate::head(text) == Some(condensed::HEAD) {
             let problem = read::problem(name, text)?;
@@ -146,26 +152,6 @@ impl Scene {
         Ok(scene)
     }
 
-    fn from_siconos(
-        name: &str,
-        text: &str,
-        overrides: &[(String, String)],
-    ) -> Result<Scene, SceneError> {
-        let memory = overrides
-            .iter()
-            .rev()
-            .find(|(path, _)| path == "settings.memory");
-        let memory = memory.and_then(|(_, value)| value.parse().ok());
-        let problem = siconos::read_within(text, memory).map_err(|broken| SceneError {
-            at: Some((broken.line, broken.column)),
-            ..SceneError::whole(name, broken.message)
-        })?;
-        let file = std::path::Path::new(name).file_name();
-        let title = file.map_or_else(|| name.into(), |file| file.to_string_lossy());
-        let spec = problem.problem(&error::shortened(&title)).spec();
-        Scene::assemble(name, "", spec, overrides, Vec::new())
-    }
-
     /// Checks a scene that came without a text, as from a snapshot.
     ///
     /// # Errors
@@ -207,12 +193,19 @@ impl Scene {
     /// # Errors
     /// If there is no such path, or the value is unsound there.
     pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
-        let change = [(path.to_owned(), value.to_owned())];
+        self.with_all(&[(path.to_owned(), value.to_owned())])
+    }
+
+    /// This scene with several scalars set, one after the other.
+    ///
+    /// # Errors
+    /// As [`Scene::with`].
+    pub fn with_all(&self, changes: &[(String, String)]) -> Result<Scene, SceneError> {
         let scene = Scene::assemble(
             &self.name,
             &self.text,
             self.spec.clone(),
-            &change,
+            changes,
             self.overrides.clone(),
         )?;
         Ok(Scene {

@@ -28,7 +28,7 @@ use crate::model::Model;
 use crate::outside::files::{self, FileError};
 use crate::record::command::Exported;
 use crate::record::export::shown::{NotMade, Shown};
-use crate::record::export::{self, Kind, MadeOf, NoExport, Origin, UnknownKind};
+use crate::record::export::{self, Kind, NoExport, Origin, UnknownKind};
 use crate::scene::Scene;
 use crate::scene::solver::solver;
 use crate::step::event::Event;
@@ -541,7 +541,10 @@ fn try_remedies(
 /// Makes a file of a state.
 fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
     let bytes = match ask.what {
-        Exported::Core => core_of(stepper, ask)?.into_bytes(),
+        Exported::Core => {
+            let text = core_of(stepper, ask)?;
+            return Ok(files::write(&ask.file, text, ask.overwrite)?);
+        }
         // Any name will do for it, as it always did.
         Exported::Whole => match export::kind(&ask.file) {
             Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
@@ -549,7 +552,13 @@ fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
         },
         Exported::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
     };
-    Ok(files::write(&ask.file, &bytes, ask.overwrite)?)
+    let kind = export::kind(&ask.file).ok();
+    let names = match kind.filter(|_| bytes.len() > 1) {
+        Some(kind) => kind.files(&ask.file).map_err(NotMade::NoFile)?,
+        None => vec![ask.file.clone()],
+    };
+    let whole: Vec<_> = names.into_iter().zip(bytes).collect();
+    Ok(files::write_all(&whole, ask.overwrite)?)
 }
 
 /// The scene of the core of the cycle that a state runs into.
@@ -567,11 +576,8 @@ fn core_of(stepper: &mut Stepper, ask: &Export) -> Result<String, NotWritten> {
     Ok(export::core(stepper.model(), &ask.origin, &cycle, &core)?)
 }
 
-/// A file of a kind.
-fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<u8>, NotWritten> {
-    let MadeOf::State(make) = kind.made_of else {
-        return Err(NotWritten::OfJournal);
-    };
+/// What is in the files of a kind.
+fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>>, NotWritten> {
     let Some(seen) = &ask.shown else {
         return Err(NotWritten::Finished);
     };
@@ -589,5 +595,6 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<u8>, No
         ended,
         frozen: ask.what == Exported::Whole,
     };
-    Ok(make(&shown, stepper)?)
+    let made = kind.made(&shown, stepper).ok_or(NotWritten::OfJournal)?;
+    Ok(made?)
 }

@@ -10,6 +10,7 @@ use crate::history::strip::{PointKind, Strip};
 use crate::outside::files;
 use crate::record::command::Exported;
 use crate::record::export::shown::COLUMNS;
+use crate::record::export::shown::NotMade;
 use crate::record::export::{self, MadeOf, Origin};
 use crate::step::state::Status;
 use std::path::PathBuf;
@@ -104,6 +105,12 @@ impl Session {
             let kind = export::kind(&file).map_err(NotWritten::from)?;
             if matches!(kind.made_of, MadeOf::Journal) {
                 return Err(NotWritten::OfJournal.into());
+            }
+            for part in kind
+                .files(&file)
+                .map_err(|why| NotWritten::from(NotMade::NoFile(why)))?
+            {
+                drop(files::Output::create(&part, overwrite)?);
             }
         }
         drop(files::Output::create(&file, overwrite)?);

@@ -66,7 +66,12 @@ impl Case {
     pub fn open(&self) -> Result<Scene, SceneError> {
         let pairs = self.of.paths.iter().zip(&self.set);
         let settings: Vec<_> = pairs.map(|(p, v)| (p.clone(), v.clone())).collect();
-        Scene::from_text(&self.of.base.scene().name, &self.of.text, &settings)
+        let scene = self.of.base.scene();
+        match self.of.text.is_empty() {
+            // What was read from files of other programs has no text of its own.
+            true => scene.with_all(&settings),
+            false => Scene::from_text(&scene.name, &self.of.text, &settings),
+        }
     }
 
     /// Its model: that of the scene that [`Case::open`] reads, without reading it.

@@ -17,5 +17,7 @@ mod chart;
 mod threads;
 // Pictures and other files of what is there: whole, equal, and of the state that they say.
 mod export;
+// Files for ParaView and for other solvers.
+mod vtu;
 // Wrong kinds of files, mistyped words, readers that have seen enough.
 mod manners;

@@ -36,7 +36,7 @@ fn each_fault_has_one_message_with_its_place() {
         (
             "Beam(",
             "Plate(",
-            ":35:14: bodies[0]: \"Plate\" is none of the choices (choices: Beam, Solid, Matrix, Springs)",
+            ":35:14: bodies[0]: \"Plate\" is none of the choices (choices: Beam, Solid, Matrix, Truss, Springs)",
         ),
         (
             "sliding)",

@@ -511,3 +511,23 @@ fn a_node_past_the_end_of_its_surface_cannot_be_tied() {
         "{message}"
     );
 }
+
+#[test]
+fn a_corner_of_two_rigid_surfaces_refuses_what_gives_way() {
+    let mut spec = node(", law: Penalty(stiffness: 50.0), area: 0.5")
+        .unwrap()
+        .spec;
+    let wall =
+        r#"Line(id: "wall", from: (0.8, 1.0), to: (0.8, -1.0), elements: 1, per_element: 2)"#;
+    spec.nodes.push(ron::from_str(wall).unwrap());
+    let mut surface = spec.surfaces[0].clone();
+    (surface.id, surface.along) = ("wall".into(), "wall".into());
+    spec.surfaces.push(surface);
+    spec.slaves[0].on.push("wall".into());
+    let message = Scene::from_spec("node", spec.clone())
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("cross"), "{message}");
+    spec.slaves[0].law = stickslip::format::contact_law::ContactLaw::Hard;
+    assert!(Scene::from_spec("node", spec).is_ok());
+}

@@ -15,6 +15,7 @@ mod renewed;
 // The condensed interface takes the steps of the whole system, whatever the bodies.
 mod condensation;
 // Bodies given by a matrix, endless floors, and what slave nodes bring along.
+mod interfaces;
 mod linear;
 // Friction problems of Siconos are read, solved, written, and refused with a line where broken.
 mod siconos;

@@ -35,7 +35,7 @@ fn the_three_storages_say_the_same() {
 }
 
 /// u and r of each contact in turn, normal first, at the end of a run.
-fn answer(run: &Run) -> (Vec<f64>, Vec<f64>) {
+pub fn answer(run: &Run) -> (Vec<f64>, Vec<f64>) {
     let (model, state) = (run.stepper.model(), run.stepper.state());
     let of = |s: &stickslip::model::Contact| {
         let first = model.dofs.first[s.node];
@@ -47,7 +47,7 @@ fn answer(run: &Run) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// u = W r + q, 0 <= u_n ⊥ r_n >= 0, |r_t| <= mu r_n, and at the bound against u_t where it slips.
-fn assert_solved(problem: &Friction2d, run: &Run) {
+pub fn assert_solved(problem: &Friction2d, run: &Run) {
     let (u, r) = answer(run);
     for (i, row) in problem.w.iter().enumerate() {
         let sum: f64 = row.iter().zip(&r).map(|(w, r)| w * r).sum();

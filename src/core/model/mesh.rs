@@ -174,7 +174,7 @@ mod tests {
         // 6-5-4-13-12
         // 7   3    11     two quadrilaterals that share the side 2-3-4
         // 0-1-2-9-10
-        let elements = vec![
+        let elements = [
             vec![0, 2, 4, 6, 1, 3, 5, 7],
             vec![2, 10, 12, 4, 9, 11, 13, 3],
         ];

@@ -4,7 +4,7 @@
 //! mean force, the largest correction of a displacement over the largest increment of one, and the same two of heat flux and
 //! temperature. 1e-30 stands for nought over nought, 1e30 for something over nought (CalculiX's writecvg.f).
 
-use super::Stop;
+use super::Table;
 use super::cel::At;
 use super::lines::{Field, Line, table};
 use crate::broken::Broken;
@@ -29,7 +29,7 @@ pub struct Norms {
 ///
 /// # Errors
 /// If it is no such file, or a row is not as it should be.
-pub fn read(from: impl BufRead) -> Result<(Vec<(At, Norms)>, Option<Stop>), Broken> {
+pub fn read(from: impl BufRead) -> Result<Table<(At, Norms)>, Broken> {
     let mut rows = Vec::new();
     let take = |line: Line, fields: &[Field]| {
         let &[
@@ -74,6 +74,7 @@ fn short(count: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calculix::Stop;
 
     const CVG: &str = "SUMMARY OF C0NVERGENCE INFORMATION
   STEP   INC  ATT   ITER     CONT.   RESID.        CORR.      RESID.      CORR.

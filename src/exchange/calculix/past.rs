@@ -3,10 +3,10 @@
 //! The .cel alone does not tell iterations without contact elements, residuals, and how the last attempt ended. Stick and slip
 //! are in none of the three files.
 
-use super::Stop;
 use super::cel::{At, Closed, ContactElements, Slave};
 use super::cvg::Norms;
 use super::sta::Ended;
+use super::{Stop, Table};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -84,9 +84,6 @@ pub struct Iteration {
     /// Its row of the .cvg.
     pub norms: Option<Norms>,
 }
-
-/// What a table beside the .cel holds, and where it breaks off.
-type Table<T> = (Vec<T>, Option<Stop>);
 
 impl PastRun {
     /// Puts together what was read; `None` for a file that is missing.

@@ -3,7 +3,7 @@
 //! Columns: step, increment, attempt (with a U if it did not converge), iterations, total time, time of the step, size of the
 //! increment. Of an attempt that did not converge the times are those at its start.
 
-use super::Stop;
+use super::Table;
 use super::lines::{Field, Line, table};
 use crate::broken::Broken;
 use std::io::BufRead;
@@ -33,7 +33,7 @@ pub struct Ended {
 ///
 /// # Errors
 /// If it is no such file, or a row is not as it should be.
-pub fn read(from: impl BufRead) -> Result<(Vec<Ended>, Option<Stop>), Broken> {
+pub fn read(from: impl BufRead) -> Result<Table<Ended>, Broken> {
     let mut rows = Vec::new();
     let take = |line: Line, fields: &[Field]| {
         let &[step, increment, attempt, iterations, total, of_step, size] = fields else {
@@ -61,6 +61,7 @@ pub fn read(from: impl BufRead) -> Result<(Vec<Ended>, Option<Stop>), Broken> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calculix::Stop;
 
     const STA: &str = "SUMMARY OF JOB INFORMATION
   STEP      INC     ATT  ITRS     TOT TIME     STEP TIME      INC TIME

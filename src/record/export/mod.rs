@@ -2,22 +2,26 @@
 //!
 //! - [`frozen`]: the core of a cycle, or the whole frozen problem, as a scene, or in the form of Siconos.
 //! - [`picture`]: the deformed shape with modes, forces and gaps, and the timeline, as SVG and PNG.
-//! - [`written`]: the scene itself; [`skeleton`]: one around a mesh.
+//! - [`written`]: the scene itself, and the frozen problem in the forms of other programs; [`skeleton`]: a scene around a mesh.
+//! - [`grid`]: a state as ParaView shows it.
 //! - [`shown`]: what all of them are made of.
 //!
 //! A session as a film is made of a journal by who draws screens; the list has its name.
 
 pub mod frozen;
+pub mod grid;
 pub mod picture;
 pub mod shown;
 pub mod skeleton;
 pub mod written;
 
+mod pressures;
 mod timeline;
 
+use crate::scene::problems::market;
 use crate::step::stepper::Stepper;
 use shown::{NotMade, Shown};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use frozen::{NoExport, Origin, Parted, compared, core, whole, writable};
 
@@ -26,6 +30,8 @@ pub use frozen::{NoExport, Origin, Parted, compared, core, whole, writable};
 pub enum MadeOf {
     /// A state; the stepper is of the same model, and may be left anywhere.
     State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, NotMade>),
+    /// A state too, in several files: those that [`Kind::files`] names.
+    Parts(fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, NotMade>),
     /// A whole session.
     Journal,
 }
@@ -40,6 +46,35 @@ pub struct Kind {
     pub may_be_frozen: bool,
     /// What it is made of, and by whom.
     pub made_of: MadeOf,
+}
+
+impl Kind {
+    /// The files that are made where one of this kind is asked for, that one first.
+    ///
+    /// # Errors
+    /// If the name will not do.
+    pub fn files(&self, file: &Path) -> Result<Vec<PathBuf>, String> {
+        match self.made_of {
+            MadeOf::Parts(_) => Ok(market::parts(file)?.into()),
+            MadeOf::State(_) | MadeOf::Journal => Ok(vec![file.to_owned()]),
+        }
+    }
+
+    /// What is in these files, of a state; `None` where they are made of something else.
+    ///
+    /// # Errors
+    /// Why they cannot be made.
+    pub fn made(
+        &self,
+        shown: &Shown,
+        stepper: &mut Stepper,
+    ) -> Option<Result<Vec<Vec<u8>>, NotMade>> {
+        match self.made_of {
+            MadeOf::State(make) => Some(make(shown, stepper).map(|bytes| vec![bytes])),
+            MadeOf::Parts(make) => Some(make(shown, stepper)),
+            MadeOf::Journal => None,
+        }
+    }
 }
 
 /// Every kind that there is.
@@ -67,6 +102,24 @@ pub const KINDS: &[Kind] = &[
         what: "the frozen interface problem for Siconos",
         may_be_frozen: true,
         made_of: MadeOf::State(written::dat),
+    },
+    Kind {
+        extension: "mtx",
+        what: "the same as matrices of the Matrix Market, in three files",
+        may_be_frozen: true,
+        made_of: MadeOf::Parts(written::mtx),
+    },
+    Kind {
+        extension: "h5",
+        what: "the same for fclib",
+        may_be_frozen: true,
+        made_of: MadeOf::State(written::h5),
+    },
+    Kind {
+        extension: "vtu",
+        what: "the state for ParaView",
+        may_be_frozen: false,
+        made_of: MadeOf::State(grid::vtu),
     },
     Kind {
         extension: "cast",

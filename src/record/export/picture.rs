@@ -4,6 +4,7 @@
 //! Displacements are drawn as large as they are. Forces have a scale of their own, which stands below the shape with its
 //! number. Modes are told by shapes first, and by colours that differ in grey, too.
 
+use super::pressures::pressures;
 use super::shown::{NotMade, Shown};
 use super::timeline::{self, chosen, colour};
 use crate::contact::element::Element;
@@ -28,7 +29,7 @@ const HIGH: f64 = 400.0;
 /// Part of the window that the shape fills: forces and names need the rest.
 const FILLED: f64 = 0.86;
 /// Length of the longest force, and of a normal, in pixels.
-const FORCE: f64 = 86.0;
+pub(super) const FORCE: f64 = 86.0;
 const NORMAL: f64 = 13.0;
 /// Pixels between two normals.
 const SPACING: f64 = 46.0;
@@ -38,8 +39,6 @@ const ELEMENT: f64 = 7.0;
 const ROWS: usize = 14;
 /// Forces.
 const VERMILION: Colour = (213, 94, 0);
-/// Pressures.
-const BLUE: Colour = (86, 180, 233);
 /// Bodies.
 const DARK: Colour = (60, 60, 60);
 
@@ -142,7 +141,7 @@ fn footer(shown: &Shown) -> Vec<String> {
 }
 
 /// The map from the scene to the sheet: equal in both directions, y upwards.
-struct Window {
+pub(super) struct Window {
     patch: Patch,
     /// The point of the scene that lies in the middle of the part without room for forces, and that middle.
     middle: Point,
@@ -168,7 +167,7 @@ impl Window {
         }
     }
 
-    fn at(&self, point: Point) -> (f64, f64) {
+    pub(super) fn at(&self, point: Point) -> (f64, f64) {
         let (x, y) = self.centre;
         (
             x + (point[0] - self.middle[0]) * self.scale,
@@ -198,7 +197,7 @@ impl Window {
         chains
     }
 
-    fn holds(&self, (x, y): (f64, f64)) -> bool {
+    pub(super) fn holds(&self, (x, y): (f64, f64)) -> bool {
         (self.patch.from.0..=self.patch.to.0).contains(&x)
             && (self.patch.from.1..=self.patch.to.1).contains(&y)
     }
@@ -364,56 +363,6 @@ fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -
             sheet.dashed(&[from, to], 1.0, (0, 114, 178));
         }
     }
-}
-
-/// Contact pressure along the sides of bodies whose nodes are all slaves, drawn from the nodes along the master's normal; the
-/// largest is half as long as the longest force. Returns the largest.
-fn pressures(
-    sheet: &mut Sheet,
-    window: &Window,
-    shown: &Shown,
-    now: &dyn Fn(usize) -> Point,
-) -> f64 {
-    let (model, Some(event)) = (&shown.scene.model, shown.event) else {
-        return 0.0;
-    };
-    let round_off = RoundOff::of(model, &event.before);
-    let mut of_node = vec![None; model.nodes.len()];
-    for (contact, found) in model.contacts.iter().zip(&event.nodes) {
-        let pressure = contact.pressure(round_off.force(found.f_n), 0.0);
-        of_node[contact.node] = pressure.map(|[pressure, _]| (pressure, found.normal));
-    }
-    let sizes = of_node.iter().flatten().map(|(pressure, _)| pressure.abs());
-    let largest = sizes.filter(|p| p.is_finite()).fold(0.0, f64::max);
-    if largest == 0.0 {
-        return 0.0;
-    }
-    let scale = 0.5 * FORCE / largest;
-    let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
-    for line in lines {
-        let ends: Option<Vec<[(f64, f64); 2]>> = line
-            .iter()
-            .map(|&node| {
-                let (pressure, n) = of_node[node]?;
-                let foot = window.at(now(node));
-                let tip = (
-                    foot.0 + scale * pressure * n[0],
-                    foot.1 - scale * pressure * n[1],
-                );
-                Some([foot, tip])
-            })
-            .collect();
-        let Some(ends) = ends.filter(|ends| ends.iter().flatten().all(|at| window.holds(*at)))
-        else {
-            continue;
-        };
-        let tips: Vec<(f64, f64)> = ends.iter().map(|end| end[1]).collect();
-        sheet.line(&tips, 1.6, BLUE);
-        for end in &ends {
-            sheet.line(end, 0.8, BLUE);
-        }
-    }
-    largest
 }
 
 /// Room that the arrows of forces need beyond the shape: at the left, above, at the right, and below.

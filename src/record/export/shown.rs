@@ -48,6 +48,9 @@ pub enum NotMade {
     /// No file can say what the problem says.
     #[error(transparent)]
     NoExport(#[from] NoExport),
+    /// The file's form has no room for it.
+    #[error("{0}")]
+    NoFile(String),
     /// The scene cannot be written as text.
     #[error("the scene cannot be written as text: {0}")]
     Unwritable(String),

@@ -1,11 +1,15 @@
-//! Scenes and frozen problems as text: `.ron` and `.dat`.
+//! Scenes as text (`.ron`), and frozen problems in the forms of other programs: `.dat`, `.mtx`, `.h5`.
 
 use super::frozen::{self, Origin};
 use super::shown::{NotMade, Shown, problem};
+use crate::explain::names;
 use crate::format::notation;
+use crate::outside::shown as outside;
 use crate::scene::Scene;
-use crate::scene::siconos::Storage;
+use crate::scene::problems::market;
+use crate::scene::siconos::{Friction2d, Storage};
 use crate::step::stepper::Stepper;
+use stickslip_exchange::fclib;
 
 /// The scene, with what was set from outside; or its frozen problem, where that is wanted.
 pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMade> {
@@ -25,9 +29,36 @@ pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMa
 
 /// The frozen problem in the form of Siconos.
 pub(super) fn dat(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMade> {
-    let (problem, _) = problem(shown, stepper)?;
-    let friction = frozen::siconos(&shown.scene.model, &problem)?;
+    let friction = condensed(shown, stepper)?;
     Ok(friction.write(Storage::Dense).into_bytes())
+}
+
+/// The same as matrices of the Matrix Market.
+pub(super) fn mtx(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, NotMade> {
+    let friction = condensed(shown, stepper)?;
+    let texts = market::texts(&friction, &from(shown));
+    Ok(texts.map(String::into_bytes).into())
+}
+
+/// The same for fclib.
+pub(super) fn h5(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMade> {
+    let friction = condensed(shown, stepper)?;
+    fclib::write(&friction.local(), &from(shown)).map_err(|e| NotMade::NoFile(e.to_string()))
+}
+
+fn condensed(shown: &Shown, stepper: &mut Stepper) -> Result<Friction2d, NotMade> {
+    let (problem, _) = problem(shown, stepper)?;
+    Ok(frozen::siconos(&shown.scene.model, &problem)?)
+}
+
+/// Where the problem comes from, on a line.
+fn from(shown: &Shown) -> String {
+    let text = format!(
+        "From {}, {}",
+        shown.scene.name,
+        names::position(shown.origin.at)
+    );
+    outside::line(&text).into_owned()
 }
 
 /// The file of a scene: its author's where nothing was set from outside and no mesh stands in another file, else one that says

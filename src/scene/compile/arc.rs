@@ -102,6 +102,13 @@ fn slave(here: &Path, name: &str, names: &Names, slaves: &[Contact]) -> Result<u
         .node(name)
         .map_err(|message| Fault::new(here.clone(), message))?;
     let found = slaves.iter().position(|slave| slave.node == node);
+    let is_elastic = |slave: &Contact| slave.bond.is_tied() || slave.bond.give()[1] > 0.0;
+    if found.is_some_and(|found| is_elastic(&slaves[found])) {
+        let message = format!(
+            "the slip of node {name:?} cannot be followed, since it is tied, or slips elastically before it slides; take a monitor"
+        );
+        return Err(Fault::new(here.clone(), message));
+    }
     found.ok_or_else(|| {
         let all = slaves.iter().map(|s| names.nodes[s.node].name.as_str());
         let message = format!("node {name:?} is no slave node (slaves: {})", some_of(all));

@@ -8,10 +8,14 @@ use crate::contact::projection::{project, projection_at};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::{Fault, Path};
 use crate::format::spec::{SlaveSpec, Spec};
-use crate::model::{Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Surface};
+use crate::model::{Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Node, Surface};
+use std::collections::HashSet;
 
 /// Most that a tied node is moved, as a part of the scene's length: what is farther away was not meant to be joined.
 const JOINED: f64 = 0.05;
+
+/// Parts of a side that are round-off.
+const TOUCHES: f64 = 1e-9;
 
 /// Refuses a pair's law that makes no sense by itself.
 pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
@@ -151,6 +155,63 @@ pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Con
         let upright = own(0) != own(1) || moves(0) != moves(1);
         slave.bond = Bond::Tied { upright };
     }
+}
+
+/// Refuses nodes whose bond gives way over two rigid surfaces that cross: both laws would have to hold in their corner.
+pub(super) fn check_corners(
+    spec: &Spec,
+    names: &Names,
+    surfaces: &[Surface],
+    slaves: &[Contact],
+) -> Result<(), Fault> {
+    let mut apart = HashSet::new();
+    for slave in slaves.iter().filter(|slave| slave.bond.give() != [0.0; 2]) {
+        for (k, &one) in slave.surfaces.iter().enumerate() {
+            for &other in &slave.surfaces[k + 1..] {
+                let both = [&surfaces[one], &surfaces[other]];
+                let rigid = both.iter().all(|surface| surface.rigid);
+                if !rigid || apart.contains(&(one, other)) {
+                    continue;
+                }
+                if cross(&names.nodes, both) {
+                    let message = format!(
+                        "node {:?} has a penalty or a stick stiffness, and the surfaces {:?} and {:?} cross: in their corner both laws would have to hold at once; name one of them, or take hard contact",
+                        names.nodes[slave.node].name, both[0].name, both[1].name
+                    );
+                    return Err(Fault::new(slave_path(spec, names, slave.node), message));
+                }
+                apart.insert((one, other));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether two surfaces cross or meet at an angle, each taken as straight from node to node.
+fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
+    let sides = |surface: &Surface| -> Vec<[[f64; 2]; 2]> {
+        let elements = surface
+            .elements
+            .iter()
+            .flat_map(|element| element.windows(2));
+        elements
+            .map(|pair| [nodes[pair[0]].at, nodes[pair[1]].at])
+            .collect()
+    };
+    let on = |part: f64, surface: &Surface| {
+        surface.endless || (-TOUCHES..=1.0 + TOUCHES).contains(&part)
+    };
+    let [one, other] = surfaces.map(sides);
+    one.iter().any(|[a, b]| {
+        other.iter().any(|[c, d]| {
+            let (r, u) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
+            let to = [c[0] - a[0], c[1] - a[1]];
+            let turn = r[0] * u[1] - r[1] * u[0];
+            let along = (to[0] * u[1] - to[1] * u[0]) / turn;
+            let across = (to[0] * r[1] - to[1] * r[0]) / turn;
+            turn != 0.0 && on(along, surfaces[0]) && on(across, surfaces[1])
+        })
+    })
 }
 
 /// What holds at a node of a pair.

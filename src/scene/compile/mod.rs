@@ -91,6 +91,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let surfaces = surfaces.made;
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     laws::stand_upright(&dofs, &surfaces, &mut slaves);
+    laws::check_corners(spec, &names, &surfaces, &slaves)?;
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;

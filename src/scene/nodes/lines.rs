@@ -1,6 +1,7 @@
 //! The lines of sides of a given mesh, for whoever looks for one by its shape.
 
 use super::super::geometry::distance;
+use super::given::nodes_of;
 use super::{Entry, EntryKind, Names};
 
 /// A line of sides.
@@ -19,6 +20,23 @@ pub struct Line {
 }
 
 impl Names {
+    /// What is to be known of each given mesh, on a line of text: nodes that no element has, and that `refine` passes it by.
+    pub fn notes(&self, refine: usize) -> Vec<String> {
+        let meshes = self
+            .entries
+            .iter()
+            .filter(|entry| entry.kind == EntryKind::Given);
+        let note = |mesh: &Entry| {
+            let idle = mesh.nodes.len() - nodes_of(&mesh.elements).len();
+            let idle = (idle > 0)
+                .then(|| format!("mesh {:?}: {idle} of its nodes are on no element", mesh.id));
+            let coarse = (refine > 1)
+                .then(|| format!("mesh {:?}: refine does not divide its elements", mesh.id));
+            idle.into_iter().chain(coarse)
+        };
+        meshes.flat_map(note).collect()
+    }
+
     /// The lines of sides of the given mesh with an id, in the order of the scene.
     pub fn lines(&self, id: &str) -> Vec<Line> {
         let Some(mesh) = self.index.get(id).map(|&k| &self.entries[k]) else {

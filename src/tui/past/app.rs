@@ -259,7 +259,7 @@ impl App {
             (0..attempts.len()).filter(is_one).filter_map(end)
         };
         let on = |whole: bool| ends(whole).find(|end| *end > here);
-        let back = |whole: bool| ends(whole).filter(|end| *end < here).last();
+        let back = |whole: bool| ends(whole).rfind(|end| *end < here);
         let to = match name {
             "step" | "right" => Some(here + 1),
             "reverse-step" | "left" => here.checked_sub(1),

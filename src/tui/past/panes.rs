@@ -275,7 +275,7 @@ fn rounds(buffer: &mut Buffer, inner: Rect, y: u16, shown: &[Column], app: &App)
         let Some(from) = columns.next() else {
             continue;
         };
-        let to = columns.last().unwrap_or(from);
+        let to = columns.next_back().unwrap_or(from);
         if from.x < free {
             continue;
         }

@@ -24,7 +24,7 @@
 
 use crate::fem::element::{self, Past};
 use crate::fem::kinds::Parent;
-use crate::fem::material::{Hoop, Material, Response};
+use crate::fem::material::{Material, Response};
 use crate::model::{Law, Update};
 use nalgebra::{Matrix2, Vector3};
 use ring::{Ring, RingTerms};
@@ -175,9 +175,9 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         if self.update == Update::Updated {
             let before: [[f64; 2]; N] = pairs(past.u);
             for (i, before) in before.into_iter().enumerate() {
-                for a in 0..2 {
-                    reference.at[i][a] += before[a];
-                    reference.u[i][a] -= before[a];
+                for (a, before) in before.into_iter().enumerate() {
+                    reference.at[i][a] += before;
+                    reference.u[i][a] -= before;
                 }
             }
         }
@@ -192,7 +192,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         };
         let h = slope(&grad, &reference.u);
         if HOOP {
-            let ring = Ring::new(&self.rule[p], reference);
+            let ring = Ring::new(&self.rule[p], &reference.at, &reference.u);
             return self.point_of_revolution(past, p, (grad, area), h, ring);
         }
         let strain = strain(&h);
@@ -289,7 +289,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
     ) -> (Vector3<f64>, f64) {
         let strain = Vector3::new(h[0][0], h[1][1], h[0][1] + h[1][0]);
         if HOOP {
-            let ring = Ring::new(&self.rule[p], reference);
+            let ring = Ring::new(&self.rule[p], &reference.at, &reference.u);
             let (response, hoop) = self.material.linear_around(&strain, ring.h);
             return (response.stress, hoop.stress);
         }
@@ -495,6 +495,12 @@ impl<const N: usize> Point<N> {
             }
         }
         terms
+    }
+
+    /// What its ring adds; none in the plane.
+    fn ring_terms(&self) -> Option<RingTerms<N>> {
+        let terms = |ring: &Ring<N>| ring.terms(self.volume, self.deformation());
+        self.ring.as_ref().map(terms)
     }
 
     /// Stretch across the plane.

@@ -8,7 +8,8 @@
 //!
 //! add to the tangent, which stays symmetric.
 
-use super::{Hoop, Parent, Point, Reference};
+use crate::fem::kinds::Parent;
+use crate::fem::material::Hoop;
 
 /// The ring of a Gauss point.
 #[derive(Debug, Clone, Copy)]
@@ -35,16 +36,11 @@ pub(super) struct RingTerms<const N: usize> {
 }
 
 impl<const N: usize> Ring<N> {
-    /// The ring of a point of the parent element.
-    pub fn new(parent: &Parent<N>, reference: &Reference<N>) -> Self {
-        let radius: f64 = parent
-            .n
-            .iter()
-            .zip(&reference.at)
-            .map(|(n, x)| n * x[0])
-            .sum();
+    /// The ring of a point of the parent element, whose nodes are `at` in the reference and move by `u`.
+    pub fn new(parent: &Parent<N>, at: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> Self {
+        let radius: f64 = parent.n.iter().zip(at).map(|(n, x)| n * x[0]).sum();
         let share = parent.n.map(|n| n / radius);
-        let h = share.iter().zip(&reference.u).map(|(b, u)| b * u[0]).sum();
+        let h = share.iter().zip(u).map(|(b, u)| b * u[0]).sum();
         Ring {
             share,
             radius,
@@ -54,21 +50,17 @@ impl<const N: usize> Ring<N> {
     }
 }
 
-impl<const N: usize> Point<N> {
-    /// What its ring adds; none in the plane.
-    pub(super) fn ring_terms(&self) -> Option<RingTerms<N>> {
-        let ring = self.ring.as_ref()?;
-        let (v, hoop, f33) = (self.volume, &ring.hoop, 1.0 + ring.h);
+impl<const N: usize> Ring<N> {
+    /// What it adds, where the point has this volume and F in the plane.
+    pub fn terms(&self, volume: f64, deformation: [[f64; 2]; 2]) -> RingTerms<N> {
+        let (v, hoop, f33) = (volume, &self.hoop, 1.0 + self.h);
         let [xx, yy, xy] = [0, 1, 2].map(|k| v * f33 * hoop.coupling[k]);
-        let coupling = self
-            .deformation()
-            .map(|f| [f[0] * xx + f[1] * xy, f[0] * xy + f[1] * yy]);
-        Some(RingTerms {
-            share: ring.share,
+        RingTerms {
+            share: self.share,
             stress: v * f33 * hoop.stress,
-            coupling,
+            coupling: deformation.map(|f| [f[0] * xx + f[1] * xy, f[0] * xy + f[1] * yy]),
             modulus: v * (hoop.stress + f33 * f33 * hoop.modulus),
-        })
+        }
     }
 }
 
@@ -79,13 +71,16 @@ impl<const N: usize> RingTerms<N> {
         let own = self.share[i];
         for (a, row) in self.coupling.iter().enumerate() {
             let by_gradient = row[0] * x + row[1] * y;
-            for j in 0..N {
-                sums[a][0][j] += by_gradient * self.share[j];
-                sums[0][a][j] += own * (row[0] * grad[0][j] + row[1] * grad[1][j]);
+            for (sum, share) in sums[a][0].iter_mut().zip(&self.share) {
+                *sum += by_gradient * share;
+            }
+            let slopes = grad[0].iter().zip(&grad[1]);
+            for (sum, (x, y)) in sums[0][a].iter_mut().zip(slopes) {
+                *sum += own * (row[0] * x + row[1] * y);
             }
         }
-        for j in 0..N {
-            sums[0][0][j] += own * self.modulus * self.share[j];
+        for (sum, share) in sums[0][0].iter_mut().zip(&self.share) {
+            *sum += own * self.modulus * share;
         }
     }
 }

@@ -1,0 +1,132 @@
+//! `stickslip run --vtu DIR`: a file for ParaView after each increment, major or minor iteration, and a collection of them.
+
+use super::base::Error;
+use crate::outside::files::{self, FileError, Output};
+use crate::record::export::grid::grid;
+use crate::step::event::{Event, Outcome};
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use stickslip_exchange::vtu;
+
+/// After what a file is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Each {
+    /// Converged increments
+    Increment,
+    /// Major iterations, and increments
+    Major,
+    /// Minor iterations: displacements are those of the last major one, modes and forces their own
+    Minor,
+}
+
+impl Each {
+    fn wants(self, event: &Event) -> bool {
+        match self {
+            Each::Minor => true,
+            Each::Increment => matches!(event.outcome, Outcome::Increment { .. }),
+            Each::Major => matches!(
+                event.outcome,
+                Outcome::Increment { .. } | Outcome::Major { .. } | Outcome::Refused { .. }
+            ),
+        }
+    }
+}
+
+/// Files for ParaView in the making.
+pub struct Grids {
+    folder: PathBuf,
+    /// What all names begin with.
+    stem: String,
+    each: Each,
+    overwrite: bool,
+    collection: Output,
+    /// Load factor and name of each file.
+    written: Vec<(f64, String)>,
+}
+
+impl Grids {
+    /// Makes the folder, and sees that the collection can be written there.
+    ///
+    /// # Errors
+    /// If it cannot, or if it is there already and may not be overwritten.
+    pub fn open(folder: &Path, scene: &str, each: Each, overwrite: bool) -> Result<Grids, Error> {
+        std::fs::create_dir_all(folder).map_err(|source| FileError::Failed {
+            path: folder.to_owned(),
+            source,
+        })?;
+        let stem = Path::new(scene).file_stem().unwrap_or_default();
+        let stem = stem.to_string_lossy().into_owned();
+        let collection = Output::create(&folder.join(format!("{stem}.pvd")), overwrite)?;
+        Ok(Grids {
+            folder: folder.to_owned(),
+            stem,
+            each,
+            overwrite,
+            collection,
+            written: Vec::new(),
+        })
+    }
+
+    /// Writes the state at the start.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn start(&mut self, stepper: &Stepper) -> Result<(), Error> {
+        let state = stepper.state();
+        self.write(stepper, state, None, state.start.load_factor)
+    }
+
+    /// Writes the state after a minor iteration, if that is wanted.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn see(&mut self, stepper: &Stepper) -> Result<(), Error> {
+        let event = stepper.event();
+        match self.each.wants(event) {
+            true => self.write(stepper, stepper.state(), Some(event), event.load_factor),
+            false => Ok(()),
+        }
+    }
+
+    fn write(
+        &mut self,
+        stepper: &Stepper,
+        state: &State,
+        event: Option<&Event>,
+        load: f64,
+    ) -> Result<(), Error> {
+        let at = event.map_or_else(Default::default, |event| event.position);
+        let name = format!("{}-{:06}.vtu", self.stem, self.written.len());
+        let grid = grid(stepper.model(), state, event, at, load);
+        files::write(&self.folder.join(&name), vtu::write(&grid), self.overwrite)?;
+        self.written.push((load, name));
+        Ok(())
+    }
+
+    /// Writes the collection. Its time is the load factor where that rises from file to file, and else the number of the file.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn finish(self) -> Result<String, Error> {
+        let rises = self.written.windows(2).all(|pair| pair[0].0 < pair[1].0);
+        let times = self.written.into_iter().enumerate();
+        let files: Vec<(f64, String)> = times
+            .map(|(number, (load, name))| (if rises { load } else { number as f64 }, name))
+            .collect();
+        let mut output = self.collection;
+        let text = vtu::collection(&files);
+        output
+            .write_all(text.as_bytes())
+            .map_err(|e: io::Error| output.failed(e))?;
+        output.finish()?;
+        let time = if rises { "load factor" } else { "number" };
+        let path = self.folder.join(format!("{}.pvd", self.stem));
+        Ok(format!(
+            "wrote {}: {} files, their time is the {time}",
+            path.display(),
+            files.len()
+        ))
+    }
+}

@@ -1,0 +1,543 @@
+//! Friction problems in HDF5, as the library fclib (Acary & al., INRIA technical report 444) keeps them, in the plane.
+//!
+//! ```text
+//! /fclib_local    spacedim, W, vectors (q, mu), and with V and R: vectors/s        u = W r + V l + q,  Vᵀ r + R l + s = 0
+//! /fclib_global   spacedim, M, H, vectors (f, w, mu), and with G: vectors/b        M v = H r + G l + f,  Gᵀ v + b = 0,  u = Hᵀ v + w
+//! ```
+//!
+//! A matrix is a group: `m` rows, `n` columns, and CSparse's arrays `p`, `i` and `x`; `nz` is -1 for compressed columns, -2
+//! for compressed rows, and else the number of triplets, of which `p` are the columns and `i` the rows (the library's own
+//! comment says the reverse; CSparse, to which it hands them, and Siconos take them so). Other groups of a file, `solution`
+//! and `guesses`, are not read.
+
+use crate::broken::Broken;
+use crate::problem::{Bilateral, Global, Local, Matrix, Problem, is_there};
+use hdf5_pure::{Dataset, File, FileBuilder, GroupBuilder, LibVer};
+
+/// How every HDF5 file begins.
+pub const MARK: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// Numbers of a file are taken to have this many bytes for each byte that they take in it: it may be compressed.
+const COMPRESSION: u64 = 64;
+/// Compressed columns.
+const BY_COLUMNS: i64 = -1;
+/// Compressed rows.
+const BY_ROWS: i64 = -2;
+
+/// Reads such a file.
+///
+/// # Errors
+/// What is wrong; there are no lines to name.
+pub fn read(bytes: Vec<u8>) -> Result<Problem, Broken> {
+    let size = bytes.len() as u64;
+    let file = File::from_bytes(bytes)
+        .map_err(|why| Broken::whole(format!("the file is no sound HDF5 file: {why}")))?;
+    let groups = file.root().groups().unwrap_or_default();
+    let has = |name: &str| groups.iter().any(|group| group == name);
+    if has("fclib_global_rolling") {
+        return Err(Broken::whole(
+            "the problem has rolling friction (fclib_global_rolling), which is not read; fclib_local and fclib_global are",
+        ));
+    }
+    if !has("fclib_local") && !has("fclib_global") {
+        return Err(Broken::whole(
+            "there is neither fclib_local nor fclib_global in it; an HDF5 file is read as a problem of fclib",
+        ));
+    }
+    let root = match has("fclib_local") {
+        true => "fclib_local",
+        false => "fclib_global",
+    };
+    let part = Part {
+        file: &file,
+        root,
+        size,
+    };
+    match part.whole("spacedim")? {
+        2 => {}
+        3 => {
+            return Err(part.broken(
+                "spacedim",
+                "is 3: the problem is one in space; only those in the plane (2) can be read",
+            ));
+        }
+        other => return Err(part.broken("spacedim", &format!("is {other}; it must be 2"))),
+    }
+    match has("fclib_local") {
+        true => local(&part),
+        false => global(&part),
+    }
+}
+
+fn local(part: &Part<'_>) -> Result<Problem, Broken> {
+    let w = part.matrix("W")?;
+    let size = w.rows;
+    part.pairs("W", &w, size)?;
+    let local = Local {
+        q: part.numbers("vectors/q", size)?,
+        mu: part.coefficients(size / 2)?,
+        w,
+    };
+    if !part.has("V") {
+        return Ok(Problem::Local(local));
+    }
+    let (v, r) = (part.matrix("V")?, part.matrix("R")?);
+    part.sized("V", &v, size, r.rows)?;
+    part.sized("R", &r, r.rows, r.rows)?;
+    let s = part.numbers("vectors/s", r.rows)?;
+    Ok(Problem::Mixed(local, Bilateral { v, r, s }))
+}
+
+/// Bilateral constraints are unknowns more: `[M −G; Gᵀ 0] (v, l) = (H r + f, −b)`.
+fn global(part: &Part<'_>) -> Result<Problem, Broken> {
+    let (mut m, mut h) = (part.matrix("M")?, part.matrix("H")?);
+    part.sized("M", &m, m.rows, m.rows)?;
+    part.sized("H", &h, m.rows, h.columns)?;
+    part.pairs("H", &h, h.columns)?;
+    let size = h.columns;
+    let mut f = part.numbers("vectors/f", m.rows)?;
+    if part.has("G") {
+        let g = part.matrix("G")?;
+        part.sized("G", &g, m.rows, g.columns)?;
+        let own = m.rows;
+        for (i, j, value) in g.entries {
+            m.entries.push((i, own + j, -value));
+            m.entries.push((own + j, i, value));
+        }
+        m.rows += g.columns;
+        m.columns = m.rows;
+        h.rows = m.rows;
+        f.extend(part.numbers("vectors/b", g.columns)?.iter().map(|b| -b));
+    }
+    Ok(Problem::Global(Global {
+        m,
+        h,
+        f,
+        b: part.numbers("vectors/w", size)?,
+        mu: part.coefficients(size / 2)?,
+    }))
+}
+
+/// The part of a file that has the problem.
+struct Part<'f> {
+    file: &'f File,
+    root: &'static str,
+    /// Bytes of the file.
+    size: u64,
+}
+
+impl Part<'_> {
+    fn broken(&self, name: &str, what: &str) -> Broken {
+        Broken::whole(format!("{}/{name} {what}", self.root))
+    }
+
+    fn has(&self, group: &str) -> bool {
+        self.file.group(&format!("{}/{group}", self.root)).is_ok()
+    }
+
+    /// A list, as long as the file can hold.
+    fn dataset(&self, name: &str) -> Result<Dataset, Broken> {
+        let path = format!("{}/{name}", self.root);
+        let unread =
+            |why: &dyn std::fmt::Display| self.broken(name, &format!("cannot be read: {why}"));
+        let dataset = self.file.dataset(&path).map_err(|why| unread(&why))?;
+        let shape = dataset.shape().map_err(|why| unread(&why))?;
+        let width = dataset.element_size().map_err(|why| unread(&why))?.max(1) as u64;
+        let bytes = shape
+            .iter()
+            .try_fold(width, |bytes, &n| bytes.checked_mul(n));
+        match bytes {
+            Some(bytes) if bytes <= self.size.saturating_mul(COMPRESSION) => Ok(dataset),
+            _ => Err(self.broken(
+                name,
+                &format!("has {shape:?} numbers, more than a file of this size can"),
+            )),
+        }
+    }
+
+    fn wholes(&self, name: &str) -> Result<Vec<i64>, Broken> {
+        let read = self.dataset(name)?.read_i64();
+        read.map_err(|why| self.broken(name, &format!("cannot be read: {why}")))
+    }
+
+    fn whole(&self, name: &str) -> Result<i64, Broken> {
+        let found = self.wholes(name)?;
+        let first = found.first().copied();
+        first.ok_or_else(|| self.broken(name, "is empty; it must be a whole number"))
+    }
+
+    fn count(&self, name: &str) -> Result<usize, Broken> {
+        let found = self.whole(name)?;
+        usize::try_from(found)
+            .map_err(|_| self.broken(name, &format!("is {found}; it must not be negative")))
+    }
+
+    fn numbers(&self, name: &str, count: usize) -> Result<Vec<f64>, Broken> {
+        let read = self.dataset(name)?.read_f64();
+        let found = read.map_err(|why| self.broken(name, &format!("cannot be read: {why}")))?;
+        if found.len() != count {
+            let what = format!("has {} numbers; it must have {count}", found.len());
+            return Err(self.broken(name, &what));
+        }
+        match found.iter().position(|value| !value.is_finite()) {
+            Some(k) => Err(self.broken(name, &format!("has {:?} at place {k}", found[k]))),
+            None => Ok(found),
+        }
+    }
+
+    fn coefficients(&self, count: usize) -> Result<Vec<f64>, Broken> {
+        let mu = self.numbers("vectors/mu", count)?;
+        match mu.iter().find(|mu| **mu < 0.0) {
+            Some(mu) => {
+                let what = format!("has the friction coefficient {mu:?}; it must not be negative");
+                Err(self.broken("vectors/mu", &what))
+            }
+            None => Ok(mu),
+        }
+    }
+
+    fn sized(&self, name: &str, of: &Matrix, rows: usize, columns: usize) -> Result<(), Broken> {
+        if (of.rows, of.columns) == (rows, columns) {
+            return Ok(());
+        }
+        let what = format!(
+            "has {} rows and {} columns; it must have {rows} and {columns}",
+            of.rows, of.columns
+        );
+        Err(self.broken(name, &what))
+    }
+
+    /// Refuses a size that is no number of contacts, two components each.
+    fn pairs(&self, name: &str, of: &Matrix, size: usize) -> Result<(), Broken> {
+        if size > 0 && size.is_multiple_of(2) {
+            let rows = if name == "W" { size } else { of.rows };
+            return self.sized(name, of, rows, size);
+        }
+        let what =
+            format!("has {size} columns; it must have two a contact, and one contact at least");
+        Err(self.broken(name, &what))
+    }
+
+    fn matrix(&self, name: &str) -> Result<Matrix, Broken> {
+        let of = |what: &str| format!("{name}/{what}");
+        let (rows, columns) = (self.count(&of("m"))?, self.count(&of("n"))?);
+        let storage = self.whole(&of("nz"))?;
+        let (p, i) = (self.wholes(&of("p"))?, self.wholes(&of("i"))?);
+        let x = self.dataset(&of("x"))?.read_f64();
+        let x = x.map_err(|why| self.broken(&of("x"), &format!("cannot be read: {why}")))?;
+        let places = match storage {
+            BY_COLUMNS => self.lists(name, &p, columns, i.len())?,
+            BY_ROWS => self.lists(name, &p, rows, i.len())?,
+            _ => p,
+        };
+        let count = match storage {
+            BY_COLUMNS | BY_ROWS => places.len(),
+            other => usize::try_from(other).map_err(|_| {
+                self.broken(
+                    &of("nz"),
+                    &format!("is {other}; it must be -1, -2, or not negative"),
+                )
+            })?,
+        };
+        if [places.len(), i.len(), x.len()]
+            .into_iter()
+            .any(|length| length < count)
+        {
+            return Err(self.broken(
+                name,
+                &format!("has fewer than {count} entries in p, i or x"),
+            ));
+        }
+        let mut entries = Vec::with_capacity(count);
+        for ((&list, &index), &value) in places.iter().zip(&i).zip(&x).take(count) {
+            let (row, column) = match storage {
+                BY_ROWS => (list, index),
+                _ => (index, list),
+            };
+            let at = (usize::try_from(row), usize::try_from(column));
+            let (Ok(row), Ok(column)) = at else {
+                return Err(self.broken(name, "has an entry at a negative place"));
+            };
+            if row >= rows || column >= columns || !value.is_finite() {
+                let what =
+                    format!("has {value:?} in row {row}, column {column}, of {rows} and {columns}");
+                return Err(self.broken(name, &what));
+            }
+            if is_there(value) {
+                entries.push((row, column, value));
+            }
+        }
+        Ok(Matrix {
+            rows,
+            columns,
+            entries,
+        })
+    }
+
+    /// The number of its column (or row) for every entry, where `p` says at which entry each begins, and the last ends.
+    fn lists(
+        &self,
+        name: &str,
+        p: &[i64],
+        lists: usize,
+        entries: usize,
+    ) -> Result<Vec<i64>, Broken> {
+        let wrong = || {
+            self.broken(
+                &format!("{name}/p"),
+                "must begin with 0, rise, and end with the number of entries",
+            )
+        };
+        if p.len() != lists.saturating_add(1) || p.first() != Some(&0) {
+            return Err(wrong());
+        }
+        let mut found = Vec::new();
+        for (list, ends) in (0..).zip(p.windows(2)) {
+            let length = ends[1].checked_sub(ends[0]).ok_or_else(wrong)?;
+            let length = usize::try_from(length).map_err(|_| wrong())?;
+            if length > entries - found.len() {
+                return Err(wrong());
+            }
+            found.resize(found.len() + length, list);
+        }
+        Ok(found)
+    }
+}
+
+/// The file of a local problem.
+///
+/// # Errors
+/// If it has more entries than fclib can count.
+pub fn write(problem: &Local, title: &str) -> Result<Vec<u8>, Broken> {
+    let failed =
+        |why: &dyn std::fmt::Display| Broken::whole(format!("the HDF5 file cannot be made: {why}"));
+    let mut file = FileBuilder::new();
+    // Readable by every HDF5 library from 1.8 on.
+    file.with_libver_bounds(LibVer::Earliest, LibVer::V18);
+    let mut local = file.create_group("fclib_local");
+    local.create_dataset("spacedim").with_i32_data(&[2]);
+    let mut w = local.create_group("W");
+    write_matrix(&mut w, &problem.w)?;
+    local.add_group(w.finish());
+    let mut vectors = local.create_group("vectors");
+    vectors.create_dataset("q").with_f64_data(&problem.q);
+    vectors.create_dataset("mu").with_f64_data(&problem.mu);
+    local.add_group(vectors.finish());
+    let mut info = local.create_group("info");
+    let ascii: String = title
+        .chars()
+        .map(|c| if c.is_ascii_graphic() { c } else { ' ' })
+        .collect();
+    info.create_dataset("title")
+        .with_ascii_strings(&[&format!("{ascii}\0")])
+        .map_err(|why| failed(&why))?
+        .with_shape(&[]);
+    local.add_group(info.finish());
+    file.add_group(local.finish());
+    file.finish().map_err(|why| failed(&why))
+}
+
+/// Compressed columns; an empty list is no data set, so that a matrix of zeros has one of them written.
+fn write_matrix(group: &mut GroupBuilder, matrix: &Matrix) -> Result<(), Broken> {
+    let mut entries = matrix.entries.clone();
+    entries.sort_by_key(|&(row, column, _)| (column, row));
+    if entries.is_empty() {
+        entries.push((0, 0, 0.0));
+    }
+    let small = |n: usize| {
+        i32::try_from(n).map_err(|_| {
+            Broken::whole(format!(
+                "fclib counts with 32 bits, and the matrix has {n} entries"
+            ))
+        })
+    };
+    let mut p = vec![0; matrix.columns + 1];
+    let mut i = Vec::with_capacity(entries.len());
+    for &(row, column, _) in &entries {
+        p[column + 1] += 1;
+        i.push(small(row)?);
+    }
+    for column in 0..matrix.columns {
+        p[column + 1] += p[column];
+    }
+    let p = p.into_iter().map(small).collect::<Result<Vec<i32>, _>>()?;
+    let x: Vec<f64> = entries.iter().map(|entry| entry.2).collect();
+    let counts = [
+        ("nzmax", entries.len()),
+        ("m", matrix.rows),
+        ("n", matrix.columns),
+    ];
+    for (name, count) in counts {
+        group.create_dataset(name).with_i32_data(&[small(count)?]);
+    }
+    group
+        .create_dataset("nz")
+        .with_i32_data(&[BY_COLUMNS as i32]);
+    group.create_dataset("p").with_i32_data(&p);
+    group.create_dataset("i").with_i32_data(&i);
+    group.create_dataset("x").with_f64_data(&x);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn problem(w: &[Vec<f64>], q: &[f64]) -> Local {
+        Local {
+            w: Matrix::from_rows(w),
+            q: q.to_vec(),
+            mu: vec![0.3; q.len() / 2],
+        }
+    }
+
+    fn two() -> Local {
+        problem(&[vec![2.0, -0.1], vec![0.0, 1.0 / 3.0]], &[-1.0, 0.25])
+    }
+
+    /// A file of fclib, made by what is given the group of the problem.
+    fn file(root: &str, fill: impl FnOnce(&mut GroupBuilder)) -> Vec<u8> {
+        let mut file = FileBuilder::new();
+        let mut group = file.create_group(root);
+        fill(&mut group);
+        file.add_group(group.finish());
+        file.finish().unwrap()
+    }
+
+    fn matrix(
+        group: &mut GroupBuilder,
+        name: &str,
+        size: [i32; 3],
+        p: &[i32],
+        i: &[i32],
+        x: &[f64],
+    ) {
+        let mut own = group.create_group(name);
+        for (name, value) in ["m", "n", "nz"].into_iter().zip(size) {
+            own.create_dataset(name).with_i32_data(&[value]);
+        }
+        own.create_dataset("p").with_i32_data(p);
+        own.create_dataset("i").with_i32_data(i);
+        own.create_dataset("x").with_f64_data(x);
+        group.add_group(own.finish());
+    }
+
+    fn vectors(group: &mut GroupBuilder, lists: &[(&str, &[f64])]) {
+        let mut own = group.create_group("vectors");
+        for (name, list) in lists {
+            own.create_dataset(name).with_f64_data(list);
+        }
+        group.add_group(own.finish());
+    }
+
+    #[test]
+    fn a_global_problem_with_bilateral_constraints_is_one_of_more_unknowns() {
+        let bytes = file("fclib_global", |group| {
+            group.create_dataset("spacedim").with_i32_data(&[2]);
+            // Rows, columns and triplets, in this order.
+            matrix(group, "M", [2, 2, -2], &[0, 1, 2], &[0, 1], &[4.0, 5.0]);
+            matrix(group, "H", [2, 2, -1], &[0, 1, 2], &[1, 0], &[1.0, -1.0]);
+            matrix(group, "G", [2, 1, 1], &[0], &[1], &[7.0]);
+            vectors(
+                group,
+                &[
+                    ("f", &[1.0, 2.0]),
+                    ("w", &[0.5, 0.0]),
+                    ("mu", &[0.2]),
+                    ("b", &[3.0]),
+                ],
+            );
+        });
+        let Problem::Global(read) = read(bytes).unwrap() else {
+            panic!("not global")
+        };
+        assert_eq!(
+            read.m.dense(),
+            [[4.0, 0.0, 0.0], [0.0, 5.0, -7.0], [0.0, 7.0, 0.0]]
+        );
+        assert_eq!(read.h.dense(), [[0.0, -1.0], [1.0, 0.0], [0.0, 0.0]]);
+        assert_eq!(
+            (read.f, read.b, read.mu),
+            (vec![1.0, 2.0, -3.0], vec![0.5, 0.0], vec![0.2])
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_refused_by_name() {
+        let with = |dimension: i32, n: i32, mu: f64| {
+            file("fclib_local", |group| {
+                group.create_dataset("spacedim").with_i32_data(&[dimension]);
+                matrix(group, "W", [2, n, 1], &[0], &[1], &[1.0]);
+                vectors(group, &[("q", &[1.0, 2.0]), ("mu", &[mu])]);
+            })
+        };
+        assert!(read(with(2, 2, 0.1)).is_ok());
+        let cases = [
+            (with(3, 2, 0.1), "in space"),
+            (with(2, 3, 0.1), "2 rows and 3 columns"),
+            (with(2, 2, -0.1), "negative"),
+            (
+                file("other", |group| {
+                    group.create_dataset("a").with_i32_data(&[1]);
+                }),
+                "neither",
+            ),
+            (
+                file("fclib_global_rolling", |group| {
+                    group.create_dataset("a").with_i32_data(&[1]);
+                }),
+                "rolling",
+            ),
+            (
+                file("fclib_local", |group| {
+                    group.create_dataset("spacedim").with_i32_data(&[2]);
+                }),
+                "W/m",
+            ),
+            (b"\x89HDF\r\n\x1a\nrest".to_vec(), "no sound"),
+        ];
+        for (bytes, told) in cases {
+            let broken = read(bytes).unwrap_err();
+            assert!(broken.message.contains(told), "{broken}");
+        }
+    }
+
+    #[test]
+    fn a_matrix_of_zeros_is_written_too() {
+        let zeros = problem(&[vec![0.0; 2], vec![0.0; 2]], &[1.0, 2.0]);
+        assert_eq!(
+            read(write(&zeros, "zeros").unwrap()).unwrap(),
+            Problem::Local(zeros)
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read_back_to_the_last_bit(
+            rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 4), 4),
+            q in prop::collection::vec(-1e300..1e300_f64, 4),
+        ) {
+            let problem = problem(&rows, &q);
+            let Problem::Local(found) = read(write(&problem, "a \u{e4}").unwrap()).unwrap() else {
+                panic!("not local")
+            };
+            prop_assert_eq!(found.w.dense(), rows);
+            prop_assert_eq!((found.q, found.mu), (problem.q, problem.mu));
+        }
+
+        #[test]
+        fn no_damage_makes_the_reader_panic(
+            changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+            cut in any::<prop::sample::Index>(),
+        ) {
+            let mut bytes = write(&two(), "two").unwrap();
+            for (at, byte) in changes {
+                let at = at.index(bytes.len());
+                bytes[at] = byte;
+            }
+            let _ = read(bytes.clone());
+            bytes.truncate(cut.index(bytes.len()));
+            let _ = read(bytes);
+        }
+    }
+}

@@ -1,0 +1,507 @@
+//! Friction problems in the plain-text form of Siconos, in the plane: `FrictionContactProblem` and
+//! `GlobalFrictionContactProblem` ([`crate::problem`] has the equations).
+//!
+//! Numbers apart by blanks, in this order: dimension (2) and number of contacts m; the matrices, W, or M and H; then q (2 m
+//! numbers), or q (here f, as many as M has rows) and b (2 m numbers); and mu (m). A matrix is its storage, its rows and its
+//! columns, and then what it is stored as:
+//!
+//! - `0`, dense: rows and columns once more, then all entries, column by column;
+//! - `1`, sparse blocks: number of blocks, of block rows and of block columns; the row at which each block row ends, the
+//!   column at which each block column ends; the lengths of two index lists, which follow: where the blocks of each block
+//!   row begin (and, last, where they end), and the block column of each block; then each block, its number first, its
+//!   entries column by column. Where the number of blocks is 0, nothing of this follows it;
+//! - `2`, as CSparse prints its matrices: an origin (4 where only one half of a symmetric one stands there), a title, sizes
+//!   with `nnz: COUNT`, then `col J : locations A to B` (or `row I : …`, after `csr:`) before the `I : VALUE` of each column
+//!   (row), or, after `triplet:`, `I J : VALUE`. Siconos writes six digits of a value.
+//!
+//! The first matrix of a global problem is known by its size; where M has as many rows as W had, by the three whole numbers
+//! with which H begins, and by more words than a local problem has left. A trailing rest of the file is not read.
+
+use crate::broken::Broken;
+use crate::problem::{Global, Local, Matrix, Problem, is_there};
+use crate::words::Words;
+use std::fmt::{Debug, Write};
+
+/// How to write W.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    /// All entries, row by row.
+    Dense,
+    /// Blocks of 2 by 2, those that are zero left out.
+    Blocks,
+}
+
+/// Reads such a file.
+///
+/// # Errors
+/// What is wrong, with its place.
+pub fn read(text: &str) -> Result<Problem, Broken> {
+    let mut words = Words::new(text);
+    match words.count("the dimension")? {
+        2 => {}
+        3 => {
+            return Err(words.broken(
+                "the problem is one in space (dimension 3); only those in the plane (2) can be read",
+            ));
+        }
+        other => {
+            return Err(words.broken(format!(
+                "the file begins with {other}; a friction problem of Siconos begins with its dimension, 2, and a scene \
+                 with a bracket"
+            )));
+        }
+    }
+    let contacts = words.count("the number of contacts")?;
+    if contacts == 0 {
+        return Err(words.broken("the problem has 0 contacts; it must have 1 at least"));
+    }
+    let Some(size) = contacts.checked_mul(2) else {
+        return Err(words.broken(format!("the problem has {contacts} contacts, far too many")));
+    };
+    let first = matrix(&mut words, "W", None, size)?;
+    if first.rows == size && !begins_matrix(&words, size, contacts) {
+        return Ok(Problem::Local(Local {
+            w: first,
+            q: words.numbers(size, "q")?,
+            mu: words.coefficients(contacts)?,
+        }));
+    }
+    let h = matrix(&mut words, "H", Some((first.rows, size)), size)?;
+    Ok(Problem::Global(Global {
+        f: words.numbers(first.rows, "q of a global problem")?,
+        m: first,
+        h,
+        b: words.numbers(size, "b")?,
+        mu: words.coefficients(contacts)?,
+    }))
+}
+
+/// Whether what follows a first matrix of 2 m rows is a second one.
+fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
+    let mut left = words.left();
+    let mut whole = || left.next().and_then(|word| word.parse::<usize>().ok());
+    let head = [whole(), whole(), whole()];
+    let stored = head[0].is_some_and(|storage| storage <= 2);
+    stored
+        && head[1..] == [Some(size); 2]
+        && words.left().nth(size.saturating_add(contacts)).is_some()
+}
+
+/// Refuses a number of rows where the columns, which follow, are as many as those of a local problem.
+fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Result<(), Broken> {
+    let columns = words.peek().and_then(|word| word.parse::<usize>().ok());
+    match rows != local && columns == Some(local) {
+        true => Err(words.broken(format!("{of_rows} is {rows}; it must be {local}"))),
+        false => Ok(()),
+    }
+}
+
+/// A matrix; a square one where its size is not known, which may be that of a local problem.
+fn matrix(
+    words: &mut Words<'_>,
+    name: &str,
+    size: Option<(usize, usize)>,
+    local: usize,
+) -> Result<Matrix, Broken> {
+    let entries = match words.count(&format!("the storage of {name}"))? {
+        0 => dense,
+        1 => blocks,
+        2 => sparse,
+        other => {
+            return Err(words.broken(format!(
+                "{name} is in storage {other}; it must be 0 (dense), 1 (sparse blocks) or 2 (CSparse)"
+            )));
+        }
+    };
+    let (of_rows, of_columns) = (
+        format!("the number of rows of {name}"),
+        format!("the number of columns of {name}"),
+    );
+    let rows = match size {
+        Some((rows, _)) => words.exactly(rows, &of_rows).map(|()| rows)?,
+        None => words.count(&of_rows)?,
+    };
+    if rows == 0 {
+        return Err(words.broken(format!("{name} has 0 rows; it must have 1 at least")));
+    }
+    if size.is_none() {
+        squared(words, rows, local, &of_rows)?;
+    }
+    let columns = size.map_or(rows, |(_, columns)| columns);
+    words.exactly(columns, &of_columns)?;
+    Ok(Matrix {
+        rows,
+        columns,
+        entries: entries(words, rows, columns, name)?,
+    })
+}
+
+type Entries = Vec<(usize, usize, f64)>;
+
+fn dense(
+    words: &mut Words<'_>,
+    rows: usize,
+    columns: usize,
+    name: &str,
+) -> Result<Entries, Broken> {
+    words.exactly(rows, &format!("the number of rows of {name}"))?;
+    words.exactly(columns, &format!("the number of columns of {name}"))?;
+    let what = format!("an entry of {name}");
+    let mut entries = Vec::new();
+    for column in 0..columns {
+        for row in 0..rows {
+            let value = words.number(&what)?;
+            if is_there(value) {
+                entries.push((row, column, value));
+            }
+        }
+    }
+    Ok(entries)
+}
+
+fn blocks(
+    words: &mut Words<'_>,
+    rows: usize,
+    columns: usize,
+    name: &str,
+) -> Result<Entries, Broken> {
+    let what = format!("an entry of {name}");
+    let mut entries = Vec::new();
+    let count = words.count("the number of blocks")?;
+    if count == 0 {
+        return Ok(entries);
+    }
+    if count > rows.saturating_mul(columns) {
+        return Err(words.broken(format!("{name} has {count} blocks, more than entries")));
+    }
+    let down = words.count_up_to(rows, "the number of block rows")?;
+    let across = words.count_up_to(columns, "the number of block columns")?;
+    let row_ends = ends(words, down, rows, "block row", name)?;
+    let column_ends = ends(words, across, columns, "block column", name)?;
+    words.exactly(down + 1, "the length of the first index list")?;
+    words.exactly(count, "the length of the second index list")?;
+    let mut begins = Vec::new();
+    for k in 0..=down {
+        let begin = words.count_up_to(count, "where the blocks of a block row begin")?;
+        let least = begins.last().copied().unwrap_or(0);
+        if begin < least || (k == 0 && begin != 0) || (k == down && begin != count) {
+            return Err(words.broken(format!(
+                "{begin} stands where the blocks of a block row begin; they begin at 0, rise, and end at {count}"
+            )));
+        }
+        begins.push(begin);
+    }
+    let mut column_of = Vec::new();
+    for _ in 0..count {
+        column_of.push(words.count_up_to(across - 1, "a block column")?);
+    }
+    for row in 0..down {
+        for number in begins[row]..begins[row + 1] {
+            words.exactly(number, "the number of a block")?;
+            for column in range(&column_ends, column_of[number]) {
+                for line in range(&row_ends, row) {
+                    entries.push((line, column, words.number(&what)?));
+                }
+            }
+        }
+    }
+    Ok(entries)
+}
+
+/// Where blocks end: rising, up to `size`.
+fn ends(
+    words: &mut Words<'_>,
+    count: usize,
+    size: usize,
+    what: &str,
+    name: &str,
+) -> Result<Vec<usize>, Broken> {
+    let mut ends: Vec<usize> = Vec::new();
+    for k in 0..count {
+        let end = words.count_up_to(size, &format!("the end of a {what}"))?;
+        let least = ends.last().map_or(1, |last| last + 1);
+        if end < least || (k + 1 == count && end != size) {
+            return Err(words.broken(format!(
+                "a {what} ends at {end}; the ends must rise, up to {size}"
+            )));
+        }
+        ends.push(end);
+    }
+    if ends.is_empty() {
+        return Err(words.broken(format!("{name} has no {what}")));
+    }
+    Ok(ends)
+}
+
+/// The rows or columns of a block.
+fn range(ends: &[usize], block: usize) -> std::ops::Range<usize> {
+    let start = if block == 0 { 0 } else { ends[block - 1] };
+    start..ends[block]
+}
+
+/// The origin with which Siconos marks triplets of one half of a symmetric matrix.
+const HALF: &str = "4";
+
+fn sparse(
+    words: &mut Words<'_>,
+    rows: usize,
+    columns: usize,
+    name: &str,
+) -> Result<Entries, Broken> {
+    let origin = words.next("the origin of a sparse matrix")?;
+    let (mut triplets, mut by_rows) = (false, false);
+    loop {
+        match words.next("\"nnz:\", the number of entries,")? {
+            "triplet:" => triplets = true,
+            "csr:" => by_rows = true,
+            "nnz:" => break,
+            _ => {}
+        }
+    }
+    let text = words.next("the number of entries")?;
+    let count: usize = text
+        .trim_end_matches(',')
+        .parse()
+        .map_err(|_| words.unlike(text, "the number of entries, a whole number"))?;
+    words.line();
+    let (list, lists, others) = match by_rows {
+        true => ("row", rows, columns),
+        false => ("col", columns, rows),
+    };
+    let what = format!("an entry of {name}");
+    let mut entries = Vec::new();
+    let mut current = None;
+    while entries.len() < count {
+        let text = words.next(&what)?;
+        if !triplets && text == list {
+            current = Some(words.count_up_to(lists - 1, &format!("the number of a {list}"))?);
+            words.line();
+            continue;
+        }
+        let most = if triplets { rows } else { others };
+        let first: usize = text.parse().ok().filter(|&at| at < most).ok_or_else(|| {
+            words.unlike(text, &format!("an index, 0 to {}", most.saturating_sub(1)))
+        })?;
+        let (row, column) = match (triplets, current) {
+            (true, _) => (first, words.count_up_to(columns - 1, "a column")?),
+            (false, Some(list)) if by_rows => (list, first),
+            (false, Some(list)) => (first, list),
+            (false, None) => {
+                let wanted = format!("\"{list}\", since none was named yet,");
+                return Err(words.unlike(text, &wanted));
+            }
+        };
+        let colon = words.next("a colon")?;
+        if colon != ":" {
+            return Err(words.unlike(colon, "a colon"));
+        }
+        entries.push((row, column, words.number(&what)?));
+    }
+    if !triplets {
+        // Columns without entries are named at the end, too.
+        while words.peek() == Some(list) {
+            words.next(list)?;
+            words.line();
+        }
+    }
+    if triplets && origin == HALF {
+        let other = entries.iter().filter(|(i, j, _)| i != j);
+        let other: Entries = other.map(|&(i, j, v)| (j, i, v)).collect();
+        entries.extend(other);
+    }
+    Ok(entries)
+}
+
+/// The file of a local problem; numbers are written so that they are read back to the last bit.
+pub fn write(problem: &Local, storage: Storage) -> String {
+    let size = problem.q.len();
+    let mut text = format!("2\n{}\n", problem.mu.len());
+    let rows = problem.w.dense();
+    match storage {
+        Storage::Dense => {
+            let _ = writeln!(text, "0\n{size}\n{size}\n{size}\t{size}");
+            for column in 0..size {
+                line(&mut text, rows.iter().map(|row| row[column]));
+            }
+        }
+        Storage::Blocks => {
+            let _ = writeln!(text, "1\n{size}\n{size}");
+            write_blocks(&mut text, &rows);
+        }
+    }
+    line(&mut text, problem.q.iter());
+    line(&mut text, problem.mu.iter());
+    text
+}
+
+fn write_blocks(text: &mut String, rows: &[Vec<f64>]) {
+    let contacts = rows.len() / 2;
+    let entries = |i: usize, j: usize| {
+        let at = [(0, 0), (1, 0), (0, 1), (1, 1)];
+        at.map(|(a, b)| rows[2 * i + a][2 * j + b])
+    };
+    let (mut begins, mut columns, mut blocks) = (vec![0], Vec::new(), String::new());
+    for i in 0..contacts {
+        for j in 0..contacts {
+            let block = entries(i, j);
+            if block.iter().any(|v| *v != 0.0) {
+                let _ = writeln!(blocks, "{}", columns.len());
+                line(&mut blocks, block.into_iter());
+                columns.push(j);
+            }
+        }
+        begins.push(columns.len());
+    }
+    if columns.is_empty() {
+        text.push_str("0\n");
+        return;
+    }
+    let _ = writeln!(text, "{}\n{contacts}\n{contacts}", columns.len());
+    for _ in 0..2 {
+        line(text, (1..=contacts).map(|k| 2 * k));
+    }
+    let _ = writeln!(text, "{}\n{}", begins.len(), columns.len());
+    line(text, begins.iter());
+    line(text, columns.iter());
+    text.push_str(&blocks);
+}
+
+/// Words with blanks between them, on a line.
+fn line(text: &mut String, words: impl Iterator<Item = impl Debug>) {
+    for word in words {
+        let _ = write!(text, "{word:?} ");
+    }
+    text.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const LOCAL: &str = "2\n1\n0\n2\n2\n2 2\n1.0 0.5\n0.25 2.0\n-1.0 0.1\n0.3\n";
+
+    fn local(text: &str) -> Local {
+        match read(text) {
+            Ok(Problem::Local(local)) => local,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn global(text: &str) -> Global {
+        match read(text) {
+            Ok(Problem::Global(global)) => global,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_local_problem_is_stored_by_columns() {
+        let read = local(LOCAL);
+        assert_eq!(read.w.dense(), [[1.0, 0.25], [0.5, 2.0]]);
+        assert_eq!((read.q, read.mu), (vec![-1.0, 0.1], vec![0.3]));
+    }
+
+    #[test]
+    fn a_global_problem_is_known_by_its_matrices() {
+        let rest = "0\n3\n2\n3 2\n1 0 0\n0 1 0\n7.0 8.0 9.0\n-0.5 0.0\n0.3\n";
+        let dense = format!("2\n1\n0\n3\n3\n3 3\n1 0 0 0 2 0 0 0 3\n{rest}");
+        let sparse = "1\nCSparse Version 4.4\ntriplet: 3-by-3, nzmax: 3 nnz: 3\n 0 0 : 1\n 1 1 : 2\n 2 2 : 3\n";
+        let sparse = format!("2\n1\n2\n3\n3\n{sparse}{rest}");
+        let rows = "3\nCSparse\ncsr: 3-by-3, nzmax: 3 nnz: 3, 1-norm: 3\nrow 0 : locations 0 to 0\n0 : 1\n\
+                    row 1 : locations 1 to 1\n1 : 2\nrow 2 : locations 2 to 2\n2 : 3\n";
+        let rows = format!("2\n1\n2\n3\n3\n{rows}{rest}");
+        for text in [dense, sparse, rows] {
+            let read = global(&text);
+            assert_eq!(
+                read.m.dense(),
+                [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]]
+            );
+            assert_eq!(read.h.dense(), [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]);
+            assert_eq!(
+                (read.f, read.b, read.mu),
+                (vec![7.0, 8.0, 9.0], vec![-0.5, 0.0], vec![0.3])
+            );
+        }
+        // As many unknowns as components of contacts.
+        let square = "2\n1\n0\n2\n2\n2 2\n1 0 0 2\n1\n2\n2\n0\n7.0 8.0\n-0.5 0.0\n0.3\n";
+        assert_eq!(global(square).m.dense(), [[1.0, 0.0], [0.0, 2.0]]);
+        // One half of a symmetric matrix.
+        let half =
+            "4\nCSparse\ntriplet: 3-by-3, nzmax: 4 nnz: 4\n0 0 : 1\n1 1 : 2\n2 2 : 3\n0 1 : 5\n";
+        let read = global(&format!("2\n1\n2\n3\n3\n{half}{rest}"));
+        assert_eq!(
+            read.m.dense(),
+            [[1.0, 5.0, 0.0], [5.0, 2.0, 0.0], [0.0, 0.0, 3.0]]
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_place() {
+        let cases = [
+            ("3\n1\n", (1, 1), "in space"),
+            ("7\n", (1, 1), "begins with its dimension"),
+            ("2\n0\n", (2, 1), "0 contacts"),
+            ("2\n1\n9\n", (3, 1), "storage 9"),
+            ("2\n1\n0\n2\n3\n", (5, 1), "must be 2"),
+            ("2\n1\n0\n0\n0\n", (4, 1), "0 rows"),
+            ("2\n1\n0\n2\n2\n2 2\n1 0 0 x\n", (7, 7), "finite"),
+            (
+                "2\n1\n0\n2\n2\n2 2\n1 0 0 1\n0.0 0.0 -1.0\n",
+                (8, 9),
+                "negative",
+            ),
+            ("2\n1\n1\n2\n2\n1\n1 1\n1\n", (8, 1), "rise"),
+            (
+                "2\n1\n2\n2\n2\n1 t nnz: 1\n0 : 1.0",
+                (7, 1),
+                "none was named",
+            ),
+            (
+                "2\n1\n2\n2\n2\n1 t nnz: 1\ncol 0 : locations\n2 : 1.0",
+                (8, 1),
+                "0 to 1",
+            ),
+            ("2\n18446744073709551615\n", (2, 1), "far too many"),
+            (
+                "2\n1000000000000\n1\n2000000000000\n2000000000000\n0\n1.0\n",
+                (7, 1),
+                "ends",
+            ),
+        ];
+        for (text, at, told) in cases {
+            let broken = read(text).unwrap_err();
+            assert_eq!(broken.at, Some(at), "{text:?}: {broken}");
+            assert!(broken.message.contains(told), "{text:?}: {broken}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read_back_to_the_last_bit(
+            rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 4), 4),
+            q in prop::collection::vec(-1e300..1e300_f64, 4),
+            mu in prop::collection::vec(0.0..9.0_f64, 2),
+        ) {
+            let problem = Local { w: Matrix::from_rows(&rows), q, mu };
+            for storage in [Storage::Dense, Storage::Blocks] {
+                let found = local(&write(&problem, storage));
+                prop_assert_eq!(found.w.dense(), rows.clone());
+                prop_assert_eq!((&found.q, &found.mu), (&problem.q, &problem.mu));
+            }
+        }
+
+        #[test]
+        fn no_text_makes_the_reader_panic(
+            rest in "[0-4. :\\-\ncolrow]{0,80}",
+            size in 0_u8..4,
+            storage in 0_u8..4,
+            any in any::<String>(),
+        ) {
+            let _ = read(&format!("2\n1\n{storage}\n{size}\n{size}\n{rest}"));
+            let _ = read(&format!("2\n1\n2\n2\n2\n1 triplet: nnz: 3\n{rest}"));
+            let _ = read(&format!("2\n1\n2\n2\n2\n1 csr: nnz: 3\n{rest}"));
+            let _ = read(&any);
+        }
+    }
+}

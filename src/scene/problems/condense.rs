@@ -1,0 +1,303 @@
+//! Unknowns that no contact sees, eliminated.
+//!
+//! ```text
+//! M v = H r + f,  u = Hᵀ v:              W = Hᵀ M⁻¹ H,  and  Hᵀ M⁻¹ f
+//! K_cc u_c + K_ci u_i = f_c + r, ...:    S = K_cc − K_ci K_ii⁻¹ K_ic,  and  f_c − K_ci K_ii⁻¹ f_i
+//! ```
+
+use crate::linalg::{Factors, Pattern, SolveError};
+use std::sync::Arc;
+use stickslip_exchange::problem::Matrix;
+
+/// Norm of the inverse (of the matrix scaled to entries of about 1) from which on it counts as singular.
+const SINGULAR: f64 = 1e12;
+
+/// Why a matrix cannot be eliminated; it reads on after the matrix's name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NotEliminated {
+    /// Something moves freely, or the matrix is broken.
+    #[error(
+        "is singular, so that the problem cannot be condensed: something moves that nothing holds"
+    )]
+    Singular,
+    /// No memory for its factors.
+    #[error("takes more memory to factor than there is")]
+    Memory,
+}
+
+impl From<SolveError> for NotEliminated {
+    fn from(error: SolveError) -> Self {
+        match error {
+            SolveError::Singular => NotEliminated::Singular,
+            SolveError::OutOfMemory => NotEliminated::Memory,
+        }
+    }
+}
+
+/// W, row by row, and Hᵀ M⁻¹ f. W of a symmetric M is symmetric to the last bit.
+///
+/// # Errors
+/// If M is singular, or there is no memory.
+pub fn condensed(
+    m: &Matrix,
+    h: &Matrix,
+    f: &[f64],
+) -> Result<(Vec<Vec<f64>>, Vec<f64>), NotEliminated> {
+    let mut solver = Inverse::new(m)?;
+    let columns = by_column(h);
+    let mut x = vec![0.0; m.rows];
+    let onto = |x: &[f64]| -> Vec<f64> {
+        let sum = |column: &Vec<(usize, f64)>| column.iter().map(|&(i, v)| v * x[i]).sum();
+        columns.iter().map(sum).collect()
+    };
+    solver.solve(f, &mut x)?;
+    let q = onto(&x);
+    let mut right = vec![0.0; m.rows];
+    // Column by column, and so the transpose.
+    let mut w = Vec::with_capacity(columns.len());
+    for column in &columns {
+        column.iter().for_each(|&(i, v)| right[i] += v);
+        solver.solve(&right, &mut x)?;
+        column.iter().for_each(|&(i, _)| right[i] = 0.0);
+        w.push(onto(&x));
+    }
+    Ok((turned(w, solver.symmetric), q))
+}
+
+/// S, row by row, over the unknowns `kept`, and the load on them.
+///
+/// # Errors
+/// As [`condensed`].
+pub fn reduced(
+    k: &Matrix,
+    f: &[f64],
+    kept: &[usize],
+) -> Result<(Vec<Vec<f64>>, Vec<f64>), NotEliminated> {
+    let mut place = vec![None; k.rows];
+    kept.iter()
+        .enumerate()
+        .for_each(|(new, &old)| place[old] = Some(new));
+    let mut inner = vec![0; k.rows];
+    let mut count = 0;
+    for (old, kept) in place.iter().enumerate() {
+        if kept.is_none() {
+            inner[old] = count;
+            count += 1;
+        }
+    }
+    let part = |rows, columns| Matrix {
+        rows,
+        columns,
+        entries: Vec::new(),
+    };
+    let mut whole = vec![vec![0.0; kept.len()]; kept.len()];
+    let (mut ii, mut ic, mut ci) = (
+        part(count, count),
+        part(count, kept.len()),
+        part(count, kept.len()),
+    );
+    for &(i, j, v) in &k.entries {
+        match (place[i], place[j]) {
+            (Some(i), Some(j)) => whole[i][j] += v,
+            (None, None) => ii.entries.push((inner[i], inner[j], v)),
+            (None, Some(j)) => ic.entries.push((inner[i], j, v)),
+            (Some(i), None) => ci.entries.push((inner[j], i, v)),
+        }
+    }
+    let mut load: Vec<f64> = kept.iter().map(|&old| f[old]).collect();
+    if count == 0 {
+        return Ok((whole, load));
+    }
+    let mut solver = Inverse::new(&ii)?;
+    let rows = by_column(&ci);
+    let mut x = vec![0.0; count];
+    let mut right: Vec<f64> = (0..k.rows)
+        .filter(|&old| place[old].is_none())
+        .map(|old| f[old])
+        .collect();
+    let onto =
+        |x: &[f64], row: &[(usize, f64)]| -> f64 { row.iter().map(|&(i, v)| v * x[i]).sum() };
+    solver.solve(&right, &mut x)?;
+    for (load, row) in load.iter_mut().zip(&rows) {
+        *load -= onto(&x, row);
+    }
+    right.fill(0.0);
+    for (j, column) in by_column(&ic).iter().enumerate() {
+        column.iter().for_each(|&(i, v)| right[i] += v);
+        solver.solve(&right, &mut x)?;
+        column.iter().for_each(|&(i, _)| right[i] = 0.0);
+        for (whole, row) in whole.iter_mut().zip(&rows) {
+            whole[j] -= onto(&x, row);
+        }
+    }
+    let symmetric = is_symmetric(k);
+    Ok((turned(turned(whole, false), symmetric), load))
+}
+
+/// The transpose of a matrix.
+pub fn transposed(matrix: &Matrix) -> Matrix {
+    let entries = matrix.entries.iter().map(|&(i, j, v)| (j, i, v));
+    Matrix {
+        rows: matrix.columns,
+        columns: matrix.rows,
+        entries: entries.collect(),
+    }
+}
+
+/// The entries of each column.
+fn by_column(matrix: &Matrix) -> Vec<Vec<(usize, f64)>> {
+    let mut columns = vec![Vec::new(); matrix.columns];
+    for &(i, j, v) in &matrix.entries {
+        columns[j].push((i, v));
+    }
+    columns
+}
+
+/// The transpose; of what should be symmetric the mean of both.
+fn turned(columns: Vec<Vec<f64>>, symmetric: bool) -> Vec<Vec<f64>> {
+    let entry = |i: usize, j: usize| match symmetric {
+        true => 0.5 * (columns[i][j] + columns[j][i]),
+        false => columns[j][i],
+    };
+    let size = 0..columns.len();
+    size.clone()
+        .map(|i| size.clone().map(|j| entry(i, j)).collect())
+        .collect()
+}
+
+/// Whether a matrix equals its transpose, to the last bit.
+fn is_symmetric(matrix: &Matrix) -> bool {
+    let sorted = |turn: bool| {
+        let entries = matrix.entries.iter();
+        let mut entries: Vec<_> = entries
+            .map(|&(i, j, v)| if turn { (j, i, v) } else { (i, j, v) })
+            .collect();
+        entries.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+        entries
+    };
+    sorted(false) == sorted(true)
+}
+
+/// A matrix ready to be solved with.
+struct Inverse {
+    factors: Factors,
+    symmetric: bool,
+}
+
+impl Inverse {
+    fn new(matrix: &Matrix) -> Result<Self, NotEliminated> {
+        let n = matrix.rows;
+        let places = matrix.entries.iter().map(|&(i, j, _)| (i, j));
+        let pattern = Arc::new(Pattern::new(n, places.collect()));
+        let mut values = vec![0.0; pattern.entries()];
+        for &(i, j, v) in &matrix.entries {
+            if let Some(slot) = pattern.slot(i, j) {
+                values[slot] += v;
+            }
+        }
+        let mut factors = Factors::new(pattern)?;
+        factors.scale(&values, n, &vec![1.0; n]);
+        factors.factor(&values)?;
+        let norm = factors.inverse_norm();
+        if norm.is_nan() || norm > SINGULAR {
+            return Err(NotEliminated::Singular);
+        }
+        Ok(Inverse {
+            factors,
+            symmetric: is_symmetric(matrix),
+        })
+    }
+
+    fn solve(&mut self, right: &[f64], x: &mut [f64]) -> Result<(), NotEliminated> {
+        Ok(self.factors.solve(right, x)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of five springs of stiffness 1 between six nodes along a line, its first node held by a spring of stiffness
+    /// `ground`.
+    fn chain(ground: f64) -> Matrix {
+        let mut rows = vec![vec![0.0; 6]; 6];
+        rows[0][0] = ground;
+        for k in 0..5 {
+            for (i, j, v) in [
+                (k, k, 1.0),
+                (k + 1, k + 1, 1.0),
+                (k, k + 1, -1.0),
+                (k + 1, k, -1.0),
+            ] {
+                rows[i][j] += v;
+            }
+        }
+        Matrix::from_rows(&rows)
+    }
+
+    #[test]
+    fn springs_in_a_row_add_their_compliances() {
+        let h = Matrix {
+            rows: 6,
+            columns: 2,
+            entries: vec![(5, 0, 1.0), (2, 1, -1.0)],
+        };
+        let (w, q) = condensed(&chain(0.5), &h, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0]).unwrap();
+        // The end is at 1/0.5 + 5, the middle at 1/0.5 + 2.
+        let wanted = [[7.0, -4.0], [-4.0, 4.0]];
+        for (row, wanted) in w.iter().zip(wanted) {
+            for (value, wanted) in row.iter().zip(wanted) {
+                assert!((value - wanted).abs() < 1e-12, "{w:?}");
+            }
+        }
+        assert_eq!(w[0][1].to_bits(), w[1][0].to_bits());
+        assert!(
+            (q[0] - 21.0).abs() < 1e-11 && (q[1] + 12.0).abs() < 1e-11,
+            "{q:?}"
+        );
+    }
+
+    #[test]
+    fn a_chain_that_nothing_holds_has_no_compliance_but_a_stiffness() {
+        let h = Matrix {
+            rows: 6,
+            columns: 1,
+            entries: vec![(5, 0, 1.0)],
+        };
+        assert_eq!(
+            condensed(&chain(0.0), &h, &[0.0; 6]),
+            Err(NotEliminated::Singular)
+        );
+        let (s, load) = reduced(&chain(0.0), &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0], &[5, 0]).unwrap();
+        let wanted = [[0.2, -0.2], [-0.2, 0.2]];
+        for (row, wanted) in s.iter().zip(wanted) {
+            for (value, wanted) in row.iter().zip(wanted) {
+                assert!((value - wanted).abs() < 1e-14, "{s:?}");
+            }
+        }
+        assert!(
+            (load[0] - 0.8).abs() < 1e-14 && (load[1] - 0.2).abs() < 1e-14,
+            "{load:?}"
+        );
+    }
+
+    #[test]
+    fn stiffness_and_compliance_of_the_same_nodes_are_inverse() {
+        let (f, kept) = ([1.0, 2.0, 0.0, -1.0, 0.5, 3.0], [3, 1]);
+        let h = Matrix {
+            rows: 6,
+            columns: 2,
+            entries: vec![(3, 0, 1.0), (1, 1, 1.0)],
+        };
+        let (w, q) = condensed(&chain(2.0), &h, &f).unwrap();
+        let (s, g) = reduced(&chain(2.0), &f, &kept).unwrap();
+        for i in 0..2 {
+            for j in 0..2 {
+                let product: f64 = (0..2).map(|k| w[i][k] * s[k][j]).sum();
+                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-12);
+            }
+            let under_load: f64 = (0..2).map(|k| w[i][k] * g[k]).sum();
+            assert!((under_load - q[i]).abs() < 1e-11);
+        }
+    }
+}

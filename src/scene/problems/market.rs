@@ -1,0 +1,172 @@
+//! Interface problems in files of the Matrix Market, each of which holds one matrix:
+//!
+//! ```text
+//! NAME_W.mtx   or NAME.mtx: W, a compliance     u = q + W (f + r)
+//! NAME_K.mtx   instead: K, a stiffness          K (u − q) = f + r
+//! NAME_mu.mtx  friction coefficients            m numbers
+//! NAME_q.mtx   displacements under no force     2 m numbers
+//! NAME_f.mtx   loads on the contacts            2 m numbers; where it is missing there are none
+//! ```
+//!
+//! The components are those of [`super::siconos`]. Who opens such a problem names the matrix; the others lie beside it. Of a
+//! stiffness q may be missing where f is there.
+
+use super::fits;
+use super::siconos::{contacts, settings};
+use crate::format::SceneError;
+use crate::format::condensed::{Matrix, Problem, at_once};
+use crate::outside::input;
+use std::path::{Path, PathBuf};
+use stickslip_exchange::matrix_market;
+
+/// Files that make a problem, besides the matrix.
+const PARTS: [&str; 3] = ["q", "mu", "f"];
+
+/// The names of a problem's files.
+struct Names {
+    folder: PathBuf,
+    /// What comes before `_W.mtx`.
+    stem: String,
+    stiffness: bool,
+}
+
+impl Names {
+    fn of(file: &Path) -> Result<Names, String> {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let wrong = |part: &&&str| stem.ends_with(&format!("_{part}"));
+        if let Some(part) = PARTS.iter().find(wrong) {
+            let matrix = stem.trim_end_matches(&format!("_{part}"));
+            return Err(format!(
+                "this is {part} of a problem; name its matrix: {matrix}_W.mtx, a compliance, or {matrix}_K.mtx, a stiffness"
+            ));
+        }
+        let plain = stem.strip_suffix("_W").or_else(|| stem.strip_suffix("_K"));
+        Ok(Names {
+            folder: file.parent().unwrap_or(Path::new("")).to_owned(),
+            stiffness: stem.ends_with("_K"),
+            stem: plain.unwrap_or(&stem).to_owned(),
+        })
+    }
+
+    fn part(&self, part: &str) -> PathBuf {
+        self.folder.join(format!("{}_{part}.mtx", self.stem))
+    }
+}
+
+/// The problem of a matrix that has been read, with the files beside it.
+///
+/// # Errors
+/// What is wrong with it or with one of them, or which is missing.
+pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
+    let whole = |why: String| SceneError::whole(file, why);
+    let names = Names::of(Path::new(file)).map_err(whole)?;
+    let matrix = matrix_market::read(text).map_err(|broken| super::of_file(file, broken))?;
+    let size = matrix.rows;
+    if size == 0 || size != matrix.columns || !size.is_multiple_of(2) {
+        return Err(whole(format!(
+            "the matrix has {} rows and {} columns; it must be square, with two rows a contact, along its normal and its tangent",
+            matrix.rows, matrix.columns
+        )));
+    }
+    fits(size / 2, memory).map_err(whole)?;
+    let mu = column(&names, "mu", size / 2)?;
+    let missing = |part: &str| {
+        let path = names.part(part);
+        whole(format!(
+            "there is no {} beside it, a column of {part}",
+            path.file_name().unwrap_or_default().to_string_lossy()
+        ))
+    };
+    let mu = mu.ok_or_else(|| missing("mu"))?;
+    if let Some(wrong) = mu.iter().find(|mu| **mu < 0.0) {
+        let file = names.part("mu").display().to_string();
+        let why = format!("the friction coefficient is {wrong:?}; it must not be negative");
+        return Err(SceneError::whole(&file, why));
+    }
+    let f = column(&names, "f", size)?;
+    let q = column(&names, "q", size)?;
+    if q.is_none() && !(names.stiffness && f.is_some()) {
+        return Err(missing("q"));
+    }
+    let rows = matrix.dense();
+    Ok(Problem {
+        title: super::title(file),
+        about: "An interface problem from files of the Matrix Market.".to_owned(),
+        contacts: contacts(&mu, &f.unwrap_or_default()),
+        matrix: match names.stiffness {
+            true => Matrix::Stiffness(rows),
+            false => Matrix::Compliance(rows),
+        },
+        free: q.unwrap_or_default(),
+        spacing: None,
+        history: at_once(),
+        settings: settings(),
+    })
+}
+
+/// The numbers of a file beside the matrix; none where there is no such file.
+fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, SceneError> {
+    let path = names.part(part);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let file = path.display().to_string();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let path =
+        input::beside(&names.part("W"), &name).map_err(|why| SceneError::whole(&file, why))?;
+    let text = super::text(&path)?;
+    let read = matrix_market::read(&text).map_err(|broken| super::of_file(&file, broken))?;
+    if (read.rows, read.columns) != (size, 1) && (read.rows, read.columns) != (1, size) {
+        let why = format!(
+            "{part} has {} rows and {} columns; it must be a column of {size} numbers",
+            read.rows, read.columns
+        );
+        return Err(SceneError::whole(&file, why));
+    }
+    let mut numbers = vec![0.0; size];
+    for (i, j, value) in read.entries {
+        numbers[i + j] += value;
+    }
+    Ok(Some(numbers))
+}
+
+/// The files that a problem is written to whose matrix, a compliance, is to be named so: the matrix, q and mu.
+///
+/// # Errors
+/// If the name is that of a stiffness or of another part of a problem.
+pub fn parts(file: &Path) -> Result<[PathBuf; 3], String> {
+    let names = Names::of(file)?;
+    if names.stiffness {
+        return Err(format!(
+            "a compliance is written, and {} would be read as a stiffness; end the name with _W.mtx",
+            file.display()
+        ));
+    }
+    Ok([file.to_owned(), names.part("q"), names.part("mu")])
+}
+
+/// The texts of these files.
+pub fn texts(problem: &super::siconos::Friction2d, title: &str) -> [String; 3] {
+    let local = problem.local();
+    let of_w = "W of u = q + W r; rows along n and t of each contact in turn";
+    let column = |numbers: &[f64], what: &str| matrix_market::write_column(numbers, &[what, title]);
+    [
+        matrix_market::write(&local.w, &[of_w, title]),
+        column(&local.q, "q of u = q + W r"),
+        column(&local.mu, "friction coefficients of the contacts"),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_the_matrix_tells_what_it_is_and_where_the_others_are() {
+        let of = |name: &str| Names::of(Path::new(name)).map(|n| (n.part("q"), n.stiffness));
+        assert_eq!(of("a/b_W.mtx"), Ok((PathBuf::from("a/b_q.mtx"), false)));
+        assert_eq!(of("b_K.mtx"), Ok((PathBuf::from("b_q.mtx"), true)));
+        assert_eq!(of("b.mtx"), Ok((PathBuf::from("b_q.mtx"), false)));
+        assert!(of("b_mu.mtx").unwrap_err().contains("b_W.mtx"));
+    }
+}

@@ -1,0 +1,196 @@
+//! Friction problems condensed to their contacts, in the plane, as Siconos and fclib pose them:
+//!
+//! ```text
+//! u = W r + q,     0 <= u_n ⊥ r_n >= 0,     |r_t| <= mu r_n, against u_t     (n, t of each contact in turn)
+//! ```
+//!
+//! [`stickslip_exchange::siconos`] has the form of the text. The scene that comes of such a problem has all contacts at gap 0
+//! and free, and takes the unloaded motion q, and so u and r, in one increment.
+
+use crate::format::condensed::{Contact, Matrix, Problem, at_once};
+use crate::model::{Friction, InitialState, Mode, Settings, Solver};
+use crate::scene::limits;
+use stickslip_exchange::problem::{self, Local};
+use stickslip_exchange::siconos;
+pub use stickslip_exchange::siconos::Storage;
+
+/// A friction problem in the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Friction2d {
+    /// W, row by row: 2 m rows and columns.
+    pub w: Vec<Vec<f64>>,
+    /// q: 2 m numbers.
+    pub q: Vec<f64>,
+    /// Friction coefficients of the m contacts.
+    pub mu: Vec<f64>,
+}
+
+/// What is wrong with a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Broken {
+    /// Line, from 1; that of the last word where the file ends too early, and 1 where nothing in it is to blame.
+    pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+/// Whether a text could be such a file: it begins with a number, as no scene does.
+pub fn is_one(text: &str) -> bool {
+    text.trim_start().starts_with(|c: char| c.is_ascii_digit())
+}
+
+/// Reads such a file; a global problem is condensed.
+///
+/// # Errors
+/// What is wrong, and in which line.
+pub fn read(text: &str) -> Result<Friction2d, Broken> {
+    read_within(text, None)
+}
+
+/// Reads such a file, which may take so much memory (GB; none: what is free).
+///
+/// # Errors
+/// As [`read`].
+pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken> {
+    let broken = |at: Option<(usize, usize)>, message| {
+        let (line, column) = at.unwrap_or((1, 1));
+        Broken {
+            line,
+            column,
+            message,
+        }
+    };
+    let problem = siconos::read(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
+    Friction2d::condensed(problem, memory).map_err(|why| broken(None, why))
+}
+
+impl Friction2d {
+    /// A problem of any form, condensed to its contacts; it may take so much memory (GB; none: what is free).
+    ///
+    /// # Errors
+    /// Why it cannot be.
+    pub fn condensed(problem: problem::Problem, memory: Option<f64>) -> Result<Self, String> {
+        let contacts = match &problem {
+            problem::Problem::Local(local) | problem::Problem::Mixed(local, _) => local.mu.len(),
+            problem::Problem::Global(global) => global.mu.len(),
+        };
+        super::fits(contacts, memory)?;
+        let problem = match problem {
+            problem::Problem::Local(local) => Friction2d::of(local),
+            problem::Problem::Mixed(local, bilateral) => {
+                let mut whole = Friction2d::of(local);
+                let turned = super::condense::transposed(&bilateral.v);
+                let (w, q) = super::condense::condensed(&bilateral.r, &turned, &bilateral.s)
+                    .map_err(|why| format!("R of the bilateral constraints {why}"))?;
+                let rows = whole.w.iter_mut().flatten().zip(w.iter().flatten());
+                rows.for_each(|(whole, part)| *whole -= part);
+                whole
+                    .q
+                    .iter_mut()
+                    .zip(&q)
+                    .for_each(|(whole, part)| *whole -= part);
+                whole
+            }
+            problem::Problem::Global(global) => {
+                let (w, mut q) = super::condense::condensed(&global.m, &global.h, &global.f)
+                    .map_err(|why| format!("M {why}"))?;
+                q.iter_mut().zip(&global.b).for_each(|(q, b)| *q += b);
+                let mu = global.mu;
+                Friction2d { w, q, mu }
+            }
+        };
+        problem.sound()?;
+        Ok(problem)
+    }
+
+    fn of(local: Local) -> Self {
+        Friction2d {
+            w: local.w.dense(),
+            q: local.q,
+            mu: local.mu,
+        }
+    }
+
+    /// Refuses numbers that no scene has.
+    fn sound(&self) -> Result<(), String> {
+        let of = |what: &str, value: f64| match value.abs() <= limits::MAGNITUDE {
+            true => Ok(()),
+            false => Err(format!(
+                "{what} is {value:?}; it must be a number between -1e12 and 1e12"
+            )),
+        };
+        for (i, row) in self.w.iter().enumerate() {
+            for (j, &value) in row.iter().enumerate() {
+                of(
+                    &format!("the entry of W in row {}, column {},", i + 1, j + 1),
+                    value,
+                )?;
+            }
+        }
+        for (k, &value) in self.q.iter().enumerate() {
+            of(&format!("component {} of q", k + 1), value)?;
+        }
+        Ok(())
+    }
+
+    /// The form in which files have it.
+    pub fn local(&self) -> Local {
+        Local {
+            w: problem::Matrix::from_rows(&self.w),
+            q: self.q.clone(),
+            mu: self.mu.clone(),
+        }
+    }
+
+    /// The scene's form of it.
+    pub fn problem(&self, title: &str) -> Problem {
+        Problem {
+            title: title.to_owned(),
+            about: "A friction problem in the form of Siconos: u = W r + q.".to_owned(),
+            contacts: contacts(&self.mu, &[]),
+            matrix: Matrix::Compliance(self.w.clone()),
+            free: self.q.clone(),
+            spacing: None,
+            history: at_once(),
+            settings: settings(),
+        }
+    }
+
+    /// The file, as text.
+    pub fn write(&self, storage: Storage) -> String {
+        siconos::write(&self.local(), storage)
+    }
+}
+
+/// Contacts with these coefficients of friction, and these loads or none.
+pub(super) fn contacts(mu: &[f64], loads: &[f64]) -> Vec<Contact> {
+    let contact = |(k, &mu): (usize, &f64)| Contact {
+        id: format!("c{}", k + 1),
+        gap: 0.0,
+        friction: friction(mu),
+        load: match loads.get(2 * k..2 * k + 2) {
+            Some(load) => [load[0], load[1]],
+            None => [0.0; 2],
+        },
+        start: Mode::Free,
+        state: InitialState::default(),
+    };
+    mu.iter().enumerate().map(contact).collect()
+}
+
+fn friction(mu: f64) -> Friction {
+    Friction {
+        angle: mu.atan().to_degrees(),
+        cohesion: 0.0,
+    }
+}
+
+/// W is sparse as a rule, and condensing it has nothing to take out.
+pub(super) fn settings() -> Settings {
+    Settings {
+        solver: Solver::Augmented,
+        ..Settings::default()
+    }
+}

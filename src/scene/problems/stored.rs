@@ -1,0 +1,355 @@
+//! A stiffness that CalculiX has stored, condensed to the nodes that may touch ([`crate::format::stored`]).
+//!
+//! Let u be the unknowns that are free, p those that are moved, H the normals and tangents of the contacts:
+//!
+//! ```text
+//! K_uu u = f − K_up p + H r,    and so    W = Hᵀ K_uu⁻¹ H,    free = Hᵀ (K_uu⁻¹ (f − K_up p) + p)
+//! ```
+//!
+//! Where K_uu is singular, since the contacts alone hold the body, its stiffness at the contacts takes the place of W. That
+//! needs both components of each contact to be free.
+
+use super::condense::{NotEliminated, condensed, reduced};
+use super::{fits, of_file};
+use crate::format::condensed::{Contact, Matrix, Problem};
+use crate::format::error::{Fault, Path, at, quoted};
+use crate::format::stored::{Stored, Touching};
+use crate::format::{SceneError, read};
+use crate::model::InitialState;
+use crate::outside::input;
+use crate::scene::placed;
+use std::collections::HashMap;
+use stickslip_exchange::calculix::stiffness::{self, Unknown};
+use stickslip_exchange::problem;
+
+/// Reads such a file and those that it names, and condenses what they say.
+///
+/// # Errors
+/// What is wrong with any of them.
+pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
+    let spec: Stored = read::value(file, text, "stored stiffness")?;
+    let place = |fault: Fault| placed(file, text, &[], fault);
+    let named = |key: &str, name: &str| {
+        input::beside(std::path::Path::new(file), name).map_err(|why| {
+            let told = format!("{}: {why}", quoted(name));
+            place(Fault::new(at![key], told))
+        })
+    };
+    let unknowns = match &spec.unknowns {
+        Some(name) => named("unknowns", name)?,
+        None => {
+            let name = std::path::Path::new(&spec.stiffness).with_extension("dof");
+            named("stiffness", &name.to_string_lossy())?
+        }
+    };
+    let matrix = named("stiffness", &spec.stiffness)?;
+    let of = |path: &std::path::Path, broken| of_file(&path.display().to_string(), broken);
+    let list = stiffness::unknowns(&super::text(&unknowns)?).map_err(|b| of(&unknowns, b))?;
+    let stored = super::text(&matrix)?;
+    let k = stiffness::matrix(&stored, list.len()).map_err(|b| of(&matrix, b))?;
+    drop(stored);
+    Posed::new(&spec, &list, memory)
+        .and_then(|posed| posed.condensed(&k))
+        .map_err(place)
+}
+
+/// What is known of an unknown: that it is free, and its number among those, or where it is moved to.
+#[derive(Clone, Copy)]
+enum Known {
+    Free(usize),
+    Moved(f64),
+}
+
+/// The problem, without its stiffness.
+struct Posed<'s> {
+    spec: &'s Stored,
+    /// For each unknown.
+    known: Vec<Known>,
+    /// Number of free ones.
+    free: usize,
+    /// Loads on the free ones.
+    load: Vec<f64>,
+    contacts: Vec<Point<'s>>,
+}
+
+/// A contact: its node, the unknowns along x and y, and what it touches.
+struct Point<'s> {
+    node: u64,
+    /// Place in the file.
+    at: Path,
+    unknowns: [Option<usize>; 2],
+    /// Unit normal.
+    normal: [f64; 2],
+    touching: &'s Touching,
+}
+
+impl<'s> Posed<'s> {
+    fn new(spec: &'s Stored, list: &[Unknown], memory: Option<f64>) -> Result<Self, Fault> {
+        let numbers = Numbers::new(list)?;
+        let mut known: Vec<Option<f64>> = vec![None; list.len()];
+        for (k, moved) in spec.moved.iter().enumerate() {
+            for (i, &node) in moved.nodes.iter().enumerate() {
+                let here = at!["moved", k, "nodes", i];
+                let unknowns = numbers.of(node, &here)?;
+                for (direction, value) in [moved.x, moved.y].into_iter().enumerate() {
+                    let Some(value) = value else { continue };
+                    finite(&at!["moved", k, ["x", "y"][direction]], value)?;
+                    let unknown = unknowns[direction].ok_or_else(|| {
+                        let axis = ["x", "y"][direction];
+                        let why =
+                            format!("node {node} is restrained along {axis}, and cannot be moved");
+                        Fault::new(here.clone(), why)
+                    })?;
+                    if known[unknown].replace(value).is_some() {
+                        return Err(Fault::new(here, format!("node {node} is moved twice")));
+                    }
+                }
+            }
+        }
+        let mut free = 0;
+        let known: Vec<Known> = known
+            .into_iter()
+            .map(|value| match value {
+                Some(value) => Known::Moved(value),
+                None => {
+                    free += 1;
+                    Known::Free(free - 1)
+                }
+            })
+            .collect();
+        let mut load = vec![0.0; free];
+        for (k, pulled) in spec.loads.iter().enumerate() {
+            for (i, &node) in pulled.nodes.iter().enumerate() {
+                let unknowns = numbers.of(node, &at!["loads", k, "nodes", i])?;
+                for (direction, value) in [pulled.x, pulled.y].into_iter().enumerate() {
+                    finite(&at!["loads", k, ["x", "y"][direction]], value)?;
+                    // A support carries what pulls at it.
+                    if let Some(Known::Free(place)) = unknowns[direction].map(|u| known[u]) {
+                        load[place] += value;
+                    }
+                }
+            }
+        }
+        let contacts = points(spec, &numbers)?;
+        fits(contacts.len(), memory.or(spec.settings.memory))
+            .map_err(|why| Fault::new(at!["contacts"], why))?;
+        Ok(Posed {
+            spec,
+            known,
+            free,
+            load,
+            contacts,
+        })
+    }
+
+    fn condensed(mut self, k: &problem::Matrix) -> Result<Problem, Fault> {
+        let mut inner = problem::Matrix {
+            rows: self.free,
+            columns: self.free,
+            entries: Vec::with_capacity(k.entries.len()),
+        };
+        for &(i, j, value) in &k.entries {
+            match (self.known[i], self.known[j]) {
+                (Known::Free(i), Known::Free(j)) => inner.entries.push((i, j, value)),
+                (Known::Free(i), Known::Moved(by)) => self.load[i] -= value * by,
+                (Known::Moved(_), _) => {}
+            }
+        }
+        if inner.entries.is_empty() {
+            return Err(Fault::new(Path::default(), "no unknown is left free"));
+        }
+        match condensed(&inner, &self.frames(), &self.load) {
+            Ok((w, free)) => {
+                let moved = self.moved();
+                let free = free.iter().zip(moved).map(|(u, p)| u + p).collect();
+                Ok(self.problem(Matrix::Compliance(w), free, &[]))
+            }
+            Err(NotEliminated::Singular) => self.floating(&inner),
+            Err(why) => Err(Fault::new(at!["stiffness"], format!("the stiffness {why}"))),
+        }
+    }
+
+    /// The stiffness at the contacts, in their frames, of a body that nothing else holds.
+    fn floating(&self, inner: &problem::Matrix) -> Result<Problem, Fault> {
+        let mut kept = Vec::with_capacity(2 * self.contacts.len());
+        for point in &self.contacts {
+            for unknown in point.unknowns {
+                let Some(Known::Free(place)) = unknown.map(|u| self.known[u]) else {
+                    let why = "the stiffness is singular: nothing but the contacts holds the body, and a component of this node \
+                               is restrained or moved, so that no stiffness of the contacts says what the file says";
+                    return Err(Fault::new(point.at.clone(), why));
+                };
+                kept.push(place);
+            }
+        }
+        let (s, load) = reduced(inner, &self.load, &kept).map_err(|why| {
+            let why = format!("the stiffness without that of the contacts' nodes {why}");
+            Fault::new(at!["stiffness"], why)
+        })?;
+        // Rows and columns from (x, y) to (n, t): n = (c, s), t = (−s, c).
+        let onto = |pair: [f64; 2], point: &Point<'_>| {
+            let [c, s] = point.normal;
+            [c * pair[0] + s * pair[1], c * pair[1] - s * pair[0]]
+        };
+        let mut rows = s;
+        for row in &mut rows {
+            for (pair, point) in row.chunks_exact_mut(2).zip(&self.contacts) {
+                pair.copy_from_slice(&onto([pair[0], pair[1]], point));
+            }
+        }
+        for (pair, point) in rows.chunks_exact_mut(2).zip(&self.contacts) {
+            let [x, y] = pair else { continue };
+            for (x, y) in x.iter_mut().zip(y) {
+                [*x, *y] = onto([*x, *y], point);
+            }
+        }
+        let size = rows.len();
+        for i in 0..size {
+            for j in 0..i {
+                let mean = 0.5 * (rows[i][j] + rows[j][i]);
+                (rows[i][j], rows[j][i]) = (mean, mean);
+            }
+        }
+        let load = load.chunks_exact(2).zip(&self.contacts);
+        let load: Vec<[f64; 2]> = load.map(|(pair, p)| onto([pair[0], pair[1]], p)).collect();
+        Ok(self.problem(Matrix::Stiffness(rows), Vec::new(), &load))
+    }
+
+    /// H: a column for the normal and one for the tangent of each contact, over the free unknowns.
+    fn frames(&self) -> problem::Matrix {
+        let mut entries = Vec::new();
+        for (k, point) in self.contacts.iter().enumerate() {
+            for (direction, unknown) in point.unknowns.into_iter().enumerate() {
+                if let Some(Known::Free(place)) = unknown.map(|u| self.known[u]) {
+                    let [n, t] = point.components(direction);
+                    entries.extend([(place, 2 * k, n), (place, 2 * k + 1, t)]);
+                }
+            }
+        }
+        problem::Matrix {
+            rows: self.free,
+            columns: 2 * self.contacts.len(),
+            entries,
+        }
+    }
+
+    /// How far the contacts are moved that are.
+    fn moved(&self) -> Vec<f64> {
+        let of = |point: &Point<'_>| {
+            let mut pair = [0.0; 2];
+            for (direction, unknown) in point.unknowns.into_iter().enumerate() {
+                if let Some(Known::Moved(by)) = unknown.map(|u| self.known[u]) {
+                    let [n, t] = point.components(direction);
+                    pair[0] += n * by;
+                    pair[1] += t * by;
+                }
+            }
+            pair
+        };
+        self.contacts.iter().flat_map(of).collect()
+    }
+
+    fn problem(&self, matrix: Matrix, free: Vec<f64>, loads: &[[f64; 2]]) -> Problem {
+        let contact = |(k, point): (usize, &Point<'_>)| Contact {
+            id: format!("n{}", point.node),
+            gap: point.touching.gap,
+            friction: point.touching.friction,
+            load: loads.get(k).copied().unwrap_or_default(),
+            start: point.touching.start,
+            state: InitialState::default(),
+        };
+        let spec = self.spec;
+        let motions = spec.moved.iter().flat_map(|moved| [moved.x, moved.y]);
+        let lengths = motions.flatten().chain(spec.contacts.iter().map(|c| c.gap));
+        let largest = lengths.map(f64::abs).fold(0.0, f64::max);
+        Problem {
+            title: spec.title.clone(),
+            about: spec.about.clone(),
+            contacts: self.contacts.iter().enumerate().map(contact).collect(),
+            matrix,
+            free,
+            spacing: spec.spacing.or((largest > 0.0).then_some(largest)),
+            history: spec.history.clone(),
+            settings: spec.settings,
+        }
+    }
+}
+
+impl Point<'_> {
+    /// Normal and tangential components of a unit along x (0) or y (1).
+    fn components(&self, direction: usize) -> [f64; 2] {
+        let [c, s] = self.normal;
+        [[c, -s], [s, c]][direction]
+    }
+}
+
+/// The contacts, each node once.
+fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fault> {
+    let mut points: Vec<Point<'s>> = Vec::new();
+    let mut known = HashMap::new();
+    for (k, touching) in spec.contacts.iter().enumerate() {
+        let (x, y) = touching.normal;
+        let length = x.hypot(y);
+        if !(length > 0.0 && length.is_finite()) {
+            let why =
+                format!("the normal is ({x:?}, {y:?}); it must have a length and a direction");
+            return Err(Fault::new(at!["contacts", k, "normal"], why));
+        }
+        finite(&at!["contacts", k, "gap"], touching.gap)?;
+        for (i, &node) in touching.nodes.iter().enumerate() {
+            let here = at!["contacts", k, "nodes", i];
+            let unknowns = numbers.of(node, &here)?;
+            if known.insert(node, ()).is_some() {
+                return Err(Fault::new(
+                    here,
+                    format!("node {node} is a contact already"),
+                ));
+            }
+            points.push(Point {
+                node,
+                at: here,
+                unknowns,
+                normal: [x / length, y / length],
+                touching,
+            });
+        }
+    }
+    match points.is_empty() {
+        true => Err(Fault::new(
+            at!["contacts"],
+            "no node may touch; name one at least",
+        )),
+        false => Ok(points),
+    }
+}
+
+fn finite(path: &Path, value: f64) -> Result<(), Fault> {
+    crate::scene::limits::finite(path, value, "the value")
+}
+
+/// Where the components of each node stand among the unknowns.
+struct Numbers(HashMap<u64, [Option<usize>; 2]>);
+
+impl Numbers {
+    fn new(list: &[Unknown]) -> Result<Self, Fault> {
+        let mut numbers: HashMap<u64, [Option<usize>; 2]> = HashMap::new();
+        for (place, unknown) in list.iter().enumerate() {
+            let of_node = numbers.entry(unknown.node).or_default();
+            if of_node[unknown.direction].replace(place).is_some() {
+                let (node, direction) = (unknown.node, unknown.direction + 1);
+                let why = format!("the file .dof has {node}.{direction} twice");
+                return Err(Fault::new(at!["unknowns"], why));
+            }
+        }
+        Ok(Numbers(numbers))
+    }
+
+    fn of(&self, node: u64, here: &Path) -> Result<[Option<usize>; 2], Fault> {
+        self.0.get(&node).copied().ok_or_else(|| {
+            let why = format!(
+                "node {node} is not in the file .dof: the deck has no such node, or restrains both of its components"
+            );
+            Fault::new(here.clone(), why)
+        })
+    }
+}

@@ -1,0 +1,289 @@
+//! `run --vtu` and `export -o FILE.vtu`: which files there are, what stands in them, and that none is lost.
+
+use crate::program::{code, err, names, out, program, rows, well};
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::Output;
+use std::sync::Arc;
+use stickslip::contact::record::ContactRecord;
+use stickslip::model::Mode;
+use stickslip::record::export::grid::grid;
+use stickslip::scene::Scene;
+use stickslip::step::drive::Until;
+use stickslip::step::stepper::Stepper;
+use stickslip_exchange::mesh::CellKind;
+use stickslip_exchange::vtu::{Array, Grid, Values};
+
+const BLOCK: &str = "osc-block-slide";
+const ROUGH: &str = "02-two-cantilevers-rough";
+const CYCLES: &str = "osc-two6";
+
+fn ran(directory: &Path, arguments: &[&str]) -> Output {
+    program(directory, arguments).output().unwrap()
+}
+
+/// Time and file of each entry of a collection.
+fn collection(text: &str) -> Vec<(f64, String)> {
+    let value = |line: &str, key: &str| {
+        let (_, rest) = line.split_once(&format!("{key}=\"")).unwrap();
+        rest.split_once('"').unwrap().0.to_owned()
+    };
+    let entries = text.lines().filter(|line| line.contains("<DataSet "));
+    entries
+        .map(|line| {
+            (
+                value(line, "timestep").parse().unwrap(),
+                value(line, "file"),
+            )
+        })
+        .collect()
+}
+
+#[test]
+fn a_run_leaves_a_file_for_each_increment_and_a_collection_over_the_load() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let run = ran(here, &["run", ROUGH, "--vtu", "a/b", "--csv", "-"]);
+    well(&run);
+    let table = rows(&out(&run));
+    let folder = here.join("a/b");
+    let found = collection(&fs::read_to_string(folder.join(format!("{ROUGH}.pvd"))).unwrap());
+    // The start, and each accepted increment.
+    assert_eq!(found.len(), table.len() + 1);
+    assert_eq!(found[0], (0.0, format!("{ROUGH}-000000.vtu")));
+    for ((time, file), row) in found[1..].iter().zip(&table) {
+        assert_eq!(*time, row["load"].parse::<f64>().unwrap());
+        let text = fs::read_to_string(folder.join(file)).unwrap();
+        assert!(
+            text.starts_with("<?xml") && text.ends_with("</VTKFile>\n"),
+            "{file}"
+        );
+    }
+    assert_eq!(names(&folder).len(), found.len() + 1);
+}
+
+#[test]
+fn every_minor_iteration_has_a_file_where_that_is_asked_for_and_the_time_is_its_number() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let arguments = [
+        "run", CYCLES, "--vtu", "v", "--each", "minor", "--trace", "-",
+    ];
+    let run = ran(here, &arguments);
+    assert_eq!(code(&run), 3, "it cycles: {}", err(&run));
+    let mut minors: Vec<_> = rows(&out(&run))
+        .iter()
+        .map(|row| ["increment", "attempt", "major", "minor"].map(|key| row[key].clone()))
+        .collect();
+    minors.dedup();
+    let found =
+        collection(&fs::read_to_string(here.join("v").join(format!("{CYCLES}.pvd"))).unwrap());
+    assert_eq!(found.len(), minors.len() + 1);
+    let times: Vec<f64> = found.iter().map(|(time, _)| *time).collect();
+    assert_eq!(
+        times,
+        (0..found.len()).map(|k| k as f64).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn no_file_is_overwritten_unasked_and_nothing_is_solved_before_that_is_seen() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    well(&ran(here, &["run", ROUGH, "--vtu", "v", "-q"]));
+    let file = here.join("v").join(format!("{ROUGH}.pvd"));
+    fs::write(&file, "mine").unwrap();
+    let again = ran(here, &["run", ROUGH, "--vtu", "v", "--csv", "-"]);
+    assert_eq!((code(&again), out(&again)), (2, String::new()));
+    assert!(err(&again).contains("--force"), "{}", err(&again));
+    assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
+    well(&ran(here, &["run", ROUGH, "--vtu", "v", "-q", "--force"]));
+    assert!(fs::read_to_string(&file).unwrap().contains("DataSet"));
+    let lonely = ran(here, &["run", ROUGH, "--each", "minor"]);
+    assert_eq!(code(&lonely), 2, "{}", err(&lonely));
+}
+
+#[test]
+fn a_state_is_exported_as_the_run_writes_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    well(&ran(here, &["run", ROUGH, "--vtu", "v", "-q"]));
+    well(&ran(here, &["export", ROUGH, "-o", "end.vtu"]));
+    well(&ran(
+        here,
+        &["export", ROUGH, "-o", "third.vtu", "--at", "3"],
+    ));
+    let text = |name: &str| fs::read_to_string(here.join(name)).unwrap();
+    let files = collection(&text(&format!("v/{ROUGH}.pvd")));
+    let of_run = |k: usize| text(&format!("v/{}", files[k].1));
+    assert!(text("end.vtu") == of_run(files.len() - 1));
+    assert!(text("third.vtu") == of_run(3));
+}
+
+#[test]
+fn a_frozen_problem_goes_into_files_for_every_solver_and_says_the_same_in_all() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    for file in ["p.dat", "p_W.mtx", "p.h5"] {
+        well(&ran(
+            here,
+            &[
+                "export", "osc-zig3", "--at", "1.1.1", "--frozen", "-o", file,
+            ],
+        ));
+    }
+    assert_eq!(
+        names(here),
+        ["p.dat", "p.h5", "p_W.mtx", "p_mu.mtx", "p_q.mtx"]
+    );
+    let spec = |file: &str| {
+        let mut spec = Scene::open(&here.join(file).display().to_string(), &[])
+            .unwrap()
+            .spec;
+        (spec.title, spec.about) = (String::new(), String::new());
+        spec
+    };
+    assert_eq!(spec("p.h5"), spec("p.dat"));
+    assert_eq!(spec("p_W.mtx"), spec("p.dat"));
+    // The files beside the matrix are as safe as the matrix.
+    fs::remove_file(here.join("p_W.mtx")).unwrap();
+    let again = ran(
+        here,
+        &["export", "osc-zig3", "--at", "1.1.1", "-o", "p_W.mtx"],
+    );
+    assert_eq!(code(&again), 2, "{}", err(&again));
+    assert!(!here.join("p_W.mtx").exists());
+    let stiff = ran(here, &["export", "osc-zig3", "-o", "p_K.mtx"]);
+    assert_eq!(code(&stiff), 2, "{}", err(&stiff));
+    assert!(err(&stiff).contains("_W.mtx"), "{}", err(&stiff));
+}
+
+fn numbers<'g>(arrays: &'g [Array], name: &str) -> &'g [f64] {
+    match &arrays
+        .iter()
+        .find(|array| array.name == name)
+        .unwrap()
+        .values
+    {
+        Values::Numbers(values) => values,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+fn wholes<'g>(arrays: &'g [Array], name: &str) -> &'g [i32] {
+    match &arrays
+        .iter()
+        .find(|array| array.name == name)
+        .unwrap()
+        .values
+    {
+        Values::Wholes(values) => values,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// The grid at the end of a scene, with what the last minor iteration found.
+fn at_the_end(name: &str, set: &[(&str, &str)]) -> (Stepper, Grid, Vec<ContactRecord>) {
+    let set: Vec<_> = set
+        .iter()
+        .map(|(p, v)| ((*p).to_owned(), (*v).to_owned()))
+        .collect();
+    let scene = Scene::open(name, &set).unwrap();
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    stepper.drive(Until::end(), |_| ControlFlow::<()>::Continue(()));
+    let event = stepper.event().clone();
+    let grid = grid(
+        stepper.model(),
+        stepper.state(),
+        Some(&event),
+        event.position,
+        event.load_factor,
+    );
+    (stepper, grid, event.nodes)
+}
+
+#[test]
+fn nodes_are_where_the_state_has_them_and_slave_nodes_say_what_was_found() {
+    let (stepper, grid, found) = at_the_end(BLOCK, &[]);
+    let model = stepper.model();
+    let moved = numbers(&grid.on_points, "displacement");
+    for (node, at) in grid.points.iter().enumerate() {
+        let now = model.place(&stepper.state().u, node);
+        assert_eq!(
+            [moved[3 * node], moved[3 * node + 1]],
+            [now[0] - at[0], now[1] - at[1]]
+        );
+    }
+    let (modes, force) = (
+        wholes(&grid.on_points, "contact_mode"),
+        numbers(&grid.on_points, "contact_force"),
+    );
+    let mut slaves = 0;
+    for (contact, record) in model.contacts.iter().zip(&found) {
+        let node = contact.node;
+        slaves += 1;
+        let mode = [Mode::Free, Mode::Sliding, Mode::Fixed][modes[node] as usize];
+        assert_eq!(mode, record.decision.before);
+        assert_eq!(numbers(&grid.on_points, "gap")[node], record.gap);
+        // The floor is level: n is up, and t against x.
+        assert_eq!(force[3 * node + 1], record.f_n);
+        assert_eq!(force[3 * node], -record.f_t);
+        let pressure = numbers(&grid.on_points, "pressure")[node];
+        assert!(
+            contact.area.is_none() && pressure.is_nan()
+                || pressure == record.f_n / contact.area.unwrap()
+        );
+    }
+    let others = modes.iter().filter(|mode| **mode == -1).count();
+    assert_eq!(slaves + others, model.nodes.len());
+}
+
+#[test]
+fn bodies_and_surfaces_are_cells_that_say_whose_they_are() {
+    let (stepper, grid, _) = at_the_end(BLOCK, &[]);
+    let (body, surface, rigid) = (
+        wholes(&grid.on_cells, "body"),
+        wholes(&grid.on_cells, "surface"),
+        wholes(&grid.on_cells, "rigid"),
+    );
+    assert_eq!(body.len(), grid.cells.len());
+    for (k, cell) in grid.cells.iter().enumerate() {
+        assert_eq!(cell.nodes.len(), cell.kind.nodes());
+        assert!(cell.nodes.iter().all(|node| *node < grid.points.len()));
+        let line = matches!(cell.kind, CellKind::Line2 | CellKind::Line3);
+        assert_eq!((body[k] == 0, surface[k] > 0), (line, line));
+        assert_eq!(
+            rigid[k] == 1,
+            line && stepper.model().surfaces[surface[k] as usize - 1].rigid
+        );
+    }
+    // Beams are lines, and say how they turn.
+    let (stepper, grid, _) = at_the_end(ROUGH, &[]);
+    let turned = numbers(&grid.on_points, "rotation");
+    let first = &stepper.model().dofs.first;
+    assert!(
+        turned
+            .iter()
+            .enumerate()
+            .any(|(k, angle)| *angle == stepper.state().u[first[k] + 2] && *angle != 0.0)
+    );
+    assert!(wholes(&grid.on_cells, "body").contains(&1));
+}
+
+#[test]
+fn a_stress_in_balance_with_a_pressed_face_is_on_its_nodes() {
+    // All of a block on a smooth floor is pressed alike: the stress across the floor is the pressure on it.
+    let (_, grid, _) = at_the_end(BLOCK, &[("friction.angle", "0.0")]);
+    let stress = numbers(&grid.on_points, "stress");
+    assert_eq!(stress.len(), 6 * grid.points.len());
+    let of_body: Vec<bool> = (0..grid.points.len())
+        .map(|k| !stress[6 * k].is_nan())
+        .collect();
+    let cells = grid.cells.iter().zip(wholes(&grid.on_cells, "body"));
+    let mut on_body = vec![false; grid.points.len()];
+    for (cell, _) in cells.filter(|(_, body)| **body > 0) {
+        cell.nodes.iter().for_each(|node| on_body[*node] = true);
+    }
+    assert_eq!(of_body, on_body);
+}

@@ -1,0 +1,353 @@
+//! Interface problems of other programs: read from every form with the same answer, condensed right, refused with a place.
+
+use crate::common::run;
+use crate::siconos::{answer, assert_solved};
+use proptest::prelude::*;
+use std::fs;
+use std::path::Path;
+use stickslip::format::Spec;
+use stickslip::linear::estimate::GIGABYTE;
+use stickslip::model::Mode;
+use stickslip::scene::Scene;
+use stickslip::scene::problems::market;
+use stickslip::scene::siconos::{Friction2d, Storage, read};
+use stickslip_exchange::fclib;
+use tempfile::TempDir;
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn put(folder: &TempDir, name: &str, text: impl AsRef<[u8]>) -> String {
+    let path = folder.path().join(name);
+    fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
+fn open(file: &str) -> Scene {
+    Scene::open(file, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What is wrong with a file, without the folder that it lies in.
+fn refusal(folder: &TempDir, file: &str) -> String {
+    let error = Scene::open(file, &[]).unwrap_err().to_string();
+    let folder = format!("{}/", folder.path().display());
+    error.replace(&folder, "")
+}
+
+/// One contact on springs: 2 along the normal, 4 along the tangent, and 1 between both, over one unknown more.
+const GLOBAL: &str = "2\n1\n0\n3\n3\n3 3\n2 1 0 1 4 0 0 0 9\n0\n3\n2\n3 2\n1 0 0 0 1 0\n-6.0 1.0 5.0\n0.5 0.25\n0.3\n";
+
+#[test]
+fn a_global_problem_is_condensed_to_its_contacts() {
+    let found = read(GLOBAL).unwrap();
+    // The inverse of [[2, 1], [1, 4]] is [[4, -1], [-1, 2]] / 7.
+    let wanted = [[4.0 / 7.0, -1.0 / 7.0], [-1.0 / 7.0, 2.0 / 7.0]];
+    for (row, wanted) in found.w.iter().zip(wanted) {
+        for (value, wanted) in row.iter().zip(wanted) {
+            assert!((value - wanted).abs() < 1e-15, "{found:?}");
+        }
+    }
+    let q = [0.5 + (-24.0 - 1.0) / 7.0, 0.25 + (6.0 + 2.0) / 7.0];
+    assert!((found.q[0] - q[0]).abs() < 1e-14 && (found.q[1] - q[1]).abs() < 1e-14);
+    let run = run(&Scene::from_text("global.dat", GLOBAL, &[]).unwrap());
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    assert_solved(&found, &run);
+}
+
+#[test]
+fn what_nothing_holds_cannot_be_condensed_and_is_said_to_be_singular() {
+    let loose = GLOBAL.replace("2 1 0 1 4 0 0 0 9", "2 1 0 1 4 0 0 0 0");
+    let error = Scene::from_text("loose.dat", &loose, &[]).unwrap_err();
+    assert!(error.to_string().contains("M is singular"), "{error}");
+    let twice = GLOBAL.replace("2 1 0 1 4 0 0 0 9", "2 4 0 4 8 0 0 0 9");
+    assert!(read(&twice).unwrap_err().message.contains("M is singular"));
+}
+
+fn problem() -> Friction2d {
+    Friction2d {
+        w: vec![
+            vec![2.0, 0.1 + 0.2, 0.0, 0.25],
+            vec![0.3, 3.0, 0.4, 0.0],
+            vec![0.0, 0.4, 2.0, 1.0 / 3.0],
+            vec![0.25, 0.0, 1.0 / 3.0, 2.0],
+        ],
+        q: vec![-1.0, 0.1, -2.0, 0.7],
+        mu: vec![0.5, 0.1],
+    }
+}
+
+/// The problem in every form, each in a file.
+fn files(folder: &TempDir, problem: &Friction2d) -> Vec<String> {
+    let matrix = folder.path().join("p_W.mtx");
+    let parts = market::parts(&matrix).unwrap();
+    for (part, text) in parts.iter().zip(market::texts(problem, "of a test")) {
+        fs::write(part, text).unwrap();
+    }
+    vec![
+        put(folder, "p.dat", problem.write(Storage::Dense)),
+        put(folder, "b.dat", problem.write(Storage::Blocks)),
+        put(
+            folder,
+            "p.h5",
+            fclib::write(&problem.local(), "of a test").unwrap(),
+        ),
+        matrix.display().to_string(),
+    ]
+}
+
+/// A scene without its words.
+fn bare(file: &str) -> Spec {
+    let mut spec = open(file).spec;
+    (spec.title, spec.about) = (String::new(), String::new());
+    spec
+}
+
+#[test]
+fn a_problem_is_the_same_scene_from_every_file() {
+    let folder = folder();
+    let files = files(&folder, &problem());
+    for file in &files[1..] {
+        assert_eq!(bare(file), bare(&files[0]), "{file}");
+    }
+    let run = run(&open(&files[2]));
+    assert_solved(&problem(), &run);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+    #[test]
+    fn every_form_keeps_every_bit(
+        w in prop::collection::vec(prop::collection::vec(-1e9..1e9_f64, 4), 4),
+        q in prop::collection::vec(-1e9..1e9_f64, 4),
+    ) {
+        let folder = folder();
+        let files = files(&folder, &Friction2d { w, q, mu: vec![0.1, 0.7] });
+        for file in &files[1..] {
+            prop_assert_eq!(bare(file), bare(&files[0]));
+        }
+    }
+}
+
+#[test]
+fn a_stiffness_is_marked_by_its_name_and_may_come_with_loads() {
+    let folder = folder();
+    let head = "%%MatrixMarket matrix";
+    let matrix = put(
+        &folder,
+        "s_K.mtx",
+        format!("{head} coordinate real symmetric\n2 2 3\n1 1 2.0\n2 1 1.0\n2 2 4.0\n"),
+    );
+    put(
+        &folder,
+        "s_mu.mtx",
+        format!("{head} array real general\n1 1\n0.3\n"),
+    );
+    put(
+        &folder,
+        "s_f.mtx",
+        format!("{head} array real general\n2 1\n-6.0\n1.0\n"),
+    );
+    put(
+        &folder,
+        "s_q.mtx",
+        format!("{head} array real general\n2 1\n0.5\n0.25\n"),
+    );
+    // The same as the global problem: u = q + K⁻¹ (f + r).
+    let run = run(&open(&matrix));
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    assert_solved(&read(GLOBAL).unwrap(), &run);
+}
+
+#[test]
+fn what_is_missing_or_wrong_beside_a_matrix_is_named() {
+    let folder = folder();
+    let files = files(&folder, &problem());
+    let matrix = &files[3];
+    let beside = |part: &str| folder.path().join(format!("p_{part}.mtx"));
+    let head = "%%MatrixMarket matrix array real general\n";
+    for (part, text, told) in [
+        (
+            "mu",
+            Some(format!("{head}2 1\n0.5\n-0.1\n")),
+            "p_mu.mtx: the friction coefficient is -0.1",
+        ),
+        (
+            "mu",
+            Some(format!("{head}3 1\n0.5\n0.1\n0.1\n")),
+            "p_mu.mtx: mu has 3 rows",
+        ),
+        ("mu", Some(format!("{head}2 1\n0.5\nx\n")), "p_mu.mtx:4:1: "),
+        ("mu", None, "p_W.mtx: there is no p_mu.mtx beside it"),
+        ("q", None, "p_W.mtx: there is no p_q.mtx beside it"),
+    ] {
+        let kept = fs::read(beside(part)).unwrap();
+        match text {
+            Some(text) => fs::write(beside(part), text).unwrap(),
+            None => fs::remove_file(beside(part)).unwrap(),
+        }
+        let error = refusal(&folder, matrix);
+        assert!(error.starts_with(told), "{error}");
+        fs::write(beside(part), kept).unwrap();
+    }
+    let error = refusal(&folder, &beside("q").display().to_string());
+    assert!(error.contains("name its matrix: p_W.mtx"), "{error}");
+    let odd = put(
+        &folder,
+        "odd.mtx",
+        "%%MatrixMarket matrix array real general\n1 1\n2.0\n",
+    );
+    assert!(refusal(&folder, &odd).contains("two rows a contact"));
+}
+
+#[test]
+fn a_matrix_that_does_not_fit_into_memory_is_refused_before_it_is_made() {
+    let set = [("settings.memory".to_owned(), (1e4 / GIGABYTE).to_string())];
+    let folder = folder();
+    let sparse = "2\n200\n1\n400\n400\n0\n".to_owned() + &"0.0 ".repeat(400) + &"0.1 ".repeat(200);
+    let sparse = put(&folder, "sparse.dat", sparse);
+    let error = Scene::open(&sparse, &set).unwrap_err().to_string();
+    assert!(
+        error.contains("200 contacts") && error.contains("memory"),
+        "{error}"
+    );
+    let matrix = "%%MatrixMarket matrix coordinate real general\n4000000 4000000 0\n";
+    let matrix = put(&folder, "m.mtx", matrix);
+    assert!(refusal(&folder, &matrix).contains("2000000 contacts"));
+}
+
+#[test]
+fn a_problem_in_space_is_refused_with_a_sentence() {
+    let folder = folder();
+    let text = put(&folder, "space.dat", "3\n1\n0\n3\n3\n");
+    assert!(refusal(&folder, &text).starts_with("space.dat:1:1: the problem is one in space"));
+    let hdf = put(&folder, "broken.h5", b"\x89HDF\r\n\x1a\nnothing more");
+    assert!(refusal(&folder, &hdf).starts_with("broken.h5: the file is no sound HDF5 file"));
+}
+
+/// Three nodes above one another, joined by springs of stiffness 100 along y and 40 along x; 1 is the lowest. As CalculiX stores
+/// it, but in no order.
+const DOF: &str = "1.1\n1.2\n3.1\n2.1\n2.2\n3.2\n";
+const STI: &str = "1 1  4.0000000000000e+01\n1 4 -4.0000000000000e+01\n2 2  1.0000000000000e+02\n\
+                   2 5 -1.0000000000000e+02\n3 3  4.0000000000000e+01\n3 4 -4.0000000000000e+01\n\
+                   4 4  8.0000000000000e+01\n5 5  2.0000000000000e+02\n5 6 -1.0000000000000e+02\n\
+                   6 6  1.0000000000000e+02\n";
+
+fn stored(folder: &TempDir, rest: &str) -> String {
+    put(folder, "job.sti", STI);
+    put(folder, "job.dof", DOF);
+    let text = format!("Stored(\n    title: \"Springs\",\n    stiffness: \"job.sti\",\n{rest})\n");
+    put(folder, "job.ron", text)
+}
+
+/// u and r of the one contact.
+fn solved(file: &str) -> ([f64; 2], [f64; 2], Mode) {
+    let run = run(&open(file));
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let (u, r) = answer(&run);
+    let mode = run.stepper.state().nodes[0].mode;
+    ([u[0], u[1]], [r[0], r[1]], mode)
+}
+
+fn near(found: [f64; 2], wanted: [f64; 2]) {
+    let apart = (found[0] - wanted[0])
+        .abs()
+        .max((found[1] - wanted[1]).abs());
+    assert!(apart < 1e-9, "{found:?}, not {wanted:?}");
+}
+
+#[test]
+fn a_stored_stiffness_pressed_and_sheared_sticks_or_slides_as_its_springs_say() {
+    let folder = folder();
+    let contact =
+        "    contacts: [(nodes: [1], gap: 0.01, friction: (angle: 16.69924423399362))],\n";
+    let moved = |x: f64| format!("    moved: [(nodes: [3], x: Some({x:?}), y: Some(-0.02))],\n");
+    // Two springs in a row are half as stiff: 50 along y, 20 along x. u_t is against x.
+    let (u, r, mode) = solved(&stored(&folder, &format!("{contact}{}", moved(0.004))));
+    near(u, [-0.01, 0.0]);
+    near(r, [50.0 * 0.01, 20.0 * 0.004]);
+    assert_eq!(mode, Mode::Fixed);
+    let (u, r, mode) = solved(&stored(&folder, &format!("{contact}{}", moved(0.02))));
+    near(r, [0.5, 0.3 * 0.5]);
+    near(u, [-0.01, -(0.02 - 0.15 / 20.0)]);
+    assert_eq!(mode, Mode::Sliding);
+}
+
+#[test]
+fn a_surface_may_look_anywhere() {
+    let folder = folder();
+    // A wall on the left: its normal is x, and t is y.
+    let rest = "    contacts: [(nodes: [1], normal: (3.0, 0.0), gap: 0.01)],\n    loads: [(nodes: [1], y: 5.0)],\n    \
+                moved: [(nodes: [3], x: Some(-0.02), y: Some(0.0))],\n";
+    let (u, r, _) = solved(&stored(&folder, rest));
+    near(r, [20.0 * 0.01, 0.0]);
+    near(u, [-0.01, 5.0 / 50.0]);
+}
+
+#[test]
+fn a_body_that_the_contacts_alone_hold_has_its_loads_carried_by_them() {
+    let folder = folder();
+    let rest = "    contacts: [(nodes: [1], friction: (angle: 45.0), start: fixed)],\n    \
+                loads: [(nodes: [3], x: 2.0, y: -5.0), (nodes: [2], y: -1.0)],\n";
+    let (_, r, mode) = solved(&stored(&folder, rest));
+    near(r, [6.0, 2.0]);
+    assert_eq!(mode, Mode::Fixed);
+}
+
+#[test]
+fn what_a_stored_stiffness_cannot_mean_is_refused_with_its_place() {
+    let folder = folder();
+    let good =
+        "    contacts: [(nodes: [1])],\n    moved: [(nodes: [3], x: Some(0.0), y: Some(-0.02))],\n";
+    open(&stored(&folder, good));
+    let cases = [
+        (
+            good.replace("[1]", "[1, 7]"),
+            "job.ron:4:28: contacts[0].nodes[1]: node 7 is not in",
+        ),
+        (
+            good.replace("[1]", "[1, 1]"),
+            "job.ron:4:28: contacts[0].nodes[1]: node 1 is a contact already",
+        ),
+        (
+            good.replace("[1]", "[]"),
+            "job.ron:4:15: contacts: no node may touch",
+        ),
+        (
+            good.replace("nodes: [1]", "nodes: [1], normal: (0.0, 0.0)"),
+            "job.ron:4:37: contacts[0].normal: ",
+        ),
+        (
+            good.replace("nodes: [3]", "nodes: [3, 3]"),
+            "job.ron:5:25: moved[0].nodes[1]: node 3 is moved twice",
+        ),
+        (good.replace("contacts", "contracts"), "job.ron:4:5: "),
+    ];
+    for (rest, told) in cases {
+        let error = refusal(&folder, &stored(&folder, &rest));
+        assert!(error.starts_with(told), "{error}");
+    }
+    let file = stored(&folder, good);
+    for (name, text, told) in [
+        ("job.sti", "1 1 1.0\n7 1 2.0\n", "job.sti:2:1: a row is 7"),
+        ("job.dof", "1.1\n1.3\n", "job.dof:2:1: node 1 moves along z"),
+    ] {
+        let kept = fs::read(folder.path().join(name)).unwrap();
+        put(&folder, name, text);
+        let error = refusal(&folder, &file);
+        assert!(error.starts_with(told), "{error}");
+        put(&folder, name, kept);
+    }
+    fs::remove_file(folder.path().join("job.dof")).unwrap();
+    assert!(refusal(&folder, &file).starts_with("job.dof: "));
+    for outside in ["../job.sti", "/etc/passwd", ""] {
+        let text = fs::read_to_string(&file)
+            .unwrap()
+            .replace("job.sti", outside);
+        fs::write(&file, text).unwrap();
+        let error = refusal(&folder, &file);
+        assert!(error.contains("must lie beside this one"), "{error}");
+        stored(&folder, good);
+    }
+    assert!(Path::new(&file).exists());
+}
