@@ -222,7 +222,8 @@ struct Made<'d> {
     deck: &'d Deck,
     spec: Spec,
     origin: Origin,
-    remarks: Vec<String>,
+    /// With where they stand.
+    remarks: Vec<(Place, String)>,
     free: Free,
     /// The body of each element of a continuum.
     body_of: Vec<Option<usize>>,
@@ -257,12 +258,7 @@ impl<'d> Made<'d> {
             } else {
                 String::new()
             };
-            format!(
-                "{}:{}: {}{times}",
-                shown(name, deck.file(remark.place)),
-                remark.place.line,
-                remark.text
-            )
+            (remark.place, format!("{}{times}", remark.text))
         };
         Made {
             spec: Spec {
@@ -305,8 +301,7 @@ impl<'d> Made<'d> {
 
     /// What stands at a place is read in this way.
     fn remark(&mut self, place: Place, text: &str) {
-        let file = self.origin.files.get(place.file).map_or("", String::as_str);
-        let remark = format!("{file}:{}: {text}", place.line);
+        let remark = (place, text.to_owned());
         if self.remarks.last() != Some(&remark) {
             self.remarks.push(remark);
         }
@@ -328,10 +323,16 @@ impl<'d> Made<'d> {
             },
         );
         debug_assert_eq!(origin.files.first().map(String::as_str), Some(name));
+        let mut remarks = self.remarks;
+        remarks.sort_by_key(|(place, _)| (place.file, place.line));
+        let told = |(place, text): (Place, String)| {
+            let file = origin.files.get(place.file).map_or(name, String::as_str);
+            format!("{file}:{}: {text}", place.line)
+        };
         Read {
             spec: self.spec,
+            remarks: remarks.into_iter().map(told).collect(),
             origin,
-            remarks: self.remarks,
         }
     }
 }
