@@ -19,11 +19,18 @@ struct Course {
     given: Vec<Given>,
 }
 
+/// What a step says of a target: its value, its amplitude, and where that stands.
+type Said<T> = (T, f64, Option<usize>, Place);
+/// An element and one of its sides.
+type Side = (usize, usize);
+/// Forces by volume that are one load: body, axis, whether it is weight, and the curve.
+type Alike = (usize, usize, bool, Vec<u64>);
+
 /// A value, and the scale by which it acts.
 type Acts = (f64, Vec<(f64, f64)>);
 
 /// Values of nodes as [`Made::courses`] takes them.
-fn listed(values: &[Value]) -> Vec<((usize, Direction), f64, Option<usize>, Place)> {
+fn listed(values: &[Value]) -> Vec<Said<(usize, Direction)>> {
     let one = |value: &Value| (value.target(), value.value, value.amplitude, value.place);
     values.iter().map(one).collect()
 }
@@ -50,7 +57,7 @@ impl Made<'_> {
     /// later value of a step stands for an earlier one.
     fn courses<T: Ord>(
         &self,
-        values: impl Fn(&Step) -> Vec<(T, f64, Option<usize>, Place)>,
+        values: impl Fn(&Step) -> Vec<Said<T>>,
         new: impl Fn(&Step) -> bool,
         adds: bool,
     ) -> BTreeMap<T, Course> {
@@ -306,7 +313,7 @@ impl Made<'_> {
                 .collect()
         };
         let courses = self.courses(listed, |step| step.new_pressures, true);
-        let mut alike: Vec<(Vec<(usize, usize)>, Acts, Place)> = Vec::new();
+        let mut alike: Vec<(Vec<Side>, Acts, Place)> = Vec::new();
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
         for (side, course) in courses {
             let points = curve(clock, &self.deck.amplitudes, &course.given);
@@ -369,8 +376,7 @@ impl Made<'_> {
             parts.filter(|(_, value, ..)| *value != 0.0).collect()
         };
         let courses = self.courses(listed, |step| step.new_pressures, true);
-        let mut alike: BTreeMap<(usize, usize, bool, Vec<u64>), (usize, Acts, Place)> =
-            BTreeMap::new();
+        let mut alike: BTreeMap<Alike, (usize, Acts, Place)> = BTreeMap::new();
         for ((element, axis, is_weight), course) in courses {
             let points = curve(clock, &deck.amplitudes, &course.given);
             let (Some(acts), Some(body)) = (scaled(&points), self.body_of[element]) else {
