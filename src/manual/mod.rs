@@ -43,6 +43,7 @@ pages! {
     scenes "scenes" "pages/scenes.md" "The scene file: every type and field with its default";
     settings "settings" "pages/settings.md" "The choices of the method, and its limits";
     strategies "strategies" "pages/strategies.md" "How the next modes are chosen; the ladder; jumps";
+    decks "decks" "pages/decks.md" "Decks of CalculiX and Abaqus: what is read, and as what";
     past_runs "past-runs" "pages/past-runs.md" "A CalculiX run that is over: what cycled, and who chatters";
     corners "corners" "pages/corners.md" "Where two sides of a surface meet";
     limit_points "limit-points" "pages/limit-points.md" "Where a load can go no further, and what comes after";
