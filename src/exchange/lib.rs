@@ -6,11 +6,12 @@
 //! for.
 //!
 //! - [`broken`]: what is wrong with a file, and where.
+//! - [`words`]: words of a text, with their places.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
+//! - [`problem`]: friction problems, as all readers of interface problems give them.
 //! - [`gmsh`]: meshes of Gmsh.
 //! - [`inp`]: decks of CalculiX and Abaqus.
 //! - [`calculix`]: how a run of CalculiX went, and the stiffness that it stores.
-//! - [`problem`]: friction problems, as all readers of interface problems give them.
 //! - [`siconos`]: friction problems of Siconos, as text.
 //! - [`matrix_market`]: single matrices in the Matrix Market's exchange format.
 //! - [`fclib`]: friction problems in the HDF5 files of the library fclib.

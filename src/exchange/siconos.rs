@@ -37,6 +37,24 @@ pub enum Storage {
 /// What is wrong, with its place.
 pub fn read(text: &str) -> Result<Problem, Broken> {
     let mut words = Words::new(text);
+    let contacts = head(&mut words)?;
+    let Some(size) = contacts.checked_mul(2) else {
+        return Err(words.broken(format!("the problem has {contacts} contacts, far too many")));
+    };
+    body(&mut words, contacts, size)
+}
+
+/// The number of contacts of such a file, and where it stands: line and column.
+///
+/// # Errors
+/// What is wrong before it, with its place.
+pub fn contacts(text: &str) -> Result<(usize, (usize, usize)), Broken> {
+    let mut words = Words::new(text);
+    let contacts = head(&mut words)?;
+    Ok((contacts, words.place()))
+}
+
+fn head(words: &mut Words<'_>) -> Result<usize, Broken> {
     match words.count("the dimension")? {
         2 => {}
         3 => {
@@ -55,18 +73,19 @@ pub fn read(text: &str) -> Result<Problem, Broken> {
     if contacts == 0 {
         return Err(words.broken("the problem has 0 contacts; it must have 1 at least"));
     }
-    let Some(size) = contacts.checked_mul(2) else {
-        return Err(words.broken(format!("the problem has {contacts} contacts, far too many")));
-    };
-    let first = matrix(&mut words, "W", None, size)?;
-    if first.rows == size && !begins_matrix(&words, size, contacts) {
+    Ok(contacts)
+}
+
+fn body(words: &mut Words<'_>, contacts: usize, size: usize) -> Result<Problem, Broken> {
+    let first = matrix(words, "W", None, size)?;
+    if first.rows == size && !begins_matrix(words, size, contacts) {
         return Ok(Problem::Local(Local {
             w: first,
             q: words.numbers(size, "q")?,
             mu: words.coefficients(contacts)?,
         }));
     }
-    let h = matrix(&mut words, "H", Some((first.rows, size)), size)?;
+    let h = matrix(words, "H", Some((first.rows, size)), size)?;
     Ok(Problem::Global(Global {
         f: words.numbers(first.rows, "q of a global problem")?,
         m: first,

@@ -24,8 +24,13 @@ impl<'t> Words<'t> {
 
     /// Something wrong with the last word.
     pub fn broken(&self, message: impl Into<String>) -> Broken {
-        let (line, column) = place(self.whole, self.last);
+        let (line, column) = self.place();
         Broken::at(line, column, message)
+    }
+
+    /// Line and column of the last word, both from 1.
+    pub fn place(&self) -> (usize, usize) {
+        place(self.whole, self.last)
     }
 
     /// The last word is not what is wanted.

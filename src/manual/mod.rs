@@ -43,10 +43,13 @@ pages! {
     scenes "scenes" "pages/scenes.md" "The scene file: every type and field with its default";
     settings "settings" "pages/settings.md" "The choices of the method, and its limits";
     strategies "strategies" "pages/strategies.md" "How the next modes are chosen; the ladder; jumps";
+    decks "decks" "pages/decks.md" "Decks of CalculiX and Abaqus: what is read, and as what";
     past_runs "past-runs" "pages/past-runs.md" "A CalculiX run that is over: what cycled, and who chatters";
     corners "corners" "pages/corners.md" "Where two sides of a surface meet";
     limit_points "limit-points" "pages/limit-points.md" "Where a load can go no further, and what comes after";
     jumps "jumps" "pages/jumps.md" "Stability; what comes past a limit point";
+    interfaces "interfaces" "pages/interfaces.md" "Interface problems of Siconos, fclib, the Matrix Market and CalculiX; for other solvers";
+    paraview "paraview" "pages/paraview.md" "Results in ParaView: files for each increment, major or minor iteration";
     command_line "command-line" "pages/command-line.md" "Subcommands, files, exit codes";
     keys "keys" "pages/keys.md" "Keys and actions of the debugger; branches, breakpoints, journals";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";

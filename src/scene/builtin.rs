@@ -54,7 +54,13 @@ const SCENES: &[Builtin] = scenes![
     "bench-wedge",
     "bench-pad",
     "bench-belt",
-    "bench-ssnv128";
+    "bench-ssnv128",
+    "bench-patch",
+    "bench-punch",
+    "bench-hertz-plane",
+    "bench-hertz-ball",
+    "bench-mindlin",
+    "bench-press-fit";
 ];
 
 /// All built-in scenes, in the order in which they are offered.

@@ -73,7 +73,13 @@ impl Scene {
         if let Some(problem) = problems::from_file(name, overrides) {
             return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
-        let text = read::text(name).map_err(|mut error| {
+        let text = match deck::is_called_so(name) {
+            true => {
+                deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
+            }
+            false => read::text(name),
+        };
+        let text = text.map_err(|mut error| {
             if !std::path::Path::new(name).exists() {
                 error.message = no_such_scene(name);
             }

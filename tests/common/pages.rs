@@ -60,6 +60,7 @@ fn made(marker: &str) -> Option<String> {
         "commands" => list(stickslip::cli::commands()),
         "reference" => list(markdown::types().unwrap()),
         "settings" => list(markdown::settings().unwrap()),
+        "keywords" => list(keywords()),
         "topics" => {
             let pages = stickslip::manual::PAGES.iter();
             let rows = pages.map(|page| {
@@ -72,6 +73,18 @@ fn made(marker: &str) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// The keywords of decks, by what becomes of them.
+fn keywords() -> String {
+    use stickslip_exchange::inp::keywords::{KEYWORDS, Treatment};
+    let line = |(name, treatment): &(&str, Treatment)| match treatment {
+        Treatment::Read("") => format!("- `{name}`: read\n"),
+        Treatment::Read(how) => format!("- `{name}`: read: {how}\n"),
+        Treatment::Ignored(why) => format!("- `{name}`: passed over: {why}\n"),
+        Treatment::Refused(why) => format!("- `{name}`: refused: {why}\n"),
+    };
+    KEYWORDS.iter().map(line).collect()
 }
 
 /// `WIDTHxHEIGHT NAME: KEYS`.

@@ -4,10 +4,11 @@
     pip install meshio pyvista
     cargo build && tests/peers/vtu.py [SCENE ...] [--stickslip target/debug/stickslip] [--picture FILE.png] [--keep DIR]
 
-For each scene `run --vtu` and `run --trace` are run. Of every file: the mesh is whole, the deformed places are those that the
-monitors tell, F_n, F_t, T_max, gap, slip and modes of the slave nodes are those of the trace to its last digit, contact_force is
-F_n n + F_t t long, and both readers agree on every array. PyVista draws the last state of the first scene where --picture asks
-for it: the stress XX on the deformed shape, with the forces on the slave nodes. It ends with code 1 if anything differs.
+For each scene `run --vtu --csv --trace` is run. Of every file: the time of the collection is the load of the table; where the scene
+monitors a displacement as u_x and u_y, a node has these, to the last digit; F_n, F_t, T_max, gap, slip and modes of the slave nodes
+are those of the trace, to the last digit; contact_force is as long as F_n and F_t together; and both readers agree on every array.
+PyVista draws the last state of the first scene where --picture asks for it: the stress YY on the deformed shape, with the forces on
+the slave nodes. It ends with code 1 if anything differs.
 """
 import argparse
 import csv
@@ -25,12 +26,14 @@ import meshio
 import numpy as np
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-SCENES = ["osc-block-slide", "02-two-cantilevers-rough", "hertz-cylinder-on-block", "osc-two6"]
+SCENES = ["hertz-cylinder-on-block", "osc-block-slide", "02-two-cantilevers-rough", "05-cantilever-elastic-block"]
 MODES = ["free", "sliding", "fixed"]
 
 
 def run(program, scene, folder):
-    command = [program, "run", scene, "--vtu", folder, "--trace", "-", "--force"]
+    table = os.path.join(folder, "table.csv")
+    os.makedirs(folder, exist_ok=True)
+    command = [program, "run", scene, "--vtu", folder, "--trace", "-", "--csv", table, "--force"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 3):
         raise SystemExit(f"{' '.join(command)}: {done.stderr}")
@@ -39,7 +42,8 @@ def run(program, scene, folder):
     for row in rows:
         last.setdefault((int(row["increment"]), row["node"]), row)
         last[int(row["increment"]), row["node"]] = row
-    return last
+    with open(table, encoding="utf-8") as file:
+        return last, {int(row["increment"]): row for row in csv.DictReader(file)}
 
 
 def collected(folder):
@@ -80,6 +84,20 @@ def compared(mesh, last):
     return seen
 
 
+def monitored(mesh, when, table):
+    """Whether a file has the load of the table, and a node that moves as its monitors say."""
+    row = table.get(int(number(mesh, "increment")))
+    if row is None:
+        return 0
+    assert float(row["load"]) == number(mesh, "TimeValue") == when
+    if not {"u_x", "u_y"} <= row.keys():
+        return 0
+    told = [float(row["u_x"]), float(row["u_y"]), 0.0]
+    if not (mesh.point_data["displacement"] == told).all(axis=1).any():
+        raise SystemExit(f"no node moves by {told}")
+    return 1
+
+
 def agree(file, mesh):
     """Whether VTK finds the same in a file."""
     import pyvista
@@ -100,9 +118,9 @@ def draw(grid, picture):
     warped = grid.warp_by_vector("displacement")
     stress = "stress" in grid.point_data
     if stress:
-        warped["sigma_xx"] = grid.point_data["stress"][:, 0]
+        warped["stress YY"] = grid.point_data["stress"][:, 1]
     body = warped.extract_cells(np.flatnonzero(warped.cell_data["body"] > 0))
-    shown.add_mesh(body, scalars="sigma_xx" if stress else None, show_edges=True, nan_color="white", line_width=2)
+    shown.add_mesh(body, scalars="stress YY" if stress else None, nan_color="white", line_width=2)
     rigid = warped.extract_cells(np.flatnonzero(warped.cell_data["rigid"] > 0))
     if rigid.n_cells:
         shown.add_mesh(rigid, color="black", line_width=4)
@@ -112,6 +130,7 @@ def draw(grid, picture):
         if force > 0:
             shown.add_mesh(slaves.glyph(orient="contact_force", scale="contact_force", factor=0.15 * body.length / force), color="red")
     shown.view_xy()
+    shown.camera.zoom(1.6)
     shown.screenshot(picture)
 
 
@@ -128,19 +147,20 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             folder = os.path.join(args.keep, os.path.basename(scene)) if args.keep else folder
             began = time.time()
-            last = run(args.stickslip, scene, folder)
+            last, table = run(args.stickslip, scene, folder)
             took = time.time() - began
             files = collected(folder)
             assert [when for when, _ in files] == sorted(when for when, _ in files)
-            slaves, grid = 0, None
-            for _, file in files:
+            slaves, moved, grid = 0, 0, None
+            for when, file in files:
                 mesh = meshio.read(file)
+                moved += monitored(mesh, when, table)
                 slaves += compared(mesh, last)
                 grid = agree(file, mesh) if vtk else None
             kinds = ", ".join(sorted({block.type for block in mesh.cells}))
             print(
                 f"{os.path.basename(scene)}: {len(files)} files in {took:.1f} s, {len(mesh.points)} points, cells: {kinds}; "
-                f"arrays: {', '.join(mesh.point_data)}; {slaves} slave nodes as in the trace"
+                f"arrays: {', '.join(mesh.point_data)}; {slaves} slave nodes as in the trace, {moved} displacements as in the table"
             )
             if args.picture and vtk and place == 0:
                 draw(grid, args.picture)

@@ -65,9 +65,8 @@ fn the_pressed_plates_give_way_by_their_stiffness_and_the_penalty() {
     near(last(&run, "u_y 17"), -(4.0 / 70000.0 + 1.0 / 1e6), 1e-4);
 }
 
-/// Lamé: two rings of one material, a, b, c = 4, 5, 6 and an overlap d at b, held along the axis: the pressure is
-/// p = E d / (1 - nu^2) / (2 b^3) (b^2 - a^2) (c^2 - b^2) / (c^2 - a^2) in plane strain, and here the ends are free on one side.
-/// With free ends (plane stress) 1 - nu^2 becomes 1; the penalty adds p / K to what d must do.
+/// Lamé: two rings of one material with radii a, b, c and an overlap d at b, free along their axis, press by
+/// p = E d / (2 b^3) (b^2 - a^2) (c^2 - b^2) / (c^2 - a^2); over a penalty K the overlap has p / K to give as well.
 #[test]
 fn the_shrunk_ring_presses_as_lame_says() {
     let run = solved("tests/decks/shrunk-ring.inp");

@@ -339,7 +339,9 @@ fn what_a_stored_stiffness_cannot_mean_is_refused_with_its_place() {
         put(&folder, name, kept);
     }
     fs::remove_file(folder.path().join("job.dof")).unwrap();
-    assert!(refusal(&folder, &file).starts_with("job.dof: "));
+    let error = refusal(&folder, &file);
+    let told = "job.ron:3:16: stiffness: \"job.dof\": the file cannot be read";
+    assert!(error.starts_with(told), "{error}");
     for outside in ["../job.sti", "/etc/passwd", ""] {
         let text = fs::read_to_string(&file)
             .unwrap()

@@ -169,7 +169,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("RADIATE", Refused("only mechanical loads can be read")),
     (
         "RESTART",
-        Ignored("a snapshot is kept by `stickslip run --save`"),
+        Ignored("states are kept in snapshots, by --snapshot of run"),
     ),
     (
         "RIGID BODY",

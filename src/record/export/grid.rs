@@ -24,7 +24,7 @@
 use super::shown::{NotMade, Shown};
 use crate::contact::record::ContactRecord;
 use crate::fem::recovery::{self, Configuration};
-use crate::model::{BodyKind, ElementKind, Mode, Model};
+use crate::model::{BodyKind, Component, ElementKind, Mode, Model};
 use crate::step::event::{Event, Position};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -169,16 +169,20 @@ fn lines(nodes: &[usize]) -> Vec<Cell> {
 }
 
 fn motion(model: &Model, state: &State, grid: &mut Grid) {
-    let mut moved = Vec::with_capacity(3 * model.nodes.len());
-    for (node, at) in model.nodes.iter().map(|node| node.at).enumerate() {
-        let now = model.place(&state.u, node);
-        moved.extend([now[0] - at[0], now[1] - at[1], 0.0]);
-    }
-    let rotation = |node: usize| match model.dofs.count.get(node) {
-        Some(3..) => state.u.get(model.dofs.first[node] + 2).copied(),
-        _ => None,
+    let component = |node: usize, component: Component| {
+        let known = node < model.dofs.count.len();
+        let dof = known.then(|| model.dofs.dof(node, component))??;
+        state.u.get(dof).copied()
     };
-    let turned: Vec<Option<f64>> = (0..model.nodes.len()).map(rotation).collect();
+    let nodes = 0..model.nodes.len();
+    let moved = |node: usize| {
+        let of = |axis| component(node, axis).unwrap_or(0.0);
+        [of(Component::X), of(Component::Y), 0.0]
+    };
+    let moved = nodes.clone().flat_map(moved).collect();
+    let turned: Vec<Option<f64>> = nodes
+        .map(|node| component(node, Component::Rotation))
+        .collect();
     let number = (1..).take(model.nodes.len()).collect();
     grid.on_points
         .push(array("node", &[], Values::Wholes(number)));

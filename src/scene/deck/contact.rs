@@ -30,6 +30,8 @@ struct Touching {
     master: usize,
     laws: Laws,
     place: Place,
+    /// Where the law and the friction stand; a tie has neither.
+    of_laws: Option<[Place; 2]>,
 }
 
 impl Made<'_> {
@@ -65,6 +67,7 @@ impl Made<'_> {
                     stick: interaction.stick.filter(|_| !tied),
                 },
                 place: pair.place,
+                of_laws: Some([interaction.normal_place, interaction.friction_place]),
             });
         }
         for tie in &self.deck.ties {
@@ -79,6 +82,7 @@ impl Made<'_> {
                     stick: None,
                 },
                 place: tie.place,
+                of_laws: None,
             });
         }
         if let Some(pair) = self
@@ -150,11 +154,16 @@ impl Made<'_> {
         place: Place,
     ) -> Vec<String> {
         let deck = self.deck;
-        let mut groups = Groups::of(deck.nodes.len());
         let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
+        let mut number = HashMap::new();
+        for node in sides.iter().flatten() {
+            let next = number.len();
+            number.entry(*node).or_insert(next);
+        }
+        let mut groups = Groups::of(number.len());
         for side in &sides {
             side.windows(2)
-                .for_each(|pair| groups.join(pair[0], pair[1]));
+                .for_each(|pair| groups.join(number[&pair[0]], number[&pair[1]]));
         }
         let mut pieces: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
         for side in sides {
@@ -162,7 +171,10 @@ impl Made<'_> {
                 .iter()
                 .map(|&node| deck.nodes[node].label as usize)
                 .collect();
-            pieces.entry(groups.root(side[0])).or_default().push(labels);
+            pieces
+                .entry(groups.root(number[&side[0]]))
+                .or_default()
+                .push(labels);
         }
         let enter = |sides: Vec<Vec<usize>>| {
             let name = self.free.take(name);
@@ -260,8 +272,14 @@ impl Made<'_> {
             None => "SLAVES",
         };
         let nodes = vec![self.group(nodes, wanted)];
-        self.origin
-            .note(at!["slaves", self.spec.slaves.len()], first.place);
+        let here = at!["slaves", self.spec.slaves.len()];
+        if let Some([law, friction]) = first.of_laws {
+            self.origin.note(here.then("law"), law);
+            self.origin.note(here.then("friction"), friction);
+            self.origin.note(here.then("stick"), friction);
+            self.origin.note(at!["friction"], friction);
+        }
+        self.origin.note(here, first.place);
         self.spec.slaves.push(SlaveSpec {
             nodes,
             on,

@@ -19,11 +19,18 @@ struct Course {
     given: Vec<Given>,
 }
 
+/// What a step says of a target: its value, its amplitude, and where that stands.
+type Said<T> = (T, f64, Option<usize>, Place);
+/// An element and one of its sides.
+type Side = (usize, usize);
+/// Forces by volume that are one load: body, axis, whether it is weight, and the curve.
+type Alike = (usize, usize, bool, Vec<u64>);
+
 /// A value, and the scale by which it acts.
 type Acts = (f64, Vec<(f64, f64)>);
 
 /// Values of nodes as [`Made::courses`] takes them.
-fn listed(values: &[Value]) -> Vec<((usize, Direction), f64, Option<usize>, Place)> {
+fn listed(values: &[Value]) -> Vec<Said<(usize, Direction)>> {
     let one = |value: &Value| (value.target(), value.value, value.amplitude, value.place);
     values.iter().map(one).collect()
 }
@@ -50,7 +57,7 @@ impl Made<'_> {
     /// later value of a step stands for an earlier one.
     fn courses<T: Ord>(
         &self,
-        values: impl Fn(&Step) -> Vec<(T, f64, Option<usize>, Place)>,
+        values: impl Fn(&Step) -> Vec<Said<T>>,
         new: impl Fn(&Step) -> bool,
         adds: bool,
     ) -> BTreeMap<T, Course> {
@@ -109,6 +116,7 @@ impl Made<'_> {
         for target in from_model.keys().chain(courses.keys()) {
             self.stays(target, courses.get(target), from_model.contains_key(target))?;
         }
+        self.held = from_model.keys().chain(courses.keys()).copied().collect();
         let mut held: BTreeMap<usize, (Vec<Component>, Place)> = BTreeMap::new();
         let mut hold = |(node, direction): (usize, Direction), place: Place| {
             held.entry(node)
@@ -261,6 +269,13 @@ impl Made<'_> {
             let Some((value, scale)) = scaled(&points) else {
                 continue;
             };
+            if self.held.contains(&(node, direction)) {
+                self.remark(
+                    course.place,
+                    "a force along a direction that is held goes into the support, and is left out",
+                );
+                continue;
+            }
             let name = self.node(node);
             self.origin
                 .note(at!["loads", self.spec.loads.len()], course.place);
@@ -298,13 +313,20 @@ impl Made<'_> {
                 .collect()
         };
         let courses = self.courses(listed, |step| step.new_pressures, true);
-        let mut alike: Vec<(Vec<(usize, usize)>, Acts, Place)> = Vec::new();
+        let mut alike: Vec<(Vec<Side>, Acts, Place)> = Vec::new();
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
         for (side, course) in courses {
             let points = curve(clock, &self.deck.amplitudes, &course.given);
             let Some(acts) = scaled(&points) else {
                 continue;
             };
+            if self.is_held(side) {
+                self.remark(
+                    course.place,
+                    "pressure on a side that is held goes into the supports, and is left out",
+                );
+                continue;
+            }
             let group = *known.entry(bits(&points)).or_insert(alike.len());
             if group == alike.len() {
                 alike.push((Vec::new(), acts, course.place));
@@ -321,6 +343,15 @@ impl Made<'_> {
                 });
             }
         }
+    }
+
+    /// Whether no node of a side can move freely.
+    fn is_held(&self, (element, side): (usize, usize)) -> bool {
+        let held = |node: usize, direction| self.held.contains(&(node, direction));
+        let nodes = self.deck.side(element, side);
+        nodes
+            .into_iter()
+            .all(|node| held(node, Direction::X) && held(node, Direction::Y))
     }
 
     /// Forces by volume, one load for each component on each body.
@@ -345,8 +376,7 @@ impl Made<'_> {
             parts.filter(|(_, value, ..)| *value != 0.0).collect()
         };
         let courses = self.courses(listed, |step| step.new_pressures, true);
-        let mut alike: BTreeMap<(usize, usize, bool, Vec<u64>), (usize, Acts, Place)> =
-            BTreeMap::new();
+        let mut alike: BTreeMap<Alike, (usize, Acts, Place)> = BTreeMap::new();
         for ((element, axis, is_weight), course) in courses {
             let points = curve(clock, &deck.amplitudes, &course.given);
             let (Some(acts), Some(body)) = (scaled(&points), self.body_of[element]) else {

@@ -23,10 +23,12 @@ use crate::format::error::{self, Path, SceneError, Step, at};
 
 use crate::format::spec::Spec;
 use crate::model::{Control, Jumps, Settings};
-use crate::outside::{self, input};
+use crate::outside::input::{self, Unreadable};
+use crate::outside::shown::cut;
 use std::collections::HashSet;
-use std::path::{Component, Path as FilePath};
+use std::path::Path as FilePath;
 
+use stickslip_exchange::inp::deck::Direction;
 use stickslip_exchange::inp::{self, DECK_BYTES, Deck, Place, Wrong};
 
 pub(super) use stickslip_exchange::inp::is_one;
@@ -142,8 +144,7 @@ impl Free {
 
 /// Reads a deck, with what it includes from beside it.
 pub(super) fn read(name: &str, text: &str) -> Result<Read, SceneError> {
-    let folder = FilePath::new(name).parent().unwrap_or(FilePath::new(""));
-    let mut include = |wanted: &str| included(folder, wanted);
+    let mut include = |wanted: &str| included(FilePath::new(name), wanted);
     let deck = inp::read(name, text, &mut include).map_err(|wrong| unread(name, wrong))?;
     scene(name, &deck).map_err(|fault| SceneError {
         at: Some((fault.place.line, fault.place.column)),
@@ -167,18 +168,29 @@ fn shown(deck: &str, file: &str) -> String {
 }
 
 /// The text of a file that a deck includes.
-fn included(folder: &FilePath, wanted: &str) -> Result<String, String> {
-    let path = FilePath::new(wanted);
-    let below = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    if !path.components().all(below) {
-        return Err(format!(
-            "{} lies elsewhere; an included file must lie beside the deck or in a folder below it",
-            error::quoted(wanted)
-        ));
+fn included(deck: &FilePath, wanted: &str) -> Result<String, String> {
+    let named = wanted.trim_start_matches("./");
+    let quoted = |why: &dyn std::fmt::Display| format!("{}: {why}", error::quoted(wanted));
+    let path = input::beside(deck, named).map_err(|why| quoted(&why))?;
+    text(&path).map_err(|why| quoted(&why))
+}
+
+/// The text of a deck, in Latin-1 where it is not UTF-8: comments are in any language.
+///
+/// # Errors
+/// If it is no file, too large, or cannot be read.
+pub(super) fn text(path: &FilePath) -> Result<String, Unreadable> {
+    let bytes = input::bytes(path, DECK_BYTES as u64, "a deck is a list of keywords")?;
+    match std::str::from_utf8(&bytes) {
+        Ok(_) => input::utf8(bytes),
+        Err(_) => Ok(bytes.into_iter().map(char::from).collect()),
     }
-    let most = DECK_BYTES as u64;
-    input::text(&folder.join(path), most, "a deck is a list of keywords")
-        .map_err(|why| format!("{}: {why}", error::quoted(wanted)))
+}
+
+/// Whether a file is called as decks are.
+pub(super) fn is_called_so(name: &str) -> bool {
+    let extension = FilePath::new(name).extension();
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("inp"))
 }
 
 /// The scene that a deck means.
@@ -210,7 +222,8 @@ struct Made<'d> {
     deck: &'d Deck,
     spec: Spec,
     origin: Origin,
-    remarks: Vec<String>,
+    /// With where they stand.
+    remarks: Vec<(Place, String)>,
     free: Free,
     /// The body of each element of a continuum.
     body_of: Vec<Option<usize>>,
@@ -218,6 +231,8 @@ struct Made<'d> {
     material_of: Vec<usize>,
     /// Which nodes belong to an element.
     used: Vec<bool>,
+    /// Components of nodes that are held or moved.
+    held: HashSet<(usize, Direction)>,
     /// Which nodes stand still for ever, in x and in y.
     still: Vec<[bool; 2]>,
 }
@@ -243,16 +258,11 @@ impl<'d> Made<'d> {
             } else {
                 String::new()
             };
-            format!(
-                "{}:{}: {}{times}",
-                shown(name, deck.file(remark.place)),
-                remark.place.line,
-                remark.text
-            )
+            (remark.place, format!("{}{times}", remark.text))
         };
         Made {
             spec: Spec {
-                title: outside::shown::cut(title, super::limits::TITLE - 3),
+                title: cut(title, super::limits::TITLE - 3),
                 about: format!("Read from the deck {}.", error::shortened(&file)),
                 refine: 1,
                 nodes: Vec::new(),
@@ -283,6 +293,7 @@ impl<'d> Made<'d> {
             free: Free::default(),
             body_of: vec![None; deck.elements.len()],
             material_of: Vec::new(),
+            held: HashSet::new(),
             still: vec![[false; 2]; deck.nodes.len()],
             used,
             deck,
@@ -291,8 +302,10 @@ impl<'d> Made<'d> {
 
     /// What stands at a place is read in this way.
     fn remark(&mut self, place: Place, text: &str) {
-        let file = self.origin.files.get(place.file).map_or("", String::as_str);
-        self.remarks.push(format!("{file}:{}: {text}", place.line));
+        let remark = (place, text.to_owned());
+        if self.remarks.last() != Some(&remark) {
+            self.remarks.push(remark);
+        }
     }
 
     /// The name of a node in the scene.
@@ -311,10 +324,16 @@ impl<'d> Made<'d> {
             },
         );
         debug_assert_eq!(origin.files.first().map(String::as_str), Some(name));
+        let mut remarks = self.remarks;
+        remarks.sort_by_key(|(place, _)| (place.file, place.line));
+        let told = |(place, text): (Place, String)| {
+            let file = origin.files.get(place.file).map_or(name, String::as_str);
+            format!("{file}:{}: {text}", place.line)
+        };
         Read {
             spec: self.spec,
+            remarks: remarks.into_iter().map(told).collect(),
             origin,
-            remarks: self.remarks,
         }
     }
 }

@@ -62,6 +62,10 @@ pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken
             message,
         }
     };
+    // Before anything of that size is read.
+    let (contacts, place) =
+        siconos::contacts(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
+    super::fits(contacts, memory).map_err(|why| broken(Some(place), why))?;
     let problem = siconos::read(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
     Friction2d::condensed(problem, memory).map_err(|why| broken(None, why))
 }
