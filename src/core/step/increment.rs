@@ -247,7 +247,7 @@ impl Stepper {
             self.state.status = Status::Finished;
         } else {
             if turned && !self.model.increments.is_empty() {
-                self.take_increment(leg);
+                self.take_size(leg);
             }
             self.next_increment();
         }
@@ -296,7 +296,7 @@ impl Stepper {
     }
 
     /// Goes on with the increments that the scene lists for a leg of the path.
-    fn take_increment(&mut self, leg: usize) {
+    fn take_size(&mut self, leg: usize) {
         let controls = Arc::make_mut(&mut self.state.controls);
         controls.increment = self.model.on_leg(leg);
         controls.least = least(self.model.least, controls.increment);
