@@ -11,6 +11,8 @@ use crate::outside::{calculix, input, shown};
 pub enum FileKind {
     /// A scene, or an interface problem: in RON, or in the form of another program.
     Scene,
+    /// A mesh of Gmsh.
+    Mesh,
     /// A recorded state.
     Snapshot,
     /// What was done in a session.
@@ -50,6 +52,9 @@ impl FileKind {
         let text = text.trim_start_matches(input::MARK);
         if text.starts_with("%%MatrixMarket") {
             return Some(FileKind::Scene);
+        }
+        if text.trim_start().starts_with("$MeshFormat") {
+            return Some(FileKind::Mesh);
         }
         let rows = text.lines().filter(|line| !line.starts_with('#'));
         let first = rows.map(str::trim).find(|line| !line.is_empty())?;
@@ -115,6 +120,7 @@ impl FileKind {
     pub fn name(self) -> &'static str {
         match self {
             FileKind::Scene => "a scene",
+            FileKind::Mesh => "a mesh of Gmsh",
             FileKind::Snapshot => "a snapshot",
             FileKind::Journal => "a journal",
             FileKind::Lesson => "a lesson",
@@ -141,6 +147,7 @@ impl FileKind {
         };
         Some(match self {
             FileKind::Scene => format!("stickslip run {file}"),
+            FileKind::Mesh => format!("stickslip export {file} -o SCENE.ron"),
             FileKind::Snapshot => format!("stickslip replay {file}"),
             FileKind::Journal => format!("stickslip resume {file}"),
             FileKind::Lesson => format!("stickslip lesson {file}"),
@@ -212,6 +219,7 @@ mod tests {
                 FileKind::ChartTable,
             ),
             ("increment,load,majors,minors,u_x\n", FileKind::Table),
+            ("$MeshFormat\n4.1 0 8\n", FileKind::Mesh),
             ("stickslip 0.1.0 results, abc\n", FileKind::Results),
             ("{\"version\": 2}", FileKind::Cast),
             (

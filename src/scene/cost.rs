@@ -2,7 +2,8 @@
 
 use super::Scene;
 use super::compile::increments;
-use super::gaps;
+use super::{gaps, limits};
+use crate::format::error::some_of;
 use crate::linear::estimate::Estimate;
 use crate::model::{
     Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, Model, Solid, Surface,
@@ -35,6 +36,8 @@ pub struct Cost {
     pub slaves: String,
     /// What the laws of the pairs cost and change, where any is not hard contact.
     pub laws: Vec<String>,
+    /// Nodes on the axis of bodies of revolution that may leave it, as text.
+    pub axis: Vec<String>,
     /// Range of the start gaps, a line per surface.
     pub gaps: Vec<String>,
     /// Increments, with the path that they follow.
@@ -83,6 +86,7 @@ impl Cost {
             surfaces: model.surfaces.iter().map(surface_line).collect(),
             slaves: slaves_line(model),
             laws: super::bonds::words(model),
+            axis: axis_lines(model),
             gaps: gaps::words(model),
             history: history_line(model),
             solvers: solver_lines(model),
@@ -259,6 +263,29 @@ fn slaves_line(model: &Model) -> String {
     )
 }
 
+/// Nodes on the axis, x = 0, of bodies of revolution whose x is free. The equations alone bring it to 0 as the mesh gets finer.
+fn axis_lines(model: &Model) -> Vec<String> {
+    let round = model.bodies.iter().filter(|body| body.is_axisymmetric());
+    let free = |node: &&usize| {
+        let on_axis = model.nodes[**node].at[0].abs() <= limits::SHORTEST * model.length;
+        on_axis && model.dofs.equation[model.dofs.first[**node]].is_some()
+    };
+    let mut nodes: Vec<usize> = round
+        .flat_map(|body| body.nodes.iter().filter(free))
+        .copied()
+        .collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    if nodes.is_empty() {
+        return Vec::new();
+    }
+    let names = some_of(nodes.iter().map(|&node| model.nodes[node].name.as_str()));
+    vec![format!(
+        "{} at x = 0 may move in x, off the axis: {names}; supports fix it by [x]",
+        plural(nodes.len(), "node")
+    )]
+}
+
 fn history_line(model: &Model) -> String {
     let corners: Vec<String> = model.path.iter().map(f64::to_string).collect();
     let count = increments(&model.path, |leg| model.on_leg(leg));
@@ -389,6 +416,7 @@ impl fmt::Display for Cost {
         section(f, "surfaces", &self.surfaces)?;
         section(f, "slaves", std::slice::from_ref(&self.slaves))?;
         section(f, "laws", &self.laws)?;
+        section(f, "axis", &self.axis)?;
         section(f, "gaps", &self.gaps)?;
         section(f, "history", std::slice::from_ref(&self.history))?;
         section(f, "solver", &self.solvers)?;

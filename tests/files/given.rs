@@ -400,3 +400,27 @@ fn only_files_beside_the_scene_are_read_and_broken_ones_are_told_by_their_own_li
         "{own}"
     );
 }
+
+#[test]
+fn a_side_of_a_linear_and_a_quadratic_element_is_refused_where_the_later_one_stands() {
+    let mesh = |quad: &str, nodes: &str| {
+        let text = format!(
+            "(title: \"t\", nodes: [Given(id: \"m\",
+    nodes: [(1, 0, 0), (2, 1, 0), (3, 1, 1), (4, 0, 1), (5, 2, 0), (6, 2, 1), (7, 1.5, 0), (8, 2, 0.5), (9, 1.5, 1), (10, 1, 0.5)],
+    elements: [(part: \"a\", kind: quad4, nodes: [[1, 2, 3, 4]]),
+        (part: \"a\", kind: {quad}, nodes: [{nodes}])])],
+  materials: [Elastic(id: \"e\", E: 100, nu: 0.3)], bodies: [Solid(id: \"b\", mesh: \"m.a\", material: \"e\")],
+  history: (path: [0, 1], increment: 1))"
+        );
+        Scene::from_text("t.ron", &text, &[]).map_err(|error| error.to_string())
+    };
+    let told = mesh("quad8", "[2, 5, 6, 3, 7, 8, 9, 10]").unwrap_err();
+    assert!(
+        told.contains("t.ron:4:42: ")
+            && told.contains("the side between m.2, m.3 is one of a quad8 and of a quad4"),
+        "{told}"
+    );
+    assert!(mesh("quad4", "[2, 5, 6, 3]").is_ok());
+    // Elements of two orders that have one node in common, or none, are no neighbours.
+    assert!(mesh("triangle6", "[2, 5, 6, 7, 8, 9]").is_ok());
+}

@@ -444,6 +444,122 @@ fn what_cannot_be_axisymmetric_or_under_pressure_is_refused_where_it_stands() {
     }
 }
 
+#[test]
+fn check_lists_nodes_on_the_axis_that_may_leave_it() {
+    let cost = |plane: &str, supports: &str| {
+        let text = format!(
+            "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (1, 1)], elements: (1, 1))],
+              materials: [Elastic(id: \"m\", E: 1, nu: 0, plane: {plane})], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
+              supports: [{supports}], history: (path: [0, 1], increment: 1))"
+        );
+        let cost = stickslip::scene::cost::Cost::of(&scene(&text));
+        cost.to_string()
+            .lines()
+            .filter(|line| line.starts_with("axis"))
+            .collect::<String>()
+    };
+    let all = cost("axisymmetric", "");
+    assert!(
+        all.contains("3 nodes at x = 0") && all.contains("\"k.1\", \"k.4\", \"k.6\";"),
+        "{all}"
+    );
+    let one = cost(
+        "axisymmetric",
+        "(node: \"k.left.start\", fix: [x]), (node: \"k.4\", fix: [x, y])",
+    );
+    assert!(
+        one.contains("1 node at x = 0 may move in x, off the axis: \"k.1\";"),
+        "{one}"
+    );
+    assert_eq!(cost("axisymmetric", "(node: \"k.left.all\", fix: [x])"), "");
+    assert_eq!(cost("strain", ""), "");
+}
+
+#[test]
+fn whole_sets_of_nodes_of_every_kind_are_moved_as_is_prescribed() {
+    // A block is sheared by its bottom and top, moved as a whole, and stretched by sets of a mesh that is given.
+    let material = "materials: [Elastic(id: \"m\", E: 100, nu: 0.3, update: small)], bodies: [Solid(id: \"k\", mesh: \"MESH\", material: \"m\")]";
+    for kind in ElementKind::ALL {
+        let block = scene(&format!(
+            "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (2, 1)], elements: (2, 2), element: {})], {},
+              history: (path: [0, 1], increment: 0.5))",
+            kind.word(),
+            material.replace("MESH", "k")
+        ));
+        let given = given(&block);
+        let moved = |scene: &Scene, sets: [&str; 2], values: [f64; 2]| {
+            let mut spec = scene.spec.clone();
+            for (set, value) in sets.into_iter().zip(values) {
+                for (component, value) in [(Component::X, value), (Component::Y, -0.5 * value)] {
+                    spec.loads.push(LoadSpec::Displacement {
+                        node: set.into(),
+                        component,
+                        value,
+                        scale: Vec::new(),
+                    });
+                }
+            }
+            let scene = Scene::from_spec("moved", spec).unwrap_or_else(|e| panic!("{kind:?}: {e}"));
+            let state = finished(&scene).stepper.state().clone();
+            let first = &scene.model.dofs.first;
+            for (set, value) in sets.into_iter().zip(values) {
+                for node in scene.names().nodes(set).unwrap() {
+                    let u = &state.u[first[node]..first[node] + 2];
+                    assert_eq!(u, [value, -0.5 * value], "{kind:?} {set}");
+                }
+            }
+            state.u.to_vec()
+        };
+        let by_edges = moved(&block, ["k.bottom.all", "k.top.all"], [0.0, 0.01]);
+        let by_sets = moved(&given, ["g.low", "g.high"], [0.0, 0.01]);
+        let far = by_edges.iter().zip(&by_sets).map(|(a, b)| (a - b).abs());
+        assert!(far.fold(0.0, f64::max) < 1e-15, "{kind:?}");
+        let mut whole = block.spec.clone();
+        whole.loads.push(LoadSpec::Displacement {
+            node: "k.all".into(),
+            component: Component::X,
+            value: 0.25,
+            scale: Vec::new(),
+        });
+        whole.loads.push(LoadSpec::Displacement {
+            node: "k.all".into(),
+            component: Component::Y,
+            value: -0.5,
+            scale: Vec::new(),
+        });
+        let run = finished(&Scene::from_spec("whole", whole).unwrap());
+        for u in run.stepper.state().u.chunks(2) {
+            assert_eq!(u, [0.25, -0.5], "{kind:?}");
+        }
+    }
+}
+
+/// The same block as a mesh that is given, with its bottom and top as sets.
+fn given(block: &Scene) -> Scene {
+    let mut text = "(title: \"t\", nodes: [Given(id: \"g\", nodes: [".to_owned();
+    for (k, node) in block.model.nodes.iter().enumerate() {
+        write!(text, "({}, {:?}, {:?}), ", k + 1, node.at[0], node.at[1]).unwrap();
+    }
+    let stickslip::model::BodyKind::Solid(solid) = &block.model.bodies[0].kind else {
+        panic!("no solid");
+    };
+    let labels = |nodes: &[usize]| nodes.iter().map(|n| n + 1).collect::<Vec<_>>();
+    let elements: Vec<Vec<usize>> = solid.elements.iter().map(|e| labels(&e.nodes)).collect();
+    let set = |name: &str| labels(&block.names().nodes(name).unwrap());
+    write!(
+        text,
+        "], elements: [(part: \"part\", kind: {}, nodes: {elements:?})],
+          sets: [(name: \"low\", nodes: {:?}), (name: \"high\", nodes: {:?})])],
+          materials: [Elastic(id: \"m\", E: 100, nu: 0.3, update: small)], bodies: [Solid(id: \"k\", mesh: \"g.part\", material: \"m\")],
+          history: (path: [0, 1], increment: 0.5))",
+        solid.elements[0].kind.word(),
+        set("k.bottom.all"),
+        set("k.top.all")
+    )
+    .unwrap();
+    scene(&text)
+}
+
 /// Rows of the table of contact patches: kinds and elements of the lower block (master) and of the upper one (slave), and how far
 /// the stress is from uniform.
 fn contact_rows() -> Vec<(String, [f64; 2])> {

@@ -1,4 +1,4 @@
-//! Elements of a given mesh: walked anticlockwise, and refused where they are folded or stand twice.
+//! Elements of a given mesh: walked anticlockwise, and refused where they are folded, stand twice, or do not fit their neighbours.
 
 use super::super::geometry::Folds;
 use crate::format::error::{Fault, Path};
@@ -98,4 +98,42 @@ pub(super) fn check_doubled(
         named(nodes, &shared.collect::<Vec<_>>())
     );
     Err(Fault::new(here.clone(), message))
+}
+
+/// Refuses a side that is one of an element with a node in its middle and of one without: they would gape or overlap between
+/// the ends. `path` is where an element stands.
+pub(super) fn check_orders(
+    path: impl Fn(usize) -> Path,
+    nodes: &[Node],
+    elements: &[Element],
+) -> Result<(), Fault> {
+    let per_face = |(kind, _): &Element| kind.per_face();
+    let first = elements.first().map(per_face);
+    if elements
+        .iter()
+        .all(|element| first == Some(per_face(element)))
+    {
+        return Ok(());
+    }
+    let mut sides: Vec<([usize; 2], usize, usize)> = Vec::new();
+    for (k, (kind, own)) in elements.iter().enumerate() {
+        for face in kind.faces() {
+            let (a, b) = (own[face[0]], own[face[face.len() - 1]]);
+            sides.push(([a.min(b), a.max(b)], face.len(), k));
+        }
+    }
+    sides.sort_unstable();
+    let mixed =
+        |pair: &&[([usize; 2], usize, usize)]| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1;
+    let Some(pair) = sides.windows(2).find(mixed) else {
+        return Ok(());
+    };
+    let (linear, quadratic) = (pair[0].2, pair[1].2);
+    let message = format!(
+        "the side between {} is one of a {} and of a {}: the one has a node in its middle, the other none; mesh both with elements of one order",
+        named(nodes, &pair[0].0),
+        elements[quadratic].0.word(),
+        elements[linear].0.word()
+    );
+    Err(Fault::new(path(linear.max(quadratic)), message))
 }

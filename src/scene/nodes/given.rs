@@ -3,7 +3,7 @@
 use super::super::curves::point;
 use super::super::geometry::Folds;
 use super::super::limits;
-use super::elements::{Element, check_doubled, sound};
+use super::elements::{Element, check_doubled, check_orders, sound};
 use super::sides::{Faces, line};
 use super::{Entry, EntryKind, Names};
 use crate::format::error::{Fault, Path, at, quoted};
@@ -128,8 +128,20 @@ impl Names {
             }
         }
         check_doubled(here, &self.nodes, &made)?;
+        check_orders(|element| place(here, lists, element), &self.nodes, &made)?;
         Ok((made, parts))
     }
+}
+
+/// Where the k-th element of all lists stands.
+fn place(here: &Path, lists: &[Cells], mut k: usize) -> Path {
+    for (list, cells) in lists.iter().enumerate() {
+        if k < cells.nodes.len() {
+            return here.then(list).then("nodes").then(k);
+        }
+        k -= cells.nodes.len();
+    }
+    here.clone()
 }
 
 /// The distinct nodes of elements, ascending.
