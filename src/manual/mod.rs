@@ -48,8 +48,8 @@ pages! {
     corners "corners" "pages/corners.md" "Where two sides of a surface meet";
     limit_points "limit-points" "pages/limit-points.md" "Where a load can go no further, and what comes after";
     jumps "jumps" "pages/jumps.md" "Stability; what comes past a limit point";
-    interfaces "interfaces" "pages/interfaces.md" "Interface problems of Siconos, fclib, the Matrix Market and CalculiX; for other solvers";
-    paraview "paraview" "pages/paraview.md" "Results in ParaView: files for each increment, major or minor iteration";
+    interfaces "interfaces" "pages/interfaces.md" "Interface problems of other programs, and for other solvers";
+    paraview "paraview" "pages/paraview.md" "Results in ParaView, of each increment, major or minor iteration";
     command_line "command-line" "pages/command-line.md" "Subcommands, files, exit codes";
     keys "keys" "pages/keys.md" "Keys and actions of the debugger; branches, breakpoints, journals";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";
