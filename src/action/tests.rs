@@ -42,6 +42,7 @@ fn model() -> Model {
         prescribed: vec![],
         path: vec![0.0, 1.0],
         increment: 0.1,
+        increments: Vec::new(),
         least: None,
         jumps: Default::default(),
         control: Default::default(),

@@ -63,6 +63,7 @@
 //!     prescribed: Vec::new(),
 //!     path: vec![0.0, 1.0],
 //!     increment: 0.5,
+//!     increments: Vec::new(),
 //!     least: None,
 //!     jumps: Jumps::default(),
 //!     control: Default::default(),

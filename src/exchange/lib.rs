@@ -5,12 +5,14 @@
 //! mean to stickslip is said by those who use them. No input makes a reader panic, or take more memory than its own size calls
 //! for.
 //!
+//! Each takes only from those above it:
+//!
 //! - [`broken`]: what is wrong with a file, and where.
-//! - [`words`]: words of a text, with their places.
+//! - [`words`]: words of a text apart by blanks, with their places.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
-//! - [`problem`]: friction problems, as all readers of interface problems give them.
 //! - [`gmsh`]: meshes of Gmsh.
 //! - [`inp`]: decks of CalculiX and Abaqus.
+//! - [`problem`]: friction problems, as all readers of interface problems give them.
 //! - [`calculix`]: how a run of CalculiX went, and the stiffness that it stores.
 //! - [`siconos`]: friction problems of Siconos, as text.
 //! - [`matrix_market`]: single matrices in the Matrix Market's exchange format.
@@ -29,5 +31,4 @@ pub mod mesh;
 pub mod problem;
 pub mod siconos;
 pub mod vtu;
-
-mod words;
+pub mod words;

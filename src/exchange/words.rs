@@ -6,7 +6,7 @@ use crate::broken::Broken;
 const SHOWN: usize = 40;
 
 /// The words of a text that are not read yet.
-pub(crate) struct Words<'t> {
+pub struct Words<'t> {
     whole: &'t str,
     rest: &'t str,
     /// Byte at which the last word begins.
@@ -14,6 +14,7 @@ pub(crate) struct Words<'t> {
 }
 
 impl<'t> Words<'t> {
+    /// All words of a text.
     pub fn new(text: &'t str) -> Self {
         Words {
             whole: text,
@@ -48,6 +49,10 @@ impl<'t> Words<'t> {
         self.rest.split_whitespace()
     }
 
+    /// The next word.
+    ///
+    /// # Errors
+    /// At the end of the text; `what` says what should stand there.
     pub fn next(&mut self, what: &str) -> Result<&'t str, Broken> {
         let trimmed = self.rest.trim_start();
         let end = trimmed.find(char::is_whitespace).unwrap_or(trimmed.len());
@@ -67,12 +72,20 @@ impl<'t> Words<'t> {
         line
     }
 
+    /// The next word as a whole number.
+    ///
+    /// # Errors
+    /// If it is none.
     pub fn count(&mut self, what: &str) -> Result<usize, Broken> {
         let word = self.next(what)?;
         word.parse()
             .map_err(|_| self.unlike(word, &format!("{what}, a whole number,")))
     }
 
+    /// The same, at most so large.
+    ///
+    /// # Errors
+    /// If it is none, or larger.
     pub fn count_up_to(&mut self, most: usize, what: &str) -> Result<usize, Broken> {
         match self.count(what)? {
             count if count <= most => Ok(count),
@@ -80,6 +93,10 @@ impl<'t> Words<'t> {
         }
     }
 
+    /// Reads a whole number that can only be one.
+    ///
+    /// # Errors
+    /// If it is another.
     pub fn exactly(&mut self, wanted: usize, what: &str) -> Result<(), Broken> {
         match self.count(what)? {
             count if count == wanted => Ok(()),
@@ -87,16 +104,27 @@ impl<'t> Words<'t> {
         }
     }
 
+    /// The next word as a finite number.
+    ///
+    /// # Errors
+    /// If it is none.
     pub fn number(&mut self, what: &str) -> Result<f64, Broken> {
         let word = self.next(what)?;
         number(word).ok_or_else(|| self.unlike(word, &format!("{what}, a finite number,")))
     }
 
+    /// So many of them.
+    ///
+    /// # Errors
+    /// If one is none.
     pub fn numbers(&mut self, count: usize, what: &str) -> Result<Vec<f64>, Broken> {
         (0..count).map(|_| self.number(what)).collect()
     }
 
     /// Coefficients of friction, none of them negative.
+    ///
+    /// # Errors
+    /// If one is no number, or negative.
     pub fn coefficients(&mut self, count: usize) -> Result<Vec<f64>, Broken> {
         let coefficient = |_| {
             let value = self.number("a friction coefficient")?;
@@ -112,7 +140,7 @@ impl<'t> Words<'t> {
 }
 
 /// A finite number; Fortran's `1.0D+00` is one, too.
-pub(crate) fn number(word: &str) -> Option<f64> {
+pub fn number(word: &str) -> Option<f64> {
     let value = match word.parse() {
         Ok(value) => value,
         Err(_) => word.replace(['d', 'D'], "e").parse::<f64>().ok()?,
@@ -121,7 +149,7 @@ pub(crate) fn number(word: &str) -> Option<f64> {
 }
 
 /// A word in quotes, cut where it is long; what a terminal would obey is escaped.
-pub(crate) fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     match word.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{:?}…", &word[..end]),
         None => format!("{word:?}"),
@@ -129,7 +157,7 @@ pub(crate) fn quoted(word: &str) -> String {
 }
 
 /// Line and column of a byte, both from 1, the column in characters.
-pub(crate) fn place(text: &str, byte: usize) -> (usize, usize) {
+pub fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = &text[..byte];
     let start = before.rfind('\n').map_or(0, |k| k + 1);
     let line = 1 + before.bytes().filter(|&b| b == b'\n').count();

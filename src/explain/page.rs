@@ -350,7 +350,10 @@ impl Page {
             .collect();
         // What lasts over the increments to come is better than what helps in this one.
         trials.sort_by_key(|(remedy, trial)| {
-            let lasts = matches!(remedy.how, How::Set(..) | How::Increment(_));
+            let lasts = matches!(
+                remedy.how,
+                How::Set(..) | How::Increment(_) | How::IncrementOn(..)
+            );
             (!lasts, trial.factorizations, trial.minors)
         });
         let helped = trials.iter().map(|(remedy, trial)| {

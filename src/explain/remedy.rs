@@ -56,6 +56,8 @@ pub enum How {
     Set(&'static str, String),
     /// An increment size.
     Increment(f64),
+    /// An increment size where each leg of the path has its own: the leg, and the size.
+    IncrementOn(usize, f64),
     /// A consistent state of the census, by its number from 0.
     StartFrom(usize),
     /// Only from the list of remedies.
@@ -67,7 +69,9 @@ impl How {
     pub fn typed(&self) -> String {
         match self {
             How::Set(path, value) => format!(":set {path} {value}"),
-            How::Increment(size) => format!(":increment {}", number::plain(*size)),
+            How::Increment(size) | How::IncrementOn(_, size) => {
+                format!(":increment {}", number::plain(*size))
+            }
             How::StartFrom(answer) => format!(":start-from {}", answer + 1),
             How::Listed => "r, then Enter on it".into(),
         }
@@ -78,6 +82,10 @@ impl How {
         match self {
             How::Set(path, value) => Some(format!("{path}={value}")),
             How::Increment(size) => Some(format!("history.increment={}", number::plain(*size))),
+            How::IncrementOn(leg, size) => Some(format!(
+                "history.increments[{leg}]={}",
+                number::plain(*size)
+            )),
             How::StartFrom(_) | How::Listed => None,
         }
     }
@@ -116,7 +124,11 @@ impl Remedy {
                     part => format!("{part} of the increment"),
                 };
                 let first = vec![Intervention::Increment(size)];
-                Some(remedy(&label, How::Increment(size), first))
+                let how = match model.increments.is_empty() {
+                    true => How::Increment(size),
+                    false => How::IncrementOn(state.start.leg, size),
+                };
+                Some(remedy(&label, how, first))
             }
             Kind::Start(mode) => {
                 let first = starts(model, state, mode);

@@ -97,6 +97,7 @@ pub fn at_once() -> History {
     History {
         path: vec![0.0, 1.0],
         increment: 1.0,
+        increments: Vec::new(),
         least: None,
         jumps: Jumps::default(),
         control: Default::default(),
@@ -250,7 +251,11 @@ impl Problem {
         let once = at_once();
         if self.history != once {
             let (path, increment) = (list(&self.history.path), self.history.increment);
-            text += &format!("    history: (path: [{path}], increment: {increment:?}),\n");
+            let of_legs = match self.history.increments.as_slice() {
+                [] => String::new(),
+                sizes => format!(", increments: [{}]", list(sizes)),
+            };
+            text += &format!("    history: (path: [{path}], increment: {increment:?}{of_legs}),\n");
         }
         let set = differences(&self.settings, &Settings::default());
         if !set.is_empty() {

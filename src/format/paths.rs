@@ -201,7 +201,8 @@ fn first_of(names: &[&str]) -> String {
 }
 
 /// Visits every scalar, in the order of the file. What a group of slaves or the history leaves to a default that hangs on
-/// other values is shown as that default, and stays left out unless it is set to something else.
+/// other values is shown as that default, and stays left out unless it is set to something else. Where `history.increment` is set,
+/// the increments of each leg change in proportion.
 fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
     let friction = spec.friction;
     let least = spec.history.least();
@@ -215,11 +216,17 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
         group.friction.get_or_insert(friction);
     }
     spec.history.least.get_or_insert(least);
+    let increment = spec.history.increment;
     spec.walk(&ScalarPlace::root(), visit);
     for (group, own) in spec.slaves.iter_mut().zip(own) {
         if !own && group.friction == Some(friction) {
             group.friction = None;
         }
+    }
+    if spec.history.increment != increment {
+        let part = spec.history.increment / increment;
+        let sizes = spec.history.increments.iter_mut();
+        sizes.for_each(|size| *size *= part);
     }
     if !own_least && spec.history.least == Some(least) {
         spec.history.least = None;

@@ -11,7 +11,8 @@ use super::given::{Cells, NodeSet, SideSet};
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
 use crate::model::{
-    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update, least,
+    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
+    least, on_leg,
 };
 use serde::{Deserialize, Serialize};
 
@@ -545,8 +546,12 @@ described! {
         pub path: Vec<f64>,
         /// Size of an increment of the load factor; the last one of each leg is shorter where it must be.
         pub increment: f64,
+        /// Sizes of the increments on each leg of the path, one a leg. Setting `increment` changes them in proportion. Default:
+        /// `increment` on all.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub increments: Vec<f64>,
         /// Size below which an increment that fails is not cut any more (`strategy: ladder` halves it). Default: a 64th of
-        /// `increment`.
+        /// the leg's increment.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub least: Option<f64> => given,
         /// What an increment does that jumps to another branch of equilibrium (`strategy: ladder`). Default: cut.
@@ -562,8 +567,14 @@ described! {
 }
 
 impl History {
-    /// Size below which an increment is not cut.
+    /// Size of the increments on a leg of the path.
+    pub fn on_leg(&self, leg: usize) -> f64 {
+        on_leg(&self.increments, self.increment, leg)
+    }
+
+    /// Size below which no increment is cut.
     pub fn least(&self) -> f64 {
-        least(self.least, self.increment)
+        let smallest = self.increments.iter().copied().reduce(f64::min);
+        least(self.least, smallest.unwrap_or(self.increment))
     }
 }

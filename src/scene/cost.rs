@@ -261,10 +261,14 @@ fn slaves_line(model: &Model) -> String {
 
 fn history_line(model: &Model) -> String {
     let corners: Vec<String> = model.path.iter().map(f64::to_string).collect();
-    let count = increments(&model.path, model.increment);
+    let count = increments(&model.path, |leg| model.on_leg(leg));
+    let sizes: Vec<String> = match model.increments.as_slice() {
+        [] => vec![model.increment.to_string()],
+        of_legs => of_legs.iter().map(f64::to_string).collect(),
+    };
     format!(
         "{count} increments of at most {}, load factor {}",
-        model.increment,
+        sizes.join(", "),
         corners.join(" -> ")
     )
 }

@@ -200,7 +200,7 @@ impl Benchmarks {
             let all = posed.par_iter().with_max_len(1);
             all.map(|(_, scene)| {
                 let model = &scene.model;
-                let count = increments(&model.path, model.increment) as u64;
+                let count = increments(&model.path, |leg| model.on_leg(leg)) as u64;
                 one(count, Arc::new(model.clone()), &spare, watch)
             })
             .collect()

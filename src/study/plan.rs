@@ -115,7 +115,7 @@ impl Case {
             return Ok(None);
         }
         let model = self.model()?;
-        self.increments = increments(&model.path, model.increment) as u64;
+        self.increments = increments(&model.path, |leg| model.on_leg(leg)) as u64;
         Ok(Some(model.monitors.into_iter().map(|m| m.name).collect()))
     }
 }

@@ -162,7 +162,7 @@ fn changed(scene: &Scene, variant: &Variant) -> Result<Model, SceneError> {
     for (path, value) in settings(variant) {
         own = own.with(&paths::whole(&own.spec, &path), &value)?;
     }
-    if increments(&own.model.path, own.model.increment) != 1.0 {
+    if increments(&own.model.path, |leg| own.model.on_leg(leg)) != 1.0 {
         let message = "random problems are solved in one increment, since their answers are known for that alone";
         return Err(SceneError::whole(&scene.name, message));
     }

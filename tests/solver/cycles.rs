@@ -50,6 +50,7 @@ fn smooth(m: &[Vec<f64>], gaps: &[f64], touching: &[usize]) -> Scene {
         history: History {
             path: vec![0.0, 1.0],
             increment: 1.0,
+            increments: Vec::new(),
             least: None,
             jumps: Default::default(),
             control: Default::default(),
@@ -337,6 +338,7 @@ fn random(n: usize, random: &mut Random) -> InterfaceProblem {
         history: History {
             path: vec![0.0, 1.0],
             increment: 1.0,
+            increments: Vec::new(),
             least: None,
             jumps: Default::default(),
             control: Default::default(),

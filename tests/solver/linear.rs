@@ -34,6 +34,7 @@ fn problem(contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
         history: History {
             path: vec![0.0, 1.0],
             increment: 0.25,
+            increments: Vec::new(),
             least: None,
             jumps: Default::default(),
             control: Default::default(),

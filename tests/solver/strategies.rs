@@ -67,6 +67,7 @@ fn problem(seed: u64) -> Problem {
         history: History {
             path: vec![0.0, 1.0],
             increment: 1.0,
+            increments: Vec::new(),
             least: Some(1.0),
             jumps: Jumps::default(),
             control: Default::default(),

@@ -82,6 +82,7 @@ pub fn model(slaves: usize) -> Model {
         prescribed: vec![],
         path: vec![0.0, 1.0],
         increment: 0.1,
+        increments: Vec::new(),
         least: None,
         jumps: Default::default(),
         control: Default::default(),

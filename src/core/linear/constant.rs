@@ -130,6 +130,7 @@ impl Constant {
             prescribed: Vec::new(),
             path,
             increment,
+            increments: Vec::new(),
             least: None,
             jumps: Default::default(),
             control: Default::default(),

@@ -112,6 +112,11 @@ impl Jumps {
     }
 }
 
+/// Size of the increments on a leg of the path: what the list says, or `increment` where it ends.
+pub fn on_leg(increments: &[f64], increment: f64, leg: usize) -> f64 {
+    increments.get(leg).copied().unwrap_or(increment)
+}
+
 /// Size below which an increment is not cut further: `given`, or 1/64 of `increment`.
 pub fn least(given: Option<f64>, increment: f64) -> f64 {
     given.unwrap_or(increment / FINEST)

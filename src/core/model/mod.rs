@@ -26,7 +26,7 @@ pub use contact::{Bond, Contact, Piece, STENCIL, Surface};
 pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
-pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least};
+pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on_leg};
 pub use mesh::{ElementKind, boundary};
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, Refactor, ResidualMethod, Settings,
@@ -60,6 +60,8 @@ pub struct Model {
     pub path: Vec<f64>,
     /// Increment of the load factor, positive.
     pub increment: f64,
+    /// Increments on each leg of the path, positive, one a leg; none where all have `increment`.
+    pub increments: Vec<f64>,
     /// Size below which an increment that fails is not cut further. `None` stands for 1/64 of the increment in force.
     pub least: Option<f64>,
     /// What happens to an increment that jumps to another branch of equilibrium.
@@ -141,6 +143,11 @@ pub enum Watched {
 }
 
 impl Model {
+    /// Size of the increments on a leg of the path, as the scene has them.
+    pub fn on_leg(&self, leg: usize) -> f64 {
+        on_leg(&self.increments, self.increment, leg)
+    }
+
     /// Whether x is a radius and y the axis: forces are then those of the whole circumference.
     pub fn is_axisymmetric(&self) -> bool {
         self.bodies.iter().any(Body::is_axisymmetric)

@@ -3,7 +3,7 @@
 use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::{BodyKind, Factor, Jumps, Mode};
+use crate::model::{BodyKind, Factor, Jumps, Mode, least};
 use crate::step::brake::Brake;
 use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome, Slow};
@@ -239,12 +239,16 @@ impl Stepper {
         let motion = self.state.motion.take();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
+        let turned = leg != start.leg;
         start.leg = leg;
         self.renew_start(verdict);
         let last = bounded || leg + 1 == self.model.path.len();
         if last {
             self.state.status = Status::Finished;
         } else {
+            if turned && !self.model.increments.is_empty() {
+                self.take_size(leg);
+            }
             self.next_increment();
         }
         Outcome::Increment {
@@ -289,6 +293,13 @@ impl Stepper {
             leg += 1;
         }
         leg
+    }
+
+    /// Goes on with the increments that the scene lists for a leg of the path.
+    fn take_size(&mut self, leg: usize) {
+        let controls = Arc::make_mut(&mut self.state.controls);
+        controls.increment = self.model.on_leg(leg);
+        controls.least = least(self.model.least, controls.increment);
     }
 
     fn next_increment(&mut self) {

@@ -31,7 +31,8 @@ pub enum Intervention {
         /// Slave number.
         slave: usize,
     },
-    /// Change the increment size and start the present increment again.
+    /// Change the increment size and start the present increment again. Where the scene lists increments of each leg of the
+    /// path, the next leg begins with its own.
     Increment(f64),
     /// Replace the friction of every slave node.
     Friction(Friction),

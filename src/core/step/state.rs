@@ -138,7 +138,7 @@ pub struct Progress {
 /// What the user can turn during a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Controls {
-    /// Increment of the load factor.
+    /// Increment of the load factor. Where each leg of the path has its own, the next leg begins with that.
     pub increment: f64,
     /// Size below which an increment that fails is not cut.
     pub least: f64,
@@ -171,9 +171,10 @@ impl State {
             .map(|slave| ContactState::new(slave.start, &slave.state))
             .collect();
         let load_factor = model.path[0];
+        let increment = model.on_leg(0);
         let controls = Controls {
-            increment: model.increment,
-            least: least(model.least, model.increment),
+            increment,
+            least: least(model.least, increment),
             friction: model.contacts.iter().map(|s| s.friction).collect(),
             settings: model.settings,
         };

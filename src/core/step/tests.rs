@@ -179,6 +179,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         prescribed: Vec::new(),
         path: vec![0.0, 1.0],
         increment: 0.25,
+        increments: Vec::new(),
         least: None,
         jumps: Default::default(),
         control: Default::default(),

@@ -1,6 +1,6 @@
 //! Physical groups: which cells each has, and what it is called.
 
-use super::RawCell;
+use super::elements::RawCell;
 use crate::mesh::{Cell, Group};
 use std::collections::HashMap;
 

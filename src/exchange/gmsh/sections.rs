@@ -1,8 +1,12 @@
 //! The sections of a file, whatever its version.
 
 use super::cursor::{Cursor, Form};
-use super::{HEAD, Raw, v2, v4};
+use super::raw::Raw;
+use super::{v2, v4};
 use crate::broken::Broken;
+
+/// What a file is to begin with.
+pub(super) const HEAD: &[u8] = b"$MeshFormat";
 
 /// Versions whose sections differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! Nodes and elements of version 2.2: one by one, each element with its groups.
 
 use super::cursor::{Cursor, Form};
-use super::{Raw, RawCell, RawNode, kind};
+use super::elements::{RawCell, RawNode, kind};
+use super::raw::Raw;
 use crate::broken::Broken;
 
 /// `count`, then number, x, y, z of each node.

@@ -1,7 +1,8 @@
 //! Entities, nodes and elements of version 4.1: block by block, each of one geometric entity.
 
 use super::cursor::Cursor;
-use super::{Raw, RawCell, RawNode, kind};
+use super::elements::{RawCell, RawNode, kind};
+use super::raw::Raw;
 use crate::broken::Broken;
 
 /// What each geometric entity is in: its physical groups.

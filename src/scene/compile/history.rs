@@ -3,7 +3,7 @@
 use super::super::limits;
 use crate::format::error::{Fault, at};
 use crate::format::spec::History;
-use crate::model::{Body, BodyKind, Settings, Touch};
+use crate::model::{Body, BodyKind, Control, Settings, Touch};
 
 /// Refuses a path that goes nowhere, or that has no end.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
@@ -37,37 +37,73 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
             ),
         ));
     }
-    let least = history.least();
-    if !(least > 0.0 && least <= *increment) {
+    of_legs(history)?;
+    let (least, legs) = (history.least(), path.len() - 1);
+    let smallest = (0..legs).map(|leg| history.on_leg(leg));
+    let smallest = smallest.fold(f64::INFINITY, f64::min);
+    if !(least > 0.0 && least <= smallest) {
         return Err(Fault::new(
             at!["history", "least"],
             format!(
-                "the least increment is {least:?}; it must be above 0 and at most the increment, {increment:?}"
+                "the least increment is {least:?}; it must be above 0 and at most the increment, {smallest:?}"
             ),
         ));
     }
-    let count = increments(path, *increment);
+    let count = increments(path, |leg| history.on_leg(leg));
     if count > limits::INCREMENTS {
-        return Err(Fault::new(
-            size,
-            format!(
+        let message = match history.increments.is_empty() {
+            true => format!(
                 "the history would have {count:e} increments of {increment:?}; at most a million can be had"
             ),
-        ));
+            false => {
+                format!("the history would have {count:e} increments; at most a million can be had")
+            }
+        };
+        return Err(Fault::new(size, message));
     }
     Ok(())
 }
 
-/// Number of increments along a path: each leg is cut into whole ones, and what is left.
-pub(crate) fn increments(path: &[f64], increment: f64) -> f64 {
+/// Refuses increments of legs that are not one for each, or that lead nowhere.
+fn of_legs(history: &History) -> Result<(), Fault> {
+    let (sizes, legs) = (&history.increments, history.path.len() - 1);
+    if sizes.is_empty() {
+        return Ok(());
+    }
+    let here = at!["history", "increments"];
+    if sizes.len() != legs {
+        let message = format!(
+            "there are {} increments for {legs} legs of the path; list one for each, or leave them out",
+            sizes.len()
+        );
+        return Err(Fault::new(here, message));
+    }
+    if history.control == Control::Arc {
+        let message = "the way along the path has sizes of its own (history.arc): leave increments out with control: arc";
+        return Err(Fault::new(here, message));
+    }
+    for (k, size) in sizes.iter().enumerate() {
+        limits::finite(&here.then(k), *size, "the increment")?;
+        if *size <= 0.0 {
+            let message = format!(
+                "the increment is {size:?}; it must be positive, also where the path falls"
+            );
+            return Err(Fault::new(here.then(k), message));
+        }
+    }
+    Ok(())
+}
+
+/// Number of increments along a path: each leg is cut into whole ones of its size, and what is left.
+pub(crate) fn increments(path: &[f64], size: impl Fn(usize) -> f64) -> f64 {
     // A leg of ten tenths has ten increments, whatever the last bit of the sum says.
     const ROUNDING: f64 = 1e-9;
-    let leg = |pair: &[f64]| {
-        ((pair[1] - pair[0]).abs() / increment * (1.0 - ROUNDING))
+    let of_leg = |(leg, pair): (usize, &[f64])| {
+        ((pair[1] - pair[0]).abs() / size(leg) * (1.0 - ROUNDING))
             .ceil()
             .max(1.0)
     };
-    path.windows(2).map(leg).sum()
+    path.windows(2).enumerate().map(of_leg).sum()
 }
 
 /// Refuses what is no size of a memory.

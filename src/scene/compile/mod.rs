@@ -110,6 +110,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         prescribed,
         path: spec.history.path.clone(),
         increment: spec.history.increment,
+        increments: spec.history.increments.clone(),
         least: spec.history.least,
         jumps: spec.history.jumps,
         control: spec.history.control,

@@ -16,7 +16,7 @@ use crate::model::{Control, Model, Settings};
 /// Settings that more than the solver reads: nodes are moved for them, or the scene is refused.
 const DEEP: [&str; 3] = ["initial_gaps", "adjust_gap", "memory"];
 /// What of the history the model has as it is written.
-const OF_HISTORY: [&str; 4] = ["path", "increment", "least", "jumps"];
+const OF_HISTORY: [&str; 5] = ["path", "increment", "increments", "least", "jumps"];
 /// What of a load says how large it is, and not what it acts on or holds.
 const OF_LOADS: [&str; 5] = ["x", "y", "normal", "value", "scale"];
 
@@ -164,7 +164,8 @@ impl Choices {
 
     /// Number of increments of their history.
     pub(crate) fn increments(&self) -> f64 {
-        history::increments(&self.spec.history.path, self.spec.history.increment)
+        let history = &self.spec.history;
+        history::increments(&history.path, |leg| history.on_leg(leg))
     }
 }
 
@@ -221,6 +222,7 @@ pub(crate) fn renewed(model: &Model, groups: &Groups, choices: &Choices, loads: 
     model.prescribed = loads.prescribed;
     model.path.clone_from(&spec.history.path);
     model.increment = spec.history.increment;
+    model.increments.clone_from(&spec.history.increments);
     model.least = spec.history.least;
     model.jumps = spec.history.jumps;
     model.settings = history::resolved(&spec.settings, &model.bodies);

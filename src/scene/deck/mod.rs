@@ -276,6 +276,7 @@ impl<'d> Made<'d> {
                 history: crate::format::spec::History {
                     path: vec![0.0, 1.0],
                     increment: 1.0,
+                    increments: Vec::new(),
                     least: None,
                     jumps: Jumps::default(),
                     control: Control::default(),

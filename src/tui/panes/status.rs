@@ -218,12 +218,16 @@ fn interventions(view: &View) -> Option<String> {
             Forced::No => {}
         }
     }
-    let controls = &view.frame().state.controls;
-    let increment = (controls.increment != view.model.increment).then(|| {
+    let state = &view.frame().state;
+    let controls = &state.controls;
+    // At the end of the path the last leg's is still in force.
+    let leg = state.start.leg.min(view.model.path.len() - 2);
+    let of_scene = view.model.on_leg(leg);
+    let increment = (controls.increment != of_scene).then(|| {
         format!(
             "increment {} (scene: {})",
             number::plain(controls.increment),
-            number::plain(view.model.increment)
+            number::plain(of_scene)
         )
     });
     let settings = (controls.settings != view.model.settings).then(|| "settings changed".into());
