@@ -10,6 +10,8 @@ mod program;
 
 // At the edges: singular systems, limits, held modes, new increments, settings.
 mod stepper;
+// Each leg of the path may have increments of its own.
+mod legs;
 // A solver that goes over to another model of the same bodies has every bit of a new one.
 mod renewed;
 // The condensed interface takes the steps of the whole system, whatever the bodies.

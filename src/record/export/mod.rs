@@ -17,6 +17,7 @@ pub mod written;
 
 mod pressures;
 mod timeline;
+mod window;
 
 use crate::scene::problems::market;
 use crate::step::stepper::Stepper;

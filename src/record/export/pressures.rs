@@ -1,7 +1,7 @@
 //! Contact pressures in a picture.
 
-use super::picture::{FORCE, Window};
 use super::shown::Shown;
+use super::window::{FORCE, Window};
 use crate::explain::outline::Point;
 use crate::explain::round_off::RoundOff;
 use crate::study::sheet::{Colour, Sheet};

@@ -3,10 +3,10 @@
 //! In each step a load that is given there goes from what it was to its value, in proportion to time, or at once, or as its
 //! amplitude says; one that is not given stays what it is. A load that is there at once is there in the step's first increment.
 //!
-//! The load factor counts time, so that a step from t0 to t1 is the leg of the path between them. Where steps have increments of
-//! different sizes it counts increments instead.
+//! The load factor counts time, so that a step from t0 to t1 is the leg of the path between them, with the increments of that
+//! step.
 
-use stickslip_exchange::inp::deck::{Amplitude, Deck, Time};
+use stickslip_exchange::inp::deck::{Amplitude, Deck, Step, Time};
 
 /// With automatic increments, a step is cut into so many at most: the first one of a deck is often far smaller than all that
 /// follow.
@@ -15,10 +15,6 @@ const AUTOMATIC: f64 = 10.0;
 /// The times of a deck's steps, and their load factors.
 pub(super) struct Clock {
     steps: Vec<Leg>,
-    /// The increment of the load factor.
-    pub increment: f64,
-    /// Whether the load factor is time.
-    pub is_time: bool,
 }
 
 /// A step.
@@ -28,8 +24,12 @@ struct Leg {
     begin: f64,
     period: f64,
     increment: f64,
-    /// Load factors at its beginning and its end.
-    path: [f64; 2],
+}
+
+impl Leg {
+    fn end(&self) -> f64 {
+        self.begin + self.period
+    }
 }
 
 /// Size of the increments of a step.
@@ -43,55 +43,31 @@ fn increment(time: &Time) -> f64 {
 
 impl Clock {
     pub fn of(deck: &Deck) -> Clock {
-        let sizes: Vec<f64> = deck
-            .steps
-            .iter()
-            .map(|step| increment(&step.time))
-            .collect();
-        let is_time = sizes.windows(2).all(|pair| pair[0] == pair[1]);
-        let (mut begin, mut at) = (0.0, 0.0);
-        let mut steps = Vec::with_capacity(sizes.len());
-        for (step, &size) in deck.steps.iter().zip(&sizes) {
-            let period = step.time.period;
-            let long = if is_time { period } else { count(period, size) };
-            steps.push(Leg {
+        let mut begin = 0.0;
+        let leg = |step: &Step| {
+            let leg = Leg {
                 begin,
-                period,
-                increment: size,
-                path: [at, at + long],
-            });
-            begin += period;
-            at += long;
-        }
+                period: step.time.period,
+                increment: increment(&step.time),
+            };
+            begin = leg.end();
+            leg
+        };
         Clock {
-            steps,
-            increment: if is_time {
-                sizes.first().copied().unwrap_or(1.0)
-            } else {
-                1.0
-            },
-            is_time,
+            steps: deck.steps.iter().map(leg).collect(),
         }
     }
 
     /// The corners of the path.
     pub fn path(&self) -> Vec<f64> {
-        let ends = self.steps.iter().map(|leg| leg.path[1]);
+        let ends = self.steps.iter().map(Leg::end);
         std::iter::once(0.0).chain(ends).collect()
     }
 
-    /// The load factor at a time of a step, counted from its beginning.
-    fn factor(&self, step: usize, time: f64) -> f64 {
-        let leg = &self.steps[step];
-        leg.path[0] + (leg.path[1] - leg.path[0]) * (time / leg.period)
+    /// Sizes of the increments of each step.
+    pub fn increments(&self) -> impl Iterator<Item = f64> + use<'_> {
+        self.steps.iter().map(|leg| leg.increment)
     }
-}
-
-/// Whole increments of a size that a time is cut into.
-fn count(time: f64, size: f64) -> f64 {
-    // Ten tenths are ten increments, whatever the last bit of the quotient says.
-    const ROUNDING: f64 = 1e-9;
-    (time / size * (1.0 - ROUNDING)).ceil().max(1.0)
 }
 
 /// What a step says of a load.
@@ -139,12 +115,12 @@ pub(super) fn curve(clock: &Clock, amplitudes: &[Amplitude], given: &[Given]) ->
                     0.0
                 };
                 for time in of_step.corners(from) {
-                    points.push((clock.factor(step, time), of_step.at(time)));
+                    points.push((leg.begin + time, of_step.at(time)));
                 }
                 before = of_step.at(leg.period);
             }
         }
-        points.push((leg.path[1], before));
+        points.push((leg.end(), before));
     }
     points
 }

@@ -435,15 +435,22 @@ impl Made<'_> {
         let deck = self.deck;
         let history = &mut self.spec.history;
         history.path = clock.path();
-        history.increment = clock.increment;
+        let largest = clock.increments().reduce(f64::max);
+        history.increment = largest.unwrap_or(history.increment);
+        if clock.increments().any(|size| size != history.increment) {
+            history.increments = clock.increments().collect();
+        }
+        let smallest = clock.increments().fold(f64::INFINITY, f64::min);
         let least = deck.steps.iter().filter_map(|step| step.time.least);
-        let least = least
-            .min_by(f64::total_cmp)
-            .filter(|&least| clock.is_time && least < clock.increment);
-        history.least = least;
+        let least = least.min_by(f64::total_cmp);
+        history.least = least.filter(|&least| least < smallest);
         for (k, step) in deck.steps.iter().enumerate() {
-            self.origin
-                .note(at!["history", "path", k + 1], step.static_place);
+            for place in [
+                at!["history", "path", k + 1],
+                at!["history", "increments", k],
+            ] {
+                self.origin.note(place, step.static_place);
+            }
         }
         if let Some(first) = deck.steps.first() {
             self.origin.note(at!["history"], first.static_place);
@@ -458,14 +465,6 @@ impl Made<'_> {
                 "automatic increments: a step is cut into increments as long as its first one, but not into more than ten unless its \
                  largest one says so; see history.increment",
             );
-        }
-        if !clock.is_time {
-            let place = deck
-                .steps
-                .first()
-                .map(|step| step.static_place)
-                .unwrap_or_default();
-            self.remark(place, "the steps have increments of different sizes: the load factor counts increments, not time");
         }
     }
 

@@ -1,0 +1,118 @@
+//! All that a mesh needs of a file, by the file's own tags, and the mesh that it makes.
+
+use super::cursor::Cursor;
+use super::elements::{RawCell, RawNode};
+use super::groups::Groups;
+use crate::broken::Broken;
+use crate::mesh::{Cell, Mesh};
+
+/// Nodes are in one plane if their z differ by no more than this part of what they measure in x and y.
+const FLAT: f64 = 1e-9;
+
+/// What stands in a file, by its own tags.
+#[derive(Default)]
+pub(super) struct Raw {
+    pub nodes: Vec<RawNode>,
+    pub cells: Vec<RawCell>,
+    /// Tags of the nodes of all cells, one cell after the other.
+    pub tags: Vec<u64>,
+    pub groups: Groups,
+}
+
+impl Raw {
+    /// The mesh, if its nodes lie in a plane and are all there.
+    pub fn mesh(self, cursor: &Cursor<'_>) -> Result<Mesh, Broken> {
+        if self.cells.is_empty() {
+            let message =
+                "the file has no elements; a mesh is made first, by `gmsh -2` or Mesh > 2D";
+            return Err(Broken::whole(message));
+        }
+        let index = self.index(cursor)?;
+        let mut cells = Vec::with_capacity(self.cells.len());
+        let mut tags = self.tags.as_slice();
+        for cell in &self.cells {
+            let (own, rest) = tags.split_at(cell.kind.nodes());
+            tags = rest;
+            let place = |tag: &u64| {
+                place(&index, *tag).ok_or_else(|| {
+                    cursor.fault(
+                        cell.byte,
+                        format!("the element names node {tag}, which the file does not have"),
+                    )
+                })
+            };
+            cells.push(Cell {
+                kind: cell.kind,
+                nodes: own.iter().map(place).collect::<Result<_, _>>()?,
+            });
+        }
+        self.check_flat(&cells, cursor)?;
+        let (cells, groups) = self.groups.of_cells(&self.cells, cells);
+        Ok(Mesh {
+            nodes: self
+                .nodes
+                .iter()
+                .map(|node| [node.at[0], node.at[1]])
+                .collect(),
+            labels: self.nodes.iter().map(|node| node.tag).collect(),
+            cells,
+            groups,
+        })
+    }
+
+    /// Tags of the nodes with their positions, ascending.
+    fn index(&self, cursor: &Cursor<'_>) -> Result<Vec<(u64, usize)>, Broken> {
+        let tags = self.nodes.iter().enumerate();
+        let mut index: Vec<(u64, usize)> = tags.map(|(k, node)| (node.tag, k)).collect();
+        index.sort_unstable();
+        match index.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            Some(pair) => {
+                let node = &self.nodes[pair[1].1];
+                Err(cursor.fault(
+                    node.byte,
+                    format!("node {} stands in the file twice", node.tag),
+                ))
+            }
+            None => Ok(index),
+        }
+    }
+
+    /// Refuses nodes of cells that do not lie in one plane z = const.
+    fn check_flat(&self, cells: &[Cell], cursor: &Cursor<'_>) -> Result<(), Broken> {
+        let used = || {
+            cells
+                .iter()
+                .flat_map(|cell| &cell.nodes)
+                .map(|&n| &self.nodes[n])
+        };
+        let Some(first) = used().next() else {
+            return Ok(());
+        };
+        let far = |axis: usize| {
+            used()
+                .map(|n| (n.at[axis] - first.at[axis]).abs())
+                .fold(0.0, f64::max)
+        };
+        let allowed = FLAT * far(0).max(far(1));
+        let Some(other) = used().find(|node| (node.at[2] - first.at[2]).abs() > allowed) else {
+            return Ok(());
+        };
+        let message = format!(
+            "the mesh is not plane: node {} is at z = {:?} and node {} at z = {:?}; draw it in the x-y plane",
+            other.tag, other.at[2], first.tag, first.at[2]
+        );
+        Err(cursor.fault(other.byte, message))
+    }
+}
+
+/// Position of a node by its tag.
+fn place(index: &[(u64, usize)], tag: u64) -> Option<usize> {
+    // Tags without gaps, which are the rule, are found at once.
+    let guess = index.first().and_then(|(first, _)| tag.checked_sub(*first));
+    let guess = guess.and_then(|far| index.get(usize::try_from(far).ok()?));
+    if let Some((_, place)) = guess.filter(|(found, _)| *found == tag) {
+        return Some(*place);
+    }
+    let found = index.binary_search_by_key(&tag, |(tag, _)| *tag).ok()?;
+    Some(index[found].1)
+}
