@@ -1,7 +1,7 @@
 //! The four forms of one mesh, and what is wrong with broken ones. The files are made by `tests/peers/mesh.py --size 0.5`.
 
 use super::*;
-use crate::mesh::{CellKind, Group};
+use crate::mesh::{Cell, CellKind, Group};
 use proptest::prelude::*;
 
 const FILES: [&[u8]; 4] = [
