@@ -56,6 +56,7 @@ pages! {
     maps_and_charts "maps-and-charts" "pages/maps-and-charts.md" "Where it converges; random problems; error over cost";
     theory "theory" "pages/theory.md" "The method, its symbols, and where the program departs from the paper";
     verification "verification" "pages/verification.md" "What is accepted, how good it is, and how that is tested";
+    benchmarks "benchmarks" "pages/benchmarks.md" "Scenes whose answers are known from elsewhere, and how near ours are";
     speed "speed" "pages/speed.md" "What runs cost, and how that grows";
     architecture "architecture" "pages/architecture.md" "How the source is built";
     contributing "contributing" "pages/contributing.md" "How to change it: tests, fuzzing, rules";
