@@ -214,10 +214,11 @@ fn blocks(
     for _ in 0..count {
         column_of.push(words.count_up_to(across - 1, "a block column")?);
     }
-    for row in 0..down {
-        for number in begins[row]..begins[row + 1] {
+    for (row, blocks) in begins.windows(2).enumerate() {
+        let own = column_of.iter().enumerate().take(blocks[1]);
+        for (number, &across) in own.skip(blocks[0]) {
             words.exactly(number, "the number of a block")?;
-            for column in range(&column_ends, column_of[number]) {
+            for column in range(&column_ends, across) {
                 for line in range(&row_ends, row) {
                     entries.push((line, column, words.number(&what)?));
                 }

@@ -48,14 +48,15 @@ pages! {
     corners "corners" "pages/corners.md" "Where two sides of a surface meet";
     limit_points "limit-points" "pages/limit-points.md" "Where a load can go no further, and what comes after";
     jumps "jumps" "pages/jumps.md" "Stability; what comes past a limit point";
-    interfaces "interfaces" "pages/interfaces.md" "Interface problems of Siconos, fclib, the Matrix Market and CalculiX; for other solvers";
-    paraview "paraview" "pages/paraview.md" "Results in ParaView: files for each increment, major or minor iteration";
+    interfaces "interfaces" "pages/interfaces.md" "Interface problems of other programs, and for other solvers";
+    paraview "paraview" "pages/paraview.md" "Results in ParaView, of each increment, major or minor iteration";
     command_line "command-line" "pages/command-line.md" "Subcommands, files, exit codes";
     keys "keys" "pages/keys.md" "Keys and actions of the debugger; branches, breakpoints, journals";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";
     maps_and_charts "maps-and-charts" "pages/maps-and-charts.md" "Where it converges; random problems; error over cost";
     theory "theory" "pages/theory.md" "The method, its symbols, and where the program departs from the paper";
     verification "verification" "pages/verification.md" "What is accepted, how good it is, and how that is tested";
+    benchmarks "benchmarks" "pages/benchmarks.md" "Scenes whose answers are known from elsewhere, and how near ours are";
     speed "speed" "pages/speed.md" "What runs cost, and how that grows";
     architecture "architecture" "pages/architecture.md" "How the source is built";
     contributing "contributing" "pages/contributing.md" "How to change it: tests, fuzzing, rules";

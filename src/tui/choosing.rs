@@ -26,6 +26,8 @@ pub enum Group {
     Oscillations,
     /// Guided lessons.
     Lessons,
+    /// Scenes whose answers are known from elsewhere.
+    Benchmarks,
     /// Scenes in the folder in which the program was started.
     Files,
 }
@@ -37,6 +39,7 @@ impl Group {
             Group::Paper => "The paper",
             Group::Oscillations => "Oscillations",
             Group::Lessons => "Lessons",
+            Group::Benchmarks => "Benchmarks",
             Group::Files => "Your files in this folder",
         }
     }
@@ -58,7 +61,10 @@ pub struct Offer {
 impl Offer {
     /// Whether it is a scene that the program carries.
     pub fn is_scene(&self) -> bool {
-        matches!(self.group, Group::Paper | Group::Oscillations)
+        matches!(
+            self.group,
+            Group::Paper | Group::Oscillations | Group::Benchmarks
+        )
     }
 }
 
@@ -129,7 +135,7 @@ impl Preview {
         let what = match offer.group {
             Group::Lessons => lesson(&name),
             Group::Files => scene(&name).or_else(|why| lesson(&name).map_err(|_| why)),
-            Group::Paper | Group::Oscillations => scene(&name),
+            Group::Paper | Group::Oscillations | Group::Benchmarks => scene(&name),
         };
         let what = what.map_err(|why| why.to_string());
         Preview { name, what }
@@ -230,9 +236,10 @@ fn glance(model: Model, title: String, about: String, is_lesson: bool) -> Glance
 /// What the program itself has, and the files of the folder in which it runs.
 pub fn offers(progress: &Progress) -> Vec<Offer> {
     let scene = |scene: &builtin::Builtin| Offer {
-        group: match scene.name.starts_with("osc-") {
-            true => Group::Oscillations,
-            false => Group::Paper,
+        group: match scene.name.split('-').next() {
+            Some("osc") => Group::Oscillations,
+            Some("bench") => Group::Benchmarks,
+            _ => Group::Paper,
         },
         name: scene.name.into(),
         title: scene.title(),

@@ -40,48 +40,16 @@ impl Stage {
     }
 
     fn judge(&self, from: [f64; 2], to: [f64; 2], force: [f64; 2]) -> Verdict {
-        let surfaces = [Surface {
-            name: "s".into(),
-            elements: self.elements.clone(),
-            rigid: true,
-            endless: false,
-            smooth: Vec::new(),
-        }];
-        let slaves = [Contact {
-            node: 0,
-            surfaces: vec![0],
-            friction: self.friction,
-            start: Mode::Free,
-            state: InitialState::default(),
-            overlap: 0.0,
-            bond: self.bond,
-            area: None,
-        }];
-        let with = |at: [f64; 2]| {
-            let mut all = vec![at];
-            all.extend(&self.chain);
-            all
-        };
-        let (before, now) = (with(from), with(to));
-        let seen = Seen {
-            surfaces: &surfaces,
-            contacts: &slaves,
-            friction: &[self.friction],
-            before: &before,
-            now: &now,
-            out: [&[], &[]],
-            forces: &[force],
-            brought: &[self.brought],
-            earlier: &[0.0],
-            scales: Scales {
-                length: 1.0,
-                force: 1.0,
-                lengths: TOLERANCE,
-                forces: TOLERANCE,
-            },
-        };
-        let mut contact = vec![[0.0; 2]; now.len()];
-        let verdict = Judge::with_capacity(now.len(), 1).interface(&seen, &mut contact);
+        let surfaces = [surface(self.elements.clone())];
+        let slave = slave(&surfaces, self.friction, self.bond);
+        let (verdict, contact) = judged(
+            &surfaces,
+            slave,
+            &self.chain,
+            [from, to],
+            force,
+            self.brought,
+        );
         for k in 0..2 {
             let sum: f64 = contact.iter().map(|f| f[k]).sum();
             assert!(sum.abs() < 1e-15, "action is reaction: {contact:?}");
@@ -102,37 +70,59 @@ const MU: f64 = 0.577_350_269_189_625_7;
 /// A node that may touch a floor, y = 0, and a wall of two pieces, x = 1, whose outward side is −x.
 fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<Law> {
     let chain = [[3.0, 0.0], [-3.0, 0.0], [1.0, 2.0], [1.0, 1.0], [1.0, -1.0]];
-    let surface = |elements: Vec<Vec<usize>>| Surface {
+    let surfaces = [
+        surface(vec![vec![1, 2]]),
+        surface(vec![vec![3, 4], vec![4, 5]]),
+    ];
+    let slave = slave(&surfaces, Friction::default(), Bond::Hard);
+    let (verdict, _) = judged(&surfaces, slave, &chain, [from, to], [0.0; 2], 0.0);
+    verdict.broken().map(|finding| finding.law).collect()
+}
+
+fn surface(elements: Vec<Vec<usize>>) -> Surface {
+    Surface {
         name: "s".into(),
         elements,
         rigid: true,
         endless: false,
         smooth: Vec::new(),
-    };
-    let slave = Contact {
+    }
+}
+
+/// Node 0, which may touch all these surfaces.
+fn slave(surfaces: &[Surface], friction: Friction, bond: Bond) -> Contact {
+    Contact {
         node: 0,
-        surfaces: vec![0, 1],
-        friction: Friction::default(),
+        surfaces: (0..surfaces.len()).collect(),
+        friction,
         start: Mode::Free,
         state: InitialState::default(),
         overlap: 0.0,
-        bond: Default::default(),
+        bond,
         area: None,
-    };
-    let with = |at: [f64; 2]| [&[at], &chain[..]].concat();
-    let (before, now) = (with(from), with(to));
+    }
+}
+
+/// The judge's verdict on node 0 that went from a place to another over a chain that stays, and the forces that it distributes.
+fn judged(
+    surfaces: &[Surface],
+    slave: Contact,
+    chain: &[[f64; 2]],
+    way: [[f64; 2]; 2],
+    force: [f64; 2],
+    brought: f64,
+) -> (Verdict, Vec<[f64; 2]>) {
+    let [before, now] = way.map(|at| [&[at], chain].concat());
+    let friction = slave.friction;
     let seen = Seen {
-        surfaces: &[
-            surface(vec![vec![1, 2]]),
-            surface(vec![vec![3, 4], vec![4, 5]]),
-        ],
+        surfaces,
         contacts: &[slave],
-        friction: &[Friction::default()],
+        friction: &[friction],
         before: &before,
         now: &now,
         out: [&[], &[]],
-        forces: &[[0.0, 0.0]],
-        brought: &[0.0],
+        forces: &[force],
+        brought: &[brought],
         earlier: &[0.0],
         scales: Scales {
             length: 1.0,
@@ -143,7 +133,7 @@ fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<Law> {
     };
     let mut contact = vec![[0.0; 2]; now.len()];
     let verdict = Judge::with_capacity(now.len(), 1).interface(&seen, &mut contact);
-    verdict.broken().map(|finding| finding.law).collect()
+    (verdict, contact)
 }
 
 #[test]

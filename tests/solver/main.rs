@@ -31,6 +31,8 @@ mod spirals;
 mod oscillators;
 // No strategy accepts what is no Coulomb state; the ladder finds an answer wherever there is one.
 mod strategies;
+// Springs in series at contacts: random problems against hard ones with the springs in the matrix, and tangents by differences.
+mod compliant;
 // Bodies that come loose are told at the load at which they do; advice holds.
 mod loose;
 // Jumps to another branch are found, said and decided on; other sudden motions are none.

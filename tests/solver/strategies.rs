@@ -19,7 +19,7 @@ use stickslip::step::intervene::Intervention;
 use stickslip::step::stepper::Stepper;
 
 /// A random interface problem with a positive definite stiffness; some have cohesion, and perhaps no answer.
-fn problem(seed: u64) -> Problem {
+pub fn problem(seed: u64) -> Problem {
     let mut numbers = Numbers(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66);
     for _ in 0..4 {
         numbers.next();
@@ -89,7 +89,7 @@ fn truth(problem: &Problem) -> Census {
 }
 
 /// Steps to the first accepted increment or the failure.
-fn end(stepper: &mut Stepper) -> Result<(), Failure> {
+pub fn end(stepper: &mut Stepper) -> Result<(), Failure> {
     loop {
         match stepper.step().map(|event| event.outcome.clone()) {
             Some(Outcome::Failed(failure)) => return Err(failure),

@@ -157,7 +157,10 @@ macro_rules! described {
                 all[0].clone()
             }
             fn shown(&self) -> String {
-                $crate::format::described::OWN_DEFAULTS.to_owned()
+                let name = match self {
+                    $($name::$form { .. } => stringify!($form)),*
+                };
+                name.to_owned()
             }
             fn types(into: &mut Vec<$crate::format::described::Type>) -> Result<(), String> {
                 if $crate::format::described::known(into, stringify!($name)) {

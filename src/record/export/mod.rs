@@ -26,13 +26,16 @@ use std::path::{Path, PathBuf};
 
 pub use frozen::{NoExport, Origin, Parted, compared, core, whole, writable};
 
+/// The bytes of several files of a state.
+type MakeParts = fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, NotMade>;
+
 /// What a kind of file is made of.
 #[derive(Clone, Copy)]
 pub enum MadeOf {
     /// A state; the stepper is of the same model, and may be left anywhere.
     State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, NotMade>),
     /// A state too, in several files: those that [`Kind::files`] names.
-    Parts(fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, NotMade>),
+    Parts(MakeParts),
     /// A whole session.
     Journal,
 }

@@ -412,19 +412,10 @@ pub(super) fn check_held_slaves(
              free one of them, or take the node off the list",
             names.nodes[slave.node].name, surfaces[rigid].name
         );
-        return Err(Fault::new(slave_path(spec, names, slave.node), message));
+        return Err(Fault::new(
+            laws::slave_path(spec, names, slave.node),
+            message,
+        ));
     }
     Ok(())
-}
-
-/// The name in the file that made a node a slave.
-pub(super) fn slave_path(spec: &Spec, names: &Names, node: usize) -> Path {
-    for (k, group) in spec.slaves.iter().enumerate() {
-        for (j, name) in group.nodes.iter().enumerate() {
-            if names.nodes(name).is_ok_and(|nodes| nodes.contains(&node)) {
-                return at!["slaves", k, "nodes", j];
-            }
-        }
-    }
-    at!["slaves"]
 }

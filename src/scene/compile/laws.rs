@@ -3,10 +3,9 @@
 use super::super::areas::tributary;
 use super::super::limits;
 use super::super::nodes::Names;
-use super::interface::slave_path;
 use crate::contact::projection::{project, projection_at};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
-use crate::format::error::{Fault, Path};
+use crate::format::error::{Fault, Path, at};
 use crate::format::spec::{SlaveSpec, Spec};
 use crate::model::{Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Node, Surface};
 use std::collections::HashSet;
@@ -248,4 +247,16 @@ fn check_area(
         names.nodes[slave.node].name
     );
     Err(Fault::new(slave_path(spec, names, slave.node), message))
+}
+
+/// The name in the file that made a node a slave.
+pub(super) fn slave_path(spec: &Spec, names: &Names, node: usize) -> Path {
+    for (k, group) in spec.slaves.iter().enumerate() {
+        for (j, name) in group.nodes.iter().enumerate() {
+            if names.nodes(name).is_ok_and(|nodes| nodes.contains(&node)) {
+                return at!["slaves", k, "nodes", j];
+            }
+        }
+    }
+    at!["slaves"]
 }

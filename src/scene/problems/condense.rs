@@ -291,13 +291,13 @@ mod tests {
         };
         let (w, q) = condensed(&chain(2.0), &h, &f).unwrap();
         let (s, g) = reduced(&chain(2.0), &f, &kept).unwrap();
-        for i in 0..2 {
+        for (i, (row, own)) in w.iter().zip(&q).enumerate() {
             for j in 0..2 {
-                let product: f64 = (0..2).map(|k| w[i][k] * s[k][j]).sum();
+                let product: f64 = row.iter().zip(&s).map(|(w, s)| w * s[j]).sum();
                 assert!((product - f64::from(u8::from(i == j))).abs() < 1e-12);
             }
-            let under_load: f64 = (0..2).map(|k| w[i][k] * g[k]).sum();
-            assert!((under_load - q[i]).abs() < 1e-11);
+            let under_load: f64 = row.iter().zip(&g).map(|(w, g)| w * g).sum();
+            assert!((under_load - own).abs() < 1e-11);
         }
     }
 }

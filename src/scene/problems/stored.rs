@@ -203,11 +203,11 @@ impl<'s> Posed<'s> {
                 [*x, *y] = onto([*x, *y], point);
             }
         }
-        let size = rows.len();
-        for i in 0..size {
-            for j in 0..i {
-                let mean = 0.5 * (rows[i][j] + rows[j][i]);
-                (rows[i][j], rows[j][i]) = (mean, mean);
+        for i in 0..rows.len() {
+            let (above, below) = rows.split_at_mut(i);
+            for (j, row) in above.iter_mut().enumerate() {
+                let mean = 0.5 * (row[i] + below[0][j]);
+                (row[i], below[0][j]) = (mean, mean);
             }
         }
         let load = load.chunks_exact(2).zip(&self.contacts);
