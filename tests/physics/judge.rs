@@ -42,7 +42,14 @@ impl Stage {
     fn judge(&self, from: [f64; 2], to: [f64; 2], force: [f64; 2]) -> Verdict {
         let surfaces = [surface(self.elements.clone())];
         let slave = slave(&surfaces, self.friction, self.bond);
-        let (verdict, contact) = judged(&surfaces, slave, &self.chain, [from, to], force, self.brought);
+        let (verdict, contact) = judged(
+            &surfaces,
+            slave,
+            &self.chain,
+            [from, to],
+            force,
+            self.brought,
+        );
         for k in 0..2 {
             let sum: f64 = contact.iter().map(|f| f[k]).sum();
             assert!(sum.abs() < 1e-15, "action is reaction: {contact:?}");
@@ -63,7 +70,10 @@ const MU: f64 = 0.577_350_269_189_625_7;
 /// A node that may touch a floor, y = 0, and a wall of two pieces, x = 1, whose outward side is −x.
 fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<Law> {
     let chain = [[3.0, 0.0], [-3.0, 0.0], [1.0, 2.0], [1.0, 1.0], [1.0, -1.0]];
-    let surfaces = [surface(vec![vec![1, 2]]), surface(vec![vec![3, 4], vec![4, 5]])];
+    let surfaces = [
+        surface(vec![vec![1, 2]]),
+        surface(vec![vec![3, 4], vec![4, 5]]),
+    ];
     let slave = slave(&surfaces, Friction::default(), Bond::Hard);
     let (verdict, _) = judged(&surfaces, slave, &chain, [from, to], [0.0; 2], 0.0);
     verdict.broken().map(|finding| finding.law).collect()
