@@ -1,9 +1,13 @@
 //! What the laws of the pairs cost and change, where any is not hard contact; as `check` shows it.
 
-use crate::model::{Contact, Model};
+use super::Scene;
+use crate::format::contact_law::ContactLaw;
+use crate::model::Contact;
+use std::collections::HashSet;
 
 /// A line for each law that any slave node has besides hard contact; empty where none has.
-pub fn words(model: &Model) -> Vec<String> {
+pub fn words(scene: &Scene) -> Vec<String> {
+    let model = &scene.model;
     let having = |k: usize| -> Vec<f64> {
         let gives = model.contacts.iter().map(|contact| contact.bond.give()[k]);
         gives.filter(|give| *give > 0.0).collect()
@@ -38,10 +42,36 @@ pub fn words(model: &Model) -> Vec<String> {
             nodes(tied)
         ));
     }
+    lines.extend(left_out(scene));
     if !lines.is_empty() {
         lines.push(areas(&model.contacts));
     }
     lines
+}
+
+/// The nodes that a penalty is asked for at and that are no slave nodes, as on the axis of bodies whose elements have middle nodes.
+fn left_out(scene: &Scene) -> Option<String> {
+    let slaves: HashSet<usize> = scene
+        .model
+        .contacts
+        .iter()
+        .map(|slave| slave.node)
+        .collect();
+    let penalty = |law: ContactLaw| matches!(law, ContactLaw::Penalty { .. });
+    let mut listed = HashSet::new();
+    let named: Vec<String> = scene
+        .spec
+        .slaves
+        .iter()
+        .filter(|group| penalty(group.law))
+        .flat_map(|group| &group.nodes)
+        .filter_map(|name| scene.names().nodes(name).ok())
+        .flatten()
+        .filter(|node| !slaves.contains(node) && listed.insert(*node))
+        .map(|node| scene.model.nodes[node].name.clone())
+        .collect();
+    let why = "left out of the penalty, bearing no force, for no area (A = 0) or no way to move";
+    (!named.is_empty()).then(|| format!("{why}: {}", named.join(", ")))
 }
 
 fn nodes(count: usize) -> String {

@@ -85,7 +85,7 @@ impl Cost {
             bodies: model.bodies.iter().map(body_line).collect(),
             surfaces: model.surfaces.iter().map(surface_line).collect(),
             slaves: slaves_line(model),
-            laws: super::bonds::words(model),
+            laws: super::bonds::words(scene),
             axis: axis_lines(model),
             gaps: gaps::words(model),
             history: history_line(model),

@@ -26,6 +26,8 @@ const BLOCKS: &str = "(title: \"t\", nodes: [Block(id: \"low\", corners: [(0, 0)
 /// Minor iterations that are counted, and those before, in which buffers grow to their size.
 const COUNTED: usize = 100;
 const WARM: usize = 60;
+/// Where bonds give way, the first increments take more major iterations, and their history grows.
+const WARM_SPRINGS: usize = 400;
 
 /// A stepper that is warm, and at the end of whose counted steps the scene still goes on.
 fn warm(name: &str, solver: &str, strategy: &str, factor: &str) -> Stepper {
@@ -38,12 +40,27 @@ fn warm(name: &str, solver: &str, strategy: &str, factor: &str) -> Stepper {
     let set = set.map(|(path, value)| (path.to_owned(), value.to_owned()));
     let scene = match name {
         "sheet" => Scene::from_text(name, SHEET, &set),
+        "springs" => {
+            let laws = "on: [\"top\"], law: Penalty(stiffness: 2000), stick: 1500";
+            // Over a straight surface.
+            let held = BLOCKS.replace("low.bottom", "low.all");
+            Scene::from_text(name, &held.replace("on: [\"top\"]", laws), &set)
+        }
+        "tied" => {
+            let laws = "on: [\"top\"], law: Tied";
+            Scene::from_text(name, &BLOCKS.replace("on: [\"top\"]", laws), &set)
+        }
         "blocks" => Scene::from_text(name, BLOCKS, &set),
         name => Scene::open(name, &set),
     };
     let scene = scene.unwrap_or_else(|e| panic!("{e}"));
     let mut stepper = Stepper::new(Arc::new(scene.model));
-    for _ in 0..WARM {
+    let warm = if name == "springs" {
+        WARM_SPRINGS
+    } else {
+        WARM
+    };
+    for _ in 0..warm {
         stepper.step().expect("the scene goes on");
     }
     stepper
@@ -79,6 +96,8 @@ fn minor_major_and_increment_loops_do_not_allocate_after_warm_up() {
         "05-cantilever-elastic-block",
         "sheet",
         "blocks",
+        "springs",
+        "tied",
     ] {
         for solver in ["augmented", "condensed"] {
             for (strategy, factor) in [("table2", "each"), ("ladder", "each"), ("ladder", "needed")]

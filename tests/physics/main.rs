@@ -17,6 +17,8 @@ mod solids;
 mod start_gaps;
 // Penalty, stick stiffness, ties and cohesion by area meet closed forms, and each other.
 mod laws;
+// The same laws on an axis, in press fits, along arcs, changed by hand, and in snapshots.
+mod bonds;
 // Decks of another program mean what scenes written by hand mean.
 mod decks;
 // The paper's problems meet solutions found without any contact algorithm, at the rate that they claim.

@@ -4,6 +4,7 @@
 //! With u = W (p + f), gap and slip of the touching points are those of u + C f, C = diag(c). Hard contact obeys the same with
 //! W + C in place of W, if its loads are W + C's as well: (W + C) p' = W p.
 
+use crate::common::scene;
 use crate::strategies::{end, problem};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
@@ -12,7 +13,7 @@ use stickslip::format::contact_law::ContactLaw;
 use stickslip::interface::census::{Census, census};
 use stickslip::model::{Model, Strategy};
 use stickslip::scene::Scene;
-use stickslip::step::event::Failure;
+use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::stepper::Stepper;
 
 /// The area of every node.
@@ -173,4 +174,62 @@ fn no_strategy_accepts_another_state_where_springs_give_way_and_the_ladder_finds
     assert_eq!(of("ladder"), with_answer);
     assert_eq!(of("census"), with_answer);
     assert!(of("table2") > 150 && of("newton") > 150, "{solved:?}");
+}
+
+/// Force that the first major iteration of an increment of `step` leaves out of balance, from a state of the two cantilevers with
+/// much penetration. (The condition of sticking is off in first order there: its row t · (Δu_S* − Δu_S) leaves out how S* travels
+/// by the gap.)
+fn left_after(name: &str, stick: Option<f64>, angle: &str, solver: &str, step: f64) -> f64 {
+    let set = [
+        ("settings.solver", solver),
+        ("settings.t_max", "consistent"),
+        ("friction.angle", angle),
+    ];
+    let mut spec = scene(name, &[]).spec;
+    spec.history.path = vec![0.0, 0.5, 0.5 + step];
+    let own = &mut spec.slaves[0];
+    own.law = ContactLaw::Penalty { stiffness: 20.0 };
+    (own.stick, own.area) = (stick, Some(1.0));
+    let with_laws = Scene::from_spec(name, spec).unwrap_or_else(|e| panic!("{e}"));
+    let all = set.iter().fold(with_laws, |scene, (path, value)| {
+        scene.with(path, value).unwrap()
+    });
+    let mut stepper = Stepper::new(Arc::new(all.model));
+    loop {
+        let event = stepper.step().expect("an increment more").clone();
+        assert!(
+            !matches!(event.outcome, Outcome::Failed(_)),
+            "{:?}",
+            event.outcome
+        );
+        if let (true, Outcome::Major { after, .. }) = (event.load_factor > 0.5, &event.outcome) {
+            assert!(
+                event
+                    .nodes
+                    .iter()
+                    .all(|node| node.gap < -1e-3 && !node.decision.changes()),
+                "{event:?}"
+            );
+            return after.force;
+        }
+    }
+}
+
+/// Newton's method with the derivative of all forces leaves what is of second order in its step: halved, a quarter.
+#[test]
+fn the_tangent_with_penalty_and_stick_stiffness_is_the_derivative_of_the_forces() {
+    for (name, stick, angle) in [
+        ("02-two-cantilevers-smooth", None, "0.0"),
+        ("02-two-cantilevers-rough", Some(30.0), "60.0"),
+        ("02-two-cantilevers-rough", None, "60.0"),
+        ("02-two-cantilevers-rough", Some(30.0), "5.0"),
+    ] {
+        for solver in ["condensed", "augmented"] {
+            let left = [4e-3, 2e-3, 1e-3].map(|step| left_after(name, stick, angle, solver, step));
+            for pair in left.windows(2) {
+                let order = (pair[0] / pair[1]).log2();
+                assert!((order - 2.0).abs() < 0.1, "{name} {solver}: {order}");
+            }
+        }
+    }
 }
