@@ -42,6 +42,10 @@ fn accepted_increments_are_in_equilibrium_with_their_supports() {
         assert!(after.relative <= after.limit && *unsettled == 0);
         // A second way: interaction and loads against all reactions, summed over the whole scene.
         for axis in 0..2 {
+            // Around an axis radial forces go all around, and add up to nothing whatever they are.
+            if axis == 0 && scene.model.is_axisymmetric() {
+                continue;
+            }
             let mut stepper = Stepper::new(Arc::new(with_reactions(&scene.model, axis)));
             stepper.restore(&a.state);
             let mut reactions = Vec::new();
