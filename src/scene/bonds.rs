@@ -2,7 +2,7 @@
 
 use super::Scene;
 use crate::format::contact_law::ContactLaw;
-use crate::model::Contact;
+use crate::model::{Contact, Model, Surface};
 use std::collections::HashSet;
 
 /// A line for each law that any slave node has besides hard contact; empty where none has.
@@ -31,6 +31,7 @@ pub fn words(scene: &Scene) -> Vec<String> {
     if !normal.is_empty() || !tangential.is_empty() {
         lines.push("condensed bodies stand on springs then, and nodes of these laws are not held in corners".into());
     }
+    lines.extend(kinked(model));
     let tied = model
         .contacts
         .iter()
@@ -47,6 +48,21 @@ pub fn words(scene: &Scene) -> Vec<String> {
         lines.push(areas(&model.contacts));
     }
     lines
+}
+
+/// Surfaces at whose kinks nodes that give way may hop.
+fn kinked(model: &Model) -> Option<String> {
+    let touched = |k: usize| {
+        let gives = |c: &Contact| c.bond.give() != [0.0; 2] && c.surfaces.contains(&k);
+        model.contacts.iter().any(gives)
+    };
+    let kinks = |(k, surface): &(usize, &Surface)| {
+        !surface.rigid && surface.smooth.is_empty() && surface.elements.len() > 1 && touched(*k)
+    };
+    let named = model.surfaces.iter().enumerate().filter(kinks);
+    let named: Vec<&str> = named.map(|(_, surface)| surface.name.as_str()).collect();
+    let why = "may have kinks once they deform, where a node inside hops between two elements; smooth: true is for that";
+    (!named.is_empty()).then(|| format!("surfaces {}: {why}", named.join(", ")))
 }
 
 /// The nodes that a penalty is asked for at and that are no slave nodes, as on the axis of bodies whose elements have middle nodes.

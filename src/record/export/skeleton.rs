@@ -7,7 +7,7 @@
 use crate::format::SceneError;
 use crate::outside::shown;
 use crate::scene::Scene;
-use crate::scene::nodes::Line;
+use crate::scene::nodes::lines::Line;
 
 /// Id of the mesh.
 const ID: &str = "m";

@@ -13,6 +13,8 @@ use stickslip_exchange::inp::deck::{Adjust, Faces, Normal, Tie};
 
 /// Without a POSITION TOLERANCE, nodes are tied that are at most this part of a side's length away, as CalculiX has it.
 const TOLERANCE: f64 = 0.025;
+/// Angle between two sides from which on it is a real corner, and not a curve in pieces (30 degrees).
+const CORNER: f64 = std::f64::consts::FRAC_PI_6;
 
 /// What holds between a slave node and the surfaces that it may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,6 +132,14 @@ impl Made<'_> {
                 continue;
             };
             let ids: Vec<String> = self.lines(sides, &surface.name, surface.place);
+            let smooth = self.is_made_smooth(touching.master, sides, all);
+            if smooth {
+                self.remark(
+                    surface.place,
+                    "the surface is one smooth curve through its nodes, since it is touched by way of springs: where the normal \
+                     jumps, a node inside would hop between two sides",
+                );
+            }
             for id in &ids {
                 self.origin
                     .note(at!["surfaces", self.spec.surfaces.len()], surface.place);
@@ -138,12 +148,53 @@ impl Made<'_> {
                     along: format!("{MESH}.{id}"),
                     reverse: false,
                     endless: false,
-                    smooth: false,
+                    smooth,
                 });
             }
             made.insert(touching.master, ids);
         }
         made
+    }
+
+    /// Whether a master surface is to be smooth: nodes that give way touch it, it can bend, and it has no real corner.
+    fn is_made_smooth(&self, master: usize, sides: &[(usize, usize)], all: &[Touching]) -> bool {
+        let gives = |touching: &Touching| {
+            let penalty = matches!(touching.laws.law, ContactLaw::Penalty { .. });
+            touching.master == master && (penalty || touching.laws.stick.is_some())
+        };
+        let moves = |node: &usize| self.still[*node] != [true; 2];
+        let deck = self.deck;
+        let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
+        all.iter().any(gives)
+            && sides.len() > 1
+            && sides.iter().flatten().any(moves)
+            && !self.turns_sharply(&sides)
+    }
+
+    /// Whether one of these sides goes on from another at more than [`CORNER`].
+    fn turns_sharply(&self, sides: &[Vec<usize>]) -> bool {
+        let at = |node: usize| self.deck.nodes[node].at;
+        let along = |from: usize, to: usize| {
+            let (from, to) = (at(from), at(to));
+            let way = [to[0] - from[0], to[1] - from[1]];
+            let length = way[0].hypot(way[1]);
+            [way[0] / length, way[1] / length]
+        };
+        let starts: HashMap<usize, [f64; 2]> = sides
+            .iter()
+            .filter_map(|side| match side[..] {
+                [first, second, ..] => Some((first, along(first, second))),
+                _ => None,
+            })
+            .collect();
+        sides.iter().any(|side| {
+            let [.., before, last] = side[..] else {
+                return false;
+            };
+            let arriving = along(before, last);
+            let leaving = starts.get(&last);
+            leaving.is_some_and(|l| arriving[0] * l[0] + arriving[1] * l[1] < CORNER.cos())
+        })
     }
 
     /// Enters sides of elements as lines of the mesh, one for those that hang together; their names.

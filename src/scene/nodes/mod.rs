@@ -9,7 +9,7 @@ mod elements;
 mod given;
 mod joints;
 mod layout;
-mod lines;
+pub mod lines;
 mod lookup;
 mod sides;
 
@@ -20,7 +20,7 @@ use crate::format::spec::{Nodes, Spec};
 use crate::model::{ElementKind, Node};
 use checks::{check_ids, check_total};
 use elements::Element;
-pub use lines::Line;
+
 use sides::Line as Sides;
 use std::collections::HashMap;
 
