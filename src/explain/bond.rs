@@ -30,15 +30,11 @@ pub fn lines(contact: &Contact, record: &ContactRecord) -> Vec<String> {
     }
     if normal > 0.0 {
         let (give, inside) = (four(normal), four(normal * record.f_n));
-        lines.push(format!(
-            "penalty: inside by c F_n = {inside}, c = {give}; the tests are of g + c F_n"
-        ));
+        lines.push(format!("penalty: inside by c F_n = {inside}, c = {give}"));
     }
     if tangential > 0.0 {
         let (give, slip) = (four(tangential), four(tangential * record.f_t));
-        lines.push(format!(
-            "stick stiffness: elastic slip c F_t = {slip}, c = {give}; slip is what goes beyond"
-        ));
+        lines.push(format!("elastic slip c F_t = {slip}, c = {give}"));
     }
     lines
 }

@@ -70,7 +70,7 @@ impl Scene {
         if import::is_mesh(name) {
             return Err(SceneError::whole(name, import::no_scene(name)));
         }
-        if let Some(problem) = problems::from_file(name, overrides) {
+        if let Some(problem) = problems::opened::from_file(name, overrides) {
             return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
         let text = match deck::is_called_so(name) {
@@ -102,7 +102,7 @@ impl Scene {
         if deck::is_one(text) && !kind::is_contacts(text) {
             return Scene::from_deck(name, text, overrides);
         }
-        if let Some(problem) = problems::from_text(name, text, overrides) {
+        if let Some(problem) = problems::opened::from_text(name, text, overrides) {
             return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
         if locate::head(text) == Some(condensed::HEAD) {

@@ -3,87 +3,21 @@
 //! - [`siconos`]: friction problems condensed to their contacts, of Siconos (text) and fclib (HDF5), and what becomes of
 //!   global ones; [`market`]: those of files of the Matrix Market.
 //! - [`stored`]: a stiffness that CalculiX has stored, with contacts named by their nodes.
-//! - [`condense`]: unknowns that no contact sees, eliminated.
+//! - `opened`: which of these a file is. [`condense`]: unknowns that no contact sees, eliminated.
 //!
 //! How their files are read and written is for [`stickslip_exchange`]; what the numbers mean is said here.
 
 pub mod condense;
 pub mod market;
+pub(super) mod opened;
 pub mod siconos;
 pub mod stored;
 
 use super::limits;
-use crate::format::condensed::Problem;
-use crate::format::{self, SceneError, error, locate, read};
+use crate::format::{SceneError, error, read};
 use crate::outside::input;
-use siconos::Friction2d;
 use std::path::Path;
 use stickslip_exchange::broken::Broken;
-use stickslip_exchange::{fclib, matrix_market};
-
-/// A file that is no text: its problem, if it is one.
-///
-/// # Errors
-/// If it is one, and unsound.
-pub(super) fn from_file(
-    name: &str,
-    overrides: &[(String, String)],
-) -> Option<Result<Problem, SceneError>> {
-    let start = input::start(Path::new(name), fclib::MARK.len() as u64).ok()?;
-    if start != fclib::MARK {
-        return None;
-    }
-    let read = || {
-        let large = "no interface problem has more";
-        let bytes = input::bytes(Path::new(name), read::FILE_BYTES as u64, large)
-            .map_err(|why| SceneError::whole(name, why.to_string()))?;
-        let problem = fclib::read(bytes).map_err(|broken| of_file(name, broken))?;
-        let problem = Friction2d::condensed(problem, memory(overrides))
-            .map_err(|why| SceneError::whole(name, why))?;
-        let mut problem = problem.problem(&title(name));
-        problem.about = "A friction problem from a file of fclib: u = W r + q.".to_owned();
-        Ok(problem)
-    };
-    Some(read())
-}
-
-/// The problem of a text, if it is one of another program.
-///
-/// # Errors
-/// If it is one, and unsound.
-pub(super) fn from_text(
-    name: &str,
-    text: &str,
-    overrides: &[(String, String)],
-) -> Option<Result<Problem, SceneError>> {
-    let memory = memory(overrides);
-    if text.starts_with(matrix_market::MARK) {
-        return Some(market::read(name, text, memory));
-    }
-    if locate::head(text) == Some(format::stored::HEAD) {
-        return Some(stored::read(name, text, memory));
-    }
-    if !siconos::is_one(text) {
-        return None;
-    }
-    let read = siconos::read_within(text, memory);
-    Some(match read {
-        Ok(problem) => Ok(problem.problem(&title(name))),
-        Err(broken) => Err(SceneError {
-            at: Some((broken.line, broken.column)),
-            ..SceneError::whole(name, broken.message)
-        }),
-    })
-}
-
-/// What `settings.memory` is set to from outside.
-fn memory(overrides: &[(String, String)]) -> Option<f64> {
-    let set = overrides
-        .iter()
-        .rev()
-        .find(|(path, _)| path == "settings.memory");
-    set.and_then(|(_, value)| value.parse().ok())
-}
 
 /// Refuses a matrix of so many contacts that takes more memory than there is.
 fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
