@@ -1,5 +1,5 @@
 //! Tells the program the revision that it is built from: `STICKSLIP_REVISION` where that is set, else what git says of the
-//! work tree, but only in an optimised build, so that a commit does not build all tests anew.
+//! work tree, but only in an optimised build, so that a commit does not build all tests anew. And it compresses the font.
 
 use std::env;
 use std::process::Command;
@@ -12,6 +12,8 @@ fn main() {
             println!("cargo::rerun-if-changed={path}");
         }
     }
+    #[cfg(feature = "plot")]
+    compress_font();
     let given = env::var("STICKSLIP_REVISION").ok();
     let revision = given.or_else(|| optimised.then(described).flatten());
     let revision = revision.unwrap_or_else(|| "a build without a revision".into());
@@ -25,4 +27,14 @@ fn described() -> Option<String> {
     let text = String::from_utf8(output.stdout).ok()?;
     let text = text.trim();
     (output.status.success() && !text.is_empty()).then(|| text.to_owned())
+}
+
+/// Writes the font that pictures are drawn with where the program takes it from, at half its size.
+#[cfg(feature = "plot")]
+fn compress_font() {
+    const LEVEL: u8 = 8;
+    let font = miniz_oxide::deflate::compress_to_vec(dejavu::sans::regular(), LEVEL);
+    let folder = env::var("OUT_DIR").expect("cargo names a folder for what is made");
+    let file = std::path::Path::new(&folder).join("font.deflate");
+    std::fs::write(&file, font).expect("the folder for what is made can be written");
 }

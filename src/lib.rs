@@ -12,16 +12,18 @@
 //! - [`study`]: many runs of a scene: sweeps, stability maps, work-precision charts.
 //! - [`history`]: what was done so far: frames, branches, breakpoints, watches.
 //! - [`record`]: what is kept in files: snapshots, journals, problems written as scenes.
+//! - [`attach`]: solvers that others made, stepped as ours.
 //! - [`session`]: the debugger without a terminal: commands in, frames out.
 //! - [`manual`]: the pages that `help` shows.
 //! - [`action`]: everything that can be done, by name, by key, or by a typed line.
 //! - [`teach`]: guided lessons.
-//! - [`tui`]: the debugger in the terminal.
+//! - [`tui`]: the debugger in the terminal; with the feature `tui`.
 //! - [`cli`]: the command line.
 
 #![forbid(unsafe_code)]
 
 pub mod action;
+pub mod attach;
 pub mod cli;
 pub mod explain;
 pub mod format;
@@ -33,6 +35,7 @@ pub mod scene;
 pub mod session;
 pub mod study;
 pub mod teach;
+#[cfg(feature = "tui")]
 pub mod tui;
 
 pub use stickslip_core::{

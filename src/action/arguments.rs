@@ -3,8 +3,8 @@
 use super::context::{Context, any_or_exact, chosen, exact, find, model, several};
 use super::meaning::{Action, ChartOf, Colours, Copied, Filter, Question, Sort, Ui, Whose};
 use super::misread::Misread;
+use super::parameters::{parameter, set_paths};
 use super::table::{Entry, Verb};
-use crate::format::paths;
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::manual;
@@ -56,7 +56,7 @@ impl Entry {
                 return Ok(Action::Ui(Ui::Ask(Question::Increment)));
             }
             Verb::Increment => Command::Increment(increment(rest)?),
-            Verb::Set => self.set(&words)?,
+            Verb::Set => self.set(rest, &words, context)?,
             Verb::SetPath(path) => match words[..] {
                 [value] => Command::Set {
                     path: path.to_string(),
@@ -243,9 +243,18 @@ impl Entry {
         }))
     }
 
-    fn set(&self, words: &[&str]) -> Result<Command, Misread> {
+    fn set(&self, rest: &str, words: &[&str], context: &Context) -> Result<Command, Misread> {
+        // Names and texts of attached solvers may hold blanks.
+        if let Some((known, value)) = parameter(rest, context)
+            && !value.is_empty()
+        {
+            return Ok(Command::Set {
+                path: known.name.clone(),
+                value: value.into(),
+            });
+        }
         let [path, value] = words[..] else {
-            let paths = set_paths().join(", ");
+            let paths = set_paths(context).join(", ");
             return Err(Misread::Usage(format!("{}; paths: {paths}", self.usage())));
         };
         Ok(Command::Set {
@@ -388,15 +397,4 @@ fn monitor(name: &str, context: &Context) -> Result<usize, Misread> {
             Misread::NoMonitor { name, monitors }
         }
     })
-}
-
-/// What `set` can change during a run.
-pub(super) fn set_paths() -> Vec<String> {
-    let others = ["history.increment", "friction.angle", "friction.cohesion"];
-    let settings = paths::of_settings().into_iter().map(|(path, _)| path);
-    others
-        .map(String::from)
-        .into_iter()
-        .chain(settings)
-        .collect()
 }

@@ -1,8 +1,9 @@
 //! Completion: what a line that is being typed could go on as.
 
-use super::arguments::{CONDITIONS, set_paths};
+use super::arguments::CONDITIONS;
 use super::context::{Context, names};
 use super::meaning::{Colours, Copied, Filter, Sort, Whose};
+use super::parameters::{parameter_lines, set_paths};
 use super::paths::beginning_with;
 use super::table::{ACTIONS, Entry, Verb, by_name};
 use crate::format::paths;
@@ -14,7 +15,8 @@ use crate::manual;
 pub fn complete(line: &str, context: &Context) -> Vec<String> {
     let first = line.split_whitespace().next();
     let entry = first.and_then(|name| context.entry(name).ok());
-    let start = match entry.filter(|entry| entry.takes_rest()) {
+    let sets = entry.is_some_and(|entry| entry.verb == Verb::Set) && context.offers.is_some();
+    let start = match entry.filter(|entry| entry.takes_rest() || sets) {
         // What is one argument, blanks and all, goes on as a whole.
         Some(_) => line.find(char::is_whitespace),
         None => line.rfind(|c: char| c.is_whitespace() || (c == ',' && is_list(entry))),
@@ -25,6 +27,9 @@ pub fn complete(line: &str, context: &Context) -> Vec<String> {
         Some(name) => context.entry(name).map_or(Vec::new(), |entry| {
             let mut all = entry.candidates(before, context);
             all.extend(entry.paths(word));
+            if sets {
+                all.extend(parameter_lines(word, context));
+            }
             all
         }),
     };
@@ -102,7 +107,7 @@ impl Entry {
                 .map(|quantity| quantity.word().into())
                 .into(),
             (Verb::Watch, 1) => nodes().chain(std::iter::once("as".into())).collect(),
-            (Verb::Set, 0) => set_paths(),
+            (Verb::Set, 0) if context.offers.is_none() => set_paths(context),
             (Verb::Set, 1) => values(before)
                 .iter()
                 .map(|value| value.to_string())

@@ -7,6 +7,8 @@ use crate::history::tree::Tree;
 use crate::interface::census::MOST;
 use crate::model::Model;
 use crate::scene::{Builtin, Scene};
+use crate::step::solver::Offers;
+use crate::step::state::State;
 
 /// What an action needs to know to understand its arguments.
 #[derive(Debug, Clone, Copy, Default)]
@@ -23,6 +25,10 @@ pub struct Context<'a> {
     pub scenes: &'a [String],
     /// Lessons that the program carries.
     pub lessons: &'a [Builtin],
+    /// What an attached solver offers; none is a solver of ours.
+    pub offers: Option<&'a Offers>,
+    /// The shown state.
+    pub state: Option<&'a State>,
     /// The present keys; none are those of the table.
     pub keymap: Option<&'a Keymap>,
 }

@@ -76,6 +76,10 @@ pub enum Ui {
     Answer(String),
     /// Free mode: whose decisions hide until predicted; none switches it on or off.
     Predict(Option<Whose>),
+    /// Show what an attached solver says besides.
+    Log,
+    /// Show what can be set in it.
+    Parameters,
     /// Ask for what an action still needs.
     Ask(Question),
     /// Open the line for typed commands.

@@ -6,6 +6,7 @@
 //!
 //! - [`meaning`]: what an action can be; [`table`]: all of them by name; [`context`]: what their arguments are read against.
 //! - [`keymap`]: which key does which; [`config`]: what the user has set; `turns`: what must wait for the solver.
+//! - `offered`: what the solver that is open lets be done; `parameters`: what `set` changes in an attached one.
 //! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as, `paths` for files;
 //!   [`misread`]: why it means nothing.
 
@@ -16,6 +17,8 @@ pub mod context;
 pub mod keymap;
 pub mod meaning;
 pub mod misread;
+mod offered;
+mod parameters;
 mod paths;
 pub mod table;
 #[cfg(test)]
@@ -30,4 +33,5 @@ pub use meaning::{
     Action, ChartOf, Colours, Copied, Filter, Page, Question, Sort, Step, Ui, Whose,
 };
 pub use misread::Misread;
+pub use parameters::{parameter, present};
 pub use table::{ACTIONS, Entry, Group, by_key, by_name, markdown};

@@ -170,7 +170,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Change, "majors", "LIMIT", &[], "", "Change the limit of major iterations", Verb::SetPath("settings.majors")),
     entry(Group::Change, "start-from", "NUMBER", &[], "", "Start from a consistent state of the census: its modes and T_max", Verb::StartFrom),
     entry(Group::Change, "apply", "NUMBER", &[], "", "Take a remedy of the list, in a new branch", Verb::Apply),
-    entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*", Verb::Set),
+    entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*; in an attached solver, a parameter that it offers", Verb::Set),
 
     entry(Group::Branches, "branch", "NAME", &[], "", "To the tip of another branch: b2, its name, or the beginning of it", Verb::Branch(None)),
     entry(Group::Branches, "branch-next", "", &["]"], "", "To the tip of the next branch", Verb::Branch(Some(To::Next))),
@@ -207,6 +207,8 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "timeline", "", &["t"], "timeline", "All modes by iteration; Left and Right go through them with the whole screen", Verb::Do(Ui::Page(Page::Timeline))),
     entry(Group::Look, "census", "[NODES]", &[], "", "Try every assignment of modes on the problem that is solved next: of these nodes, or of all that can touch (up to 8 one by one, up to 64 by branch and bound)", Verb::Census),
     entry(Group::Look, "chart", "[FILE|PATH=A,B,C]", &[], "", "Error over cost: of this scene, measured now (its own chart, or over settings), or a table that `stickslip chart --csv` made", Verb::Chart),
+    entry(Group::Look, "log", "", &["O"], "", "What an attached solver says besides: its messages and its standard error", Verb::Do(Ui::Log)),
+    entry(Group::Look, "parameters", "", &[], "", "What can be set in an attached solver, with its present values", Verb::Do(Ui::Parameters)),
     entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
     entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
     entry(Group::Look, "zoom", "", &["z"], "zoom", "This pane alone, and back", Verb::Do(Ui::Zoom)),
@@ -310,6 +312,7 @@ impl Entry {
             Verb::Lesson | Verb::Chart | Verb::Journal => usize::MAX,
             Verb::Export { .. } | Verb::Census => usize::MAX,
             Verb::Branch(None) | Verb::Rename | Verb::Compare => usize::MAX,
+            Verb::Set => usize::MAX,
             Verb::Colours | Verb::Break | Verb::Watch | Verb::Unwatch => usize::MAX,
             _ => self.arguments.split_whitespace().count(),
         }

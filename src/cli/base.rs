@@ -21,6 +21,10 @@ pub enum Exit {
     Bad = 2,
     /// The solve did not converge, or nothing that was tried helps.
     Unconverged = 3,
+    /// Cells of a sweep are missing: what was printed does them.
+    Incomplete = 4,
+    /// The machine failed, and not the input: another try may go well.
+    Again = 75,
     /// Stopped from outside by Ctrl-C; a reader that closes the pipe stops nothing that he wants.
     Interrupted = 130,
 }
@@ -31,7 +35,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a subcommand could not do its work; all of these are bad input or usage.
+/// Why a subcommand could not do its work; all of these but one are bad input or usage.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
@@ -44,6 +48,9 @@ pub enum Error {
     Journal(#[from] JournalError),
     #[error("{0}")]
     Usage(String),
+    /// A file that another run has, or that the system did not let be written.
+    #[error("{0}")]
+    Again(String),
     #[error("standard output: {0}")]
     Output(io::Error),
 }

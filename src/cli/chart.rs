@@ -3,10 +3,12 @@
 use super::base::{Error, Exit, NoValue, SetArgs, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
+use super::parts::{PartArgs, failed};
 use crate::explain::number::six;
 use crate::format::kind::{FileKind, mistaken};
 use crate::study::chart_file::{Chart, Truth};
-use crate::study::precision::{self, Cost, Measure, Point, Precision, ROUND_OFF};
+use crate::study::chart_runs::{self, Planned};
+use crate::study::precision::{self, Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};
 use crate::study::precision_table;
 use crate::study::{Vary, Watch, precision_figure};
 use std::path::{Path, PathBuf};
@@ -17,7 +19,8 @@ Scenes 01 to 05 and osc-inclined-cantilever have charts of their own (problems/c
 element orders, settings. Any other scene is run with meshes, increments and both kinds of T_max.
 
 Runs that fail are results, and stand on a rail at the top of the picture: the exit code is 0 if the chart was
-done, 2 for bad input or usage, and 130 if it was interrupted; files have what was done.")]
+done, 2 for bad input or usage, 4 if runs are missing to --merge, 75 if a log is busy or cannot be written,
+and 130 if it was interrupted; files have what was done.")]
 pub struct Args {
     /// Scenes: files, or built-in names
     #[arg(
@@ -27,7 +30,7 @@ pub struct Args {
     )]
     scenes: Vec<String>,
     /// Draws the table of a chart that was made before (--csv), and runs nothing
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["log", "merge"])]
     from: Option<PathBuf>,
     /// Runs with each of the values, instead of the scene's own chart; may be repeated for the product of all
     #[arg(long, value_name = "PATH=A,B,C", value_parser = Vary::parse)]
@@ -51,6 +54,8 @@ pub struct Args {
     /// Runs everything so often, and takes the median of the times
     #[arg(long, value_name = "N", default_value_t = 3)]
     repeats: usize,
+    #[command(flatten)]
+    part: PartArgs,
     #[command(flatten)]
     out: OutputArgs,
 }
@@ -91,27 +96,32 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             Some(file) => chart.truth = Truth::Table(Path::new(file).to_owned()),
             None => {}
         }
-        let plans = precision::plans(&chart)?;
-        planned.push((chart, plans));
+        planned.push(Planned::new(chart)?);
     }
     let outputs = Outputs::open(&args.out)?;
-    let cases = planned
-        .iter()
-        .flat_map(|(_, plans)| plans)
-        .flat_map(|plan| &plan.cases);
-    let progress = args
-        .out
-        .progress(cases.map(|case| case.increments).sum(), "increments");
+    let increments = planned.iter().map(Planned::increments).sum();
+    let progress = args.out.progress(increments, "increments");
     let watch = Watch {
         stop: &|| interrupt.came(),
         done: &|increments| progress.inc(increments),
     };
+    let keeping = args.part.keeping(&args.out)?;
+    let kept = chart_runs::open(&planned, args.repeats, &keeping).map_err(|e| failed(e.into()))?;
+    if let Some(incomplete) = args.part.whole(&kept) {
+        return Ok(incomplete);
+    }
+    if args.part.is_part() {
+        let done = chart_runs::run_part(&planned, args.repeats, &kept, &watch);
+        progress.finish_and_clear();
+        let done = done.map_err(failed)?;
+        return Ok(args.part.end(&kept, |k| done[k], args.out.quiet));
+    }
     let measure = Measure {
         cost: args.cost,
         target: args.target,
         repeats: args.repeats,
     };
-    let made = |(chart, plans): &(Chart, Vec<_>)| precision::run(chart, plans, measure, &watch);
+    let made = |planned: &Planned| precision::run_kept(planned, measure, &kept, &watch);
     let charts: Result<Vec<Precision>, _> = planned.iter().map(made).collect();
     progress.finish_and_clear();
     let charts = match charts {
@@ -119,6 +129,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             tell("interrupted before there was anything to compare");
             return Ok(Exit::Interrupted);
         }
+        Err(PrecisionError::Run(error)) => return Err(failed(*error)),
         charts => charts.map_err(|e| Error::Usage(e.to_string()))?,
     };
     finish(args, outputs, &charts)

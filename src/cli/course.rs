@@ -2,7 +2,7 @@
 
 use super::base::Error;
 use super::interrupt::Interrupt;
-use crate::record::snapshot::{Applied, Snapshot};
+use crate::record::snapshot::{Applied, Snapshot, SnapshotError};
 use crate::scene::Scene;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::stepper::Stepper;
@@ -36,6 +36,10 @@ impl Course {
     /// # Errors
     /// If its scene is unsound.
     pub fn of_snapshot(name: &str, snapshot: Snapshot) -> Result<Course, Error> {
+        if snapshot.scene.attached.is_some() {
+            let name = snapshot.name;
+            return Err(SnapshotError::Attached { name }.into());
+        }
         Ok(Course {
             scene: Scene::from_spec(name, snapshot.scene)?,
             applied: snapshot.interventions,

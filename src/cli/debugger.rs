@@ -1,17 +1,19 @@
 //! `stickslip [SCENE]`: the debugger.
 
 use super::base::{Error, Exit, SetArgs};
+use super::front;
 use super::groups;
 use super::past;
+use crate::attach::past::Opened;
 use crate::record::journal::Keep;
-use crate::tui;
+use crate::session::Session;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A scene file, or the name of a built-in scene; without one, the debugger offers the built-in ones. The .cel of a
-    /// CalculiX run that is over opens that run, to be looked at
+    /// CalculiX run that is over opens that run, to be looked at, and so does the exchange that `attach --exchange` kept
     scene: Option<String>,
     #[command(flatten)]
     set: SetArgs,
@@ -35,6 +37,7 @@ pub fn main(args: Args) -> Result<Exit, Error> {
     if let Some(told) = args.scene.as_deref().and_then(groups::unknown) {
         return Err(Error::Usage(told));
     }
+    front::ready()?;
     if let Some(past) = args
         .scene
         .as_deref()
@@ -55,8 +58,11 @@ pub fn main(args: Args) -> Result<Exit, Error> {
                 "to look at a run needs a terminal, and standard input or output is none; `stickslip show {name}` prints it as text"
             )));
         }
-        tui::past::run(past).map_err(|error| Error::Usage(error.to_string()))?;
+        front::look(past)?;
         return Ok(Exit::Good);
+    }
+    if let Some(opened) = args.scene.as_deref().map(past::kept).transpose()?.flatten() {
+        return look_at(opened, &args);
     }
     if !has_terminal() {
         let scene = args.scene.as_deref().unwrap_or("SCENE");
@@ -69,7 +75,30 @@ pub fn main(args: Args) -> Result<Exit, Error> {
         Some(file) => Keep::File(file),
         None => Keep::Default,
     };
-    tui::run(args.scene, &args.set.set, &keep).map_err(|error| Error::Usage(error.to_string()))?;
+    front::debug(args.scene, &args.set.set, &keep)?;
+    Ok(Exit::Good)
+}
+
+/// Looks at an exchange that was kept.
+fn look_at(opened: Opened, args: &Args) -> Result<Exit, Error> {
+    let asked = [
+        (!args.set.set.is_empty(), "--set"),
+        (args.journal.is_some(), "--journal"),
+    ];
+    if let Some((_, asked)) = asked.into_iter().find(|(is, _)| *is) {
+        return Err(Error::Usage(format!(
+            "{asked} does not go with it; a kept exchange is read-only"
+        )));
+    }
+    if !has_terminal() {
+        let name = args.scene.as_deref().unwrap_or("FILE");
+        return Err(Error::Usage(format!(
+            "to look at a kept exchange needs a terminal, and standard input or output is none; `stickslip story {name}` prints it as text"
+        )));
+    }
+    let told =
+        "a kept exchange: all that the solver did, to be gone through; nothing can follow on it";
+    front::resume(Session::kept(opened), told)?;
     Ok(Exit::Good)
 }
 

@@ -3,8 +3,10 @@
 
 use super::base::{Error, Exit, SetArgs, tell};
 use super::course::Course;
+use super::front;
 use super::interrupt::Interrupt;
 use super::place::{At, seek, tell_missed};
+use super::solver::{SolverArgs, session_of};
 use crate::explain::{names, report};
 use crate::format::kind::FileKind;
 use crate::history::strip::Strip;
@@ -21,7 +23,7 @@ use crate::step::drive::RunEnd;
 use crate::step::event::{Failure, Position};
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
-use crate::tui::cast;
+use crate::study::pen;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -56,6 +58,9 @@ pub struct Args {
     /// Overwrites a file that exists
     #[arg(long)]
     force: bool,
+    /// Goes on with the journal of an attached solver
+    #[command(flatten)]
+    solver: SolverArgs,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -68,6 +73,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             kind.extension
         );
         return Err(usage(told));
+    }
+    match kind.extension {
+        "svg" | "png" => pen::ready().map_err(|e| usage(e.to_string()))?,
+        "cast" => front::ready()?,
+        _ => {}
     }
     // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
     let names = kind.files(&args.output).map_err(usage)?;
@@ -143,7 +153,8 @@ fn film(args: &Args) -> Result<Vec<u8>, Error> {
     }
     scene_only(args, "a journal is shown as it was kept")?;
     let record = Record::read(Path::new(&args.input))?;
-    Ok(cast::film(&record)?.into_bytes())
+    let session = session_of(&record, &args.solver)?;
+    Ok(front::film(&record, session)?.into_bytes())
 }
 
 /// Refuses what only concerns scenes.

@@ -7,13 +7,15 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// What the subcommands are for, in the order of the work.
-const GROUPS: [(&str, &[&str]); 6] = [
+const GROUPS: [(&str, &[&str]); 8] = [
     ("Solve", &["run", "check", "audit"]),
     ("Debug", &["remedies", "core", "resume", "story"]),
+    ("Attach", &["attach", "serve"]),
     ("Record", &["record", "replay", "diff"]),
     ("Sweep", &["study", "map", "chart"]),
     ("Learn", &["lesson", "help"]),
     ("Files", &["list", "show", "export"]),
+    ("Install", &["completions", "man"]),
 ];
 
 /// The subcommands of all groups.

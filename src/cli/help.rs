@@ -2,7 +2,7 @@
 
 use super::base::{Error, Exit, say};
 use crate::manual::{self, Page, render};
-use crate::tui;
+use crate::outside::terminal;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::{Command, Stdio};
@@ -117,7 +117,9 @@ fn written(argument: &clap::Arg) -> String {
 fn show(page: &Page) -> Result<Exit, Error> {
     let terminal = std::io::stdout().is_terminal();
     let width = match terminal {
-        true => tui::width().clamp(40, 100),
+        true => terminal::size().map_or(render::WIDTH, |(columns, _)| {
+            usize::from(columns).clamp(40, 100)
+        }),
         false => render::WIDTH,
     };
     let styled = terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());

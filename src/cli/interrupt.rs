@@ -1,7 +1,7 @@
 //! Ctrl-C as a flag to look at between minor iterations.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// The signals that ask a program to end.
 const SIGNALS: [i32; 2] = [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM];
@@ -33,6 +33,13 @@ impl Interrupt {
             let _ = signal_hook::flag::register(signal, flag.clone());
         }
         Interrupt(flag)
+    }
+
+    /// Counts the first signal for an iteration at hand, too.
+    pub fn count(&self, asks: &Arc<AtomicUsize>) {
+        for signal in SIGNALS {
+            let _ = signal_hook::flag::register_usize(signal, asks.clone(), 1);
+        }
     }
 
     /// Whether a signal came.

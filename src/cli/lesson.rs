@@ -1,11 +1,11 @@
 //! `stickslip lesson [NAME|FILE]`: lists the guided lessons, begins one, or checks one without a terminal.
 
 use super::base::{Error, Exit, say};
+use super::front;
 use crate::outside::shown;
 use crate::teach::play::play;
 use crate::teach::progress::{self, Progress};
 use crate::teach::{self, Lesson};
-use crate::tui;
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -30,12 +30,13 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         say(&check(lesson)?)?;
         return Ok(Exit::Good);
     }
+    front::ready()?;
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
         return Err(Error::Usage(format!(
             "a lesson needs a terminal, and standard input or output is none; `stickslip lesson --check {name}` plays it without one"
         )));
     }
-    tui::run_lesson(lesson).map_err(|error| Error::Usage(error.to_string()))?;
+    front::lesson(lesson)?;
     Ok(Exit::Good)
 }
 

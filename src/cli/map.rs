@@ -2,17 +2,22 @@
 
 use super::base::{Error, Exit, NoValue, SetArgs, say, tell};
 use super::interrupt::Interrupt;
+use super::many::{self, Wanted};
 use super::outputs::{OutputArgs, Outputs, aligned};
+use super::parts::{PartArgs, failed};
 use crate::model::{BoundUpdate, Strategy};
 use crate::outside::files;
 use crate::scene::builtin;
 use crate::strategy::method;
 use crate::study::map::{self, Cell, Map};
+use crate::study::merge::Keeping;
 use crate::study::plan::product;
 use crate::study::random::{self, NODES, Population};
-use crate::study::survey::Survey;
+use crate::study::sums::MANY;
+use crate::study::survey::{self, Survey};
 use crate::study::trial::{Judged, TOLERANCE, Variant};
 use crate::study::{Plan, Study, Vary, Watch, verdict_figure};
+use std::num::NonZeroU64;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -21,8 +26,9 @@ use std::path::PathBuf;
 A value of --over may be a range, 0.01..0.1/4 (evenly spaced) or 0.01..0.1/4log (even ratios), or a multiple
 of what the scene has, 2x. Where nothing is varied, scenes are tried with all strategies.
 
-Cells that fail are results: the exit code is 0 if the map was done, 2 for bad input or usage, and 130 if it
-was interrupted; files are whole then and have what was done.")]
+Cells that fail are results: the exit code is 0 if the map was done, 2 for bad input or usage, 4 if cells are
+missing to --merge, 75 if a log is busy or cannot be written, and 130 if it was interrupted; files are whole
+then and have what was done.")]
 pub struct Args {
     /// Scenes: files, or built-in names; all: every built-in one
     #[arg(value_name = "SCENE", required_unless_present_any = ["random", "write"], conflicts_with_all = ["random", "write"])]
@@ -56,9 +62,17 @@ pub struct Args {
     /// Ends that differ from the reference by more than this part of the largest value are wrong branches
     #[arg(long, value_name = "PART", default_value_t = map::TOLERANCE)]
     tolerance: f64,
-    /// Keeps each result in this file as it comes, and takes up what is there already
-    #[arg(long, value_name = "FILE")]
+    /// Keeps each result in this file as it comes, and takes up what is there already, also of other maps
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["log", "merge"])]
     resume: Option<PathBuf>,
+    #[command(flatten)]
+    part: PartArgs,
+    /// Keeps sums of so many cells together, and not each cell's result [default: 10000 above 10^7 cells]
+    #[arg(long, value_name = "CELLS", conflicts_with_all = ["resume", "totals"])]
+    aggregate: Option<NonZeroU64>,
+    /// With sums: writes a row for each run that failed, with the number of its cell
+    #[arg(long, value_name = "FILE|-")]
+    failing: Option<String>,
     #[command(flatten)]
     out: OutputArgs,
 }
@@ -80,7 +94,7 @@ fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
 }
 
 fn count(text: &str) -> Result<usize, NoValue> {
-    const MOST: usize = 10_000_000;
+    const MOST: usize = 10_000_000_000;
     let count = text
         .parse::<usize>()
         .ok()
@@ -100,7 +114,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(k) = args.write {
         return write(args, &population, k);
     }
-    survey(args, population)
+    if args.aggregate.is_some() || population.count as u64 > MANY {
+        return many::random_problems(&sums(args)?, &population, &variants(args)?);
+    }
+    random_problems(args, population)
 }
 
 /// Writes one random problem.
@@ -124,18 +141,31 @@ fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> 
 
 /// Runs scenes over settings.
 fn scenes(args: &Args) -> Result<Exit, Error> {
+    let study = study(args)?;
+    let cells = study.vary.iter().map(|vary| vary.values.len() as u64);
+    let cells = cells.fold(study.scenes.len() as u64, u64::saturating_mul);
+    if args.aggregate.is_some() || cells > MANY {
+        return many::scenes(&sums(args)?, study, args.tolerance);
+    }
     let interrupt = Interrupt::listen();
-    let plan = Plan::new(study(args)?)?;
+    let plan = Plan::new(study)?;
     let outputs = Outputs::open(&args.out)?;
     let progress = args.out.progress(plan.increments(), "increments");
     let watch = Watch {
         stop: &|| interrupt.came(),
         done: &|increments| progress.inc(increments),
     };
-    let kept = args.resume.as_deref();
-    let map = map::run(plan, args.tolerance, kept, args.out.jobs(), &watch);
+    let kept = map::open(&plan, &keeping(args)?).map_err(|e| failed(e.into()))?;
+    if let Some(incomplete) = args.part.whole(&kept) {
+        return Ok(incomplete);
+    }
+    let map = map::run_kept(plan, args.tolerance, &kept, args.out.jobs(), &watch);
     progress.finish_and_clear();
-    let map = map.map_err(|e| Error::Usage(e.to_string()))?;
+    let map = map.map_err(failed)?;
+    if args.part.is_part() {
+        let done = |k: usize| map.cells[k].is_some();
+        return Ok(args.part.end(&kept, done, args.out.quiet));
+    }
     outputs.write(
         &map.csv(),
         || verdict_figure::grid(&map)?.svg(),
@@ -152,6 +182,25 @@ fn scenes(args: &Args) -> Result<Exit, Error> {
         true => Exit::Good,
         false => Exit::Interrupted,
     })
+}
+
+/// What is wanted where only sums are kept.
+fn sums(args: &Args) -> Result<Wanted<'_>, Error> {
+    Ok(Wanted {
+        block: args.aggregate,
+        failing: args.failing.as_deref(),
+        keeping: keeping(args)?,
+        part: &args.part,
+        out: &args.out,
+    })
+}
+
+/// Where results are kept.
+fn keeping(args: &Args) -> Result<Keeping, Error> {
+    match &args.resume {
+        Some(path) => Ok(Keeping::Beside(path.clone())),
+        None => args.part.keeping(&args.out),
+    }
 }
 
 /// What is to be run.
@@ -226,7 +275,7 @@ fn tell_map(map: &Map) {
 }
 
 /// Tries all random problems with all variants.
-fn survey(args: &Args, population: Population) -> Result<Exit, Error> {
+fn random_problems(args: &Args, population: Population) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let outputs = Outputs::open(&args.out)?;
     let progress = args.out.progress(population.count as u64, "problems");
@@ -234,15 +283,19 @@ fn survey(args: &Args, population: Population) -> Result<Exit, Error> {
         stop: &|| interrupt.came(),
         done: &|problems| progress.inc(problems),
     };
-    let survey = Survey::run(
-        population,
-        variants(args)?,
-        args.resume.as_deref(),
-        args.out.jobs(),
-        &watch,
-    );
+    let variants = variants(args)?;
+    let kept = survey::open(&population, &variants, &keeping(args)?);
+    let kept = kept.map_err(|e| failed(e.into()))?;
+    if let Some(incomplete) = args.part.whole(&kept) {
+        return Ok(incomplete);
+    }
+    let survey = Survey::run_kept(population, variants, &kept, args.out.jobs(), &watch);
     progress.finish_and_clear();
-    let survey = survey.map_err(|e| Error::Usage(e.to_string()))?;
+    let survey = survey.map_err(failed)?;
+    if args.part.is_part() {
+        let done = |k: usize| survey.judged[k].is_some();
+        return Ok(args.part.end(&kept, done, args.out.quiet));
+    }
     outputs.write(
         &match args.totals {
             true => survey.totals(),

@@ -3,24 +3,35 @@
 //! Standard output carries data only; messages go to standard error, and progress there only if it is a terminal.
 //! Exit codes are those of `base::Exit`.
 
+mod about;
+mod attach;
 mod audit;
 mod base;
 mod benchmarks;
 mod chart;
 mod check;
+mod completions;
 mod core;
 mod course;
 mod debugger;
 mod diff;
 mod export;
+#[cfg(feature = "tui")]
+mod front;
+#[cfg(not(feature = "tui"))]
+#[path = "frontless.rs"]
+mod front;
 mod grids;
 mod groups;
 mod help;
 mod interrupt;
 mod lesson;
 mod list;
+mod man;
+mod many;
 mod map;
 mod outputs;
+mod parts;
 mod past;
 mod place;
 mod record;
@@ -28,8 +39,10 @@ mod remedies;
 mod replay;
 mod resume;
 mod run;
+mod serve;
 mod show;
 mod sink;
+mod solver;
 mod story;
 mod study;
 mod table;
@@ -41,19 +54,31 @@ use std::process::ExitCode;
 
 /// Steps through contact iterations of the finite element method, in a terminal.
 #[derive(Debug, Parser)]
+#[command(styles = clap::builder::Styles::plain())]
 #[command(name = "stickslip", version = origin::VERSION, args_conflicts_with_subcommands = true)]
-#[command(max_term_width = 100, disable_help_subcommand = true)]
+#[command(
+    max_term_width = 100,
+    disable_help_subcommand = true,
+    disable_version_flag = true
+)]
 #[command(after_help = "\
 SCENE is a file or the name of a built-in scene (`stickslip list`).
 The manual: `stickslip help TOPIC`; `stickslip help` lists the topics.
 
 Exit codes: 0 converged, equal or sound; 1 snapshots differ; 2 bad input or usage;
-3 the solve did not converge, or no remedy helps; 130 interrupted.")]
+3 the solve did not converge, or no remedy helps; 4 cells of a sweep are missing;
+75 the machine failed, and another try may go well; 130 interrupted.")]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
     debugger: debugger::Args,
+    /// Prints the version
+    #[arg(short = 'V', long)]
+    version: bool,
+    /// With --version: what the build, the machine, the terminal and the folders are, for a report
+    #[arg(long, requires = "version")]
+    verbose: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -88,16 +113,25 @@ enum Command {
     Map(map::Args),
     /// Charts what settings cost against how near they come to the truth
     Chart(chart::Args),
+    /// Steps a solver that another program is
+    Attach(attach::Args),
+    /// Answers a debugger that attaches to our own solver
+    Serve(serve::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
     /// Prints the file of a built-in scene, study or lesson, to start from, or a CalculiX run that is over
     Show(show::Args),
+    /// Prints the script by which a shell completes command lines
+    Completions(completions::Args),
+    /// Writes manual pages for man
+    Man(man::Args),
     /// Shows a page of the manual, or the help of a subcommand
     Help(help::Args),
 }
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
+    completions::answer(program);
     let cli = match parsed() {
         Ok(cli) => cli,
         Err(error) => {
@@ -106,7 +140,8 @@ pub fn main() -> ExitCode {
                 return Exit::Bad.into();
             }
             // Help is an error for clap, too; where it cannot be printed there is nobody to tell.
-            let told = error.render().to_string();
+            // What was typed is shown as it was; there are no colours to leave out.
+            let told = error.render().ansi().to_string();
             match error.use_stderr() {
                 true => tell(told.trim_end_matches('\n')),
                 false => drop(say(&told)),
@@ -119,6 +154,7 @@ pub fn main() -> ExitCode {
         cli.command,
         None | Some(
             Command::Run(_)
+                | Command::Attach(_)
                 | Command::Record(_)
                 | Command::Study(_)
                 | Command::Map(_)
@@ -134,10 +170,13 @@ pub fn main() -> ExitCode {
         interrupt::end_at_once();
     }
     let ended = match &cli.command {
+        None if cli.version => about::main(cli.verbose),
         None => debugger::main(cli.debugger),
         Some(Command::Run(args)) => run::main(args),
         Some(Command::Check(args)) => check::main(args),
         Some(Command::List) => list::main(),
+        Some(Command::Attach(args)) => attach::main(args),
+        Some(Command::Serve(args)) => serve::main(args),
         Some(Command::Record(args)) => record::main(args),
         Some(Command::Audit(args)) => audit::main(args),
         Some(Command::Replay(args)) => replay::main(args),
@@ -152,12 +191,17 @@ pub fn main() -> ExitCode {
         Some(Command::Chart(args)) => chart::main(args),
         Some(Command::Lesson(args)) => lesson::main(args),
         Some(Command::Show(args)) => show::main(args),
+        Some(Command::Completions(args)) => completions::main(args),
+        Some(Command::Man(args)) => man::main(args, program()),
         Some(Command::Help(args)) => help::main(args, program()),
     };
     ended
         .unwrap_or_else(|error| {
             tell(&error.to_string());
-            Exit::Bad
+            match error {
+                base::Error::Again(_) => Exit::Again,
+                _ => Exit::Bad,
+            }
         })
         .into()
 }
@@ -200,5 +244,17 @@ mod tests {
         own.sort_unstable();
         grouped.sort_unstable();
         assert_eq!(own, grouped);
+    }
+
+    #[test]
+    fn every_argument_is_completed_or_known_to_be_free() {
+        let program = program();
+        for command in std::iter::once(&program).chain(program.get_subcommands()) {
+            for arg in command.get_arguments() {
+                let takes = arg.get_action().takes_values();
+                let (command, id) = (command.get_name(), arg.get_id());
+                assert!(!takes || completions::knows(arg), "{command} {id}");
+            }
+        }
     }
 }

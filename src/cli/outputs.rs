@@ -4,7 +4,8 @@ use super::base::Error;
 use super::sink::Sink;
 use crate::outside::files::Output;
 use crate::outside::shown;
-use crate::study::plot::PlotError;
+use crate::study::drawn::PlotError;
+use crate::study::pen;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::num::NonZeroUsize;
@@ -40,6 +41,11 @@ impl OutputArgs {
         self.svg.is_some() || self.png.is_some()
     }
 
+    /// Whether any file or table is wanted.
+    pub fn writes(&self) -> bool {
+        self.csv.is_some() || self.draws()
+    }
+
     /// Runs at the same time.
     pub fn jobs(&self) -> NonZeroUsize {
         let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
@@ -72,8 +78,12 @@ impl Outputs {
     /// Opens all that is wanted.
     ///
     /// # Errors
-    /// If one exists already and may not be overwritten, cannot be written, or is named twice.
+    /// If one exists already and may not be overwritten, cannot be written, or is named twice; if a picture is wanted of a
+    /// build that draws none.
     pub fn open(args: &OutputArgs) -> Result<Outputs, Error> {
+        if args.draws() {
+            pen::ready().map_err(undrawn)?;
+        }
         let named = [
             args.csv.as_deref().filter(|to| *to != "-").map(Path::new),
             args.svg.as_deref(),
@@ -109,7 +119,6 @@ impl Outputs {
     ) -> Result<(), Error> {
         // The numbers first: they are kept even if a figure cannot be drawn.
         self.write_table(table)?;
-        let undrawn = |e: PlotError| Error::Usage(e.to_string());
         if let Some(output) = self.svg {
             write(output, svg().map_err(undrawn)?.as_bytes())?;
         }
@@ -130,6 +139,10 @@ impl Outputs {
         }
         Ok(())
     }
+}
+
+fn undrawn(error: PlotError) -> Error {
+    Error::Usage(error.to_string())
 }
 
 fn write(mut output: Output, bytes: &[u8]) -> Result<(), Error> {

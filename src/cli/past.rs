@@ -1,6 +1,7 @@
-//! A CalculiX run that is over, by the name of its .cel.
+//! A run that is over, by the name of its file: of CalculiX by its .cel, or of an attached solver by the exchange that was kept.
 
 use super::base::Error;
+use crate::attach::past::{self, Opened};
 use crate::explain::past::run::Past;
 use crate::explain::past::words;
 use crate::outside::{calculix, shown};
@@ -23,6 +24,15 @@ pub fn named(name: &str) -> Result<Option<Past>, Error> {
     }
     let run = calculix::read(Path::new(name)).map_err(|why| Error::Usage(why.to_string()))?;
     Ok(Some(Past::new(name, run)))
+}
+
+/// The kept exchange that a file name stands for; `None` where it is the name of something else.
+///
+/// # Errors
+/// If it is damaged.
+pub fn kept(name: &str) -> Result<Option<Opened>, Error> {
+    let opened = past::file(name).transpose();
+    opened.map_err(|why| Error::Usage(why.of(name)))
 }
 
 /// Why something cannot be asked for with a run that is over.

@@ -4,9 +4,9 @@ use super::base::{Exit, NoValue, tell};
 use super::interrupt::Interrupt;
 use crate::explain::{names, report};
 use crate::scene::Scene;
-use crate::step::drive::{RunEnd, Until};
+use crate::step::drive::{RunEnd, Until, drive};
 use crate::step::event::{Event, Failure, Outcome};
-use crate::step::stepper::Stepper;
+use crate::step::solver::{Lost, Solver};
 use std::fmt;
 use std::ops::ControlFlow;
 use std::str::FromStr;
@@ -92,25 +92,27 @@ fn ends_major(outcome: &Outcome) -> bool {
 pub enum Missed {
     Failed(Failure),
     Interrupted,
+    /// The solver cannot go on.
+    Lost(Lost),
     /// There is no such place in this run.
     Absent,
 }
 
 /// Steps to a place, with a look at each minor iteration; the number of them that it took.
-pub fn seek(
-    stepper: &mut Stepper,
+pub fn seek<T: Solver + ?Sized>(
+    solver: &mut T,
     at: At,
     interrupt: &Interrupt,
-    see: &mut dyn FnMut(&Stepper),
+    see: &mut dyn FnMut(&T),
 ) -> Result<u64, Missed> {
     let mut steps = 0;
-    let end = stepper.drive(Until::end(), |stepper| {
+    let end = drive(solver, Until::end(), |solver| {
         steps += 1;
-        see(stepper);
+        see(solver);
         if interrupt.came() {
             return ControlFlow::Break(Err(Missed::Interrupted));
         }
-        let event = stepper.event();
+        let event = solver.event();
         let failed = matches!(event.outcome, Outcome::Failed(_));
         if at.is(event) {
             ControlFlow::Break(Ok(()))
@@ -120,25 +122,29 @@ pub fn seek(
             ControlFlow::Continue(())
         }
     });
-    match end {
+    match end.map_err(Missed::Lost)? {
         RunEnd::Stopped(place) => place.map(|()| steps),
         RunEnd::Failed(failure) => Err(Missed::Failed(failure)),
         RunEnd::Finished | RunEnd::Spent | RunEnd::Interrupted => Err(Missed::Absent),
     }
 }
 
-pub fn tell_missed(scene: &Scene, stepper: &Stepper, at: At, missed: Missed) -> Exit {
-    let (event, name) = (stepper.event(), &scene.name);
+pub fn tell_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -> Exit {
+    let (event, name) = (solver.event(), &scene.name);
     match missed {
         Missed::Failed(failure) => {
             let told = report::failure(
                 &scene.model,
-                stepper.state(),
+                solver.state(),
                 event.position,
                 event.load_factor,
                 &failure,
             );
             tell(&format!("{name}: {at} is not reached: {told}"));
+            Exit::Unconverged
+        }
+        Missed::Lost(lost) => {
+            tell(&format!("{name}: {at} is not reached: {lost}"));
             Exit::Unconverged
         }
         Missed::Interrupted => {

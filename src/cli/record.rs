@@ -1,20 +1,19 @@
 //! `stickslip record`: solves up to a place, and writes a snapshot of it.
 
-use super::base::{Error, Exit, SceneArgs, say, tell};
+use super::base::{Error, Exit, say, tell};
 use super::interrupt::Interrupt;
 use super::place::{At, seek, tell_missed};
+use super::solver::{Subject, SubjectArgs};
 use crate::outside::files::{self, Output};
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
-use crate::scene::solver::solver;
 use std::io::Write;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    subject: SubjectArgs,
     /// After which minor iteration; without MINOR at the end of the major, without MAJOR at the end of the increment
     #[arg(long, value_name = "INC[.MAJOR[.MINOR]]")]
     at: At,
@@ -28,7 +27,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
-    let scene = args.scene.open()?;
+    let Subject { scene, mut solver } = args.subject.open(args.force)?;
     let path = args
         .output
         .clone()
@@ -37,13 +36,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         name if name == "-" => None,
         _ => Some(Output::create(&path, args.force)?),
     };
-    let mut stepper = solver(Arc::new(scene.model.clone()));
-    let steps = match seek(&mut stepper, args.at, &interrupt, &mut |_| {}) {
+    let steps = match seek(&mut *solver, args.at, &interrupt, &mut |_| {}) {
         Ok(steps) => steps,
-        Err(missed) => return Ok(tell_missed(&scene, &stepper, args.at, missed)),
+        Err(missed) => return Ok(tell_missed(&scene, &*solver, args.at, missed)),
     };
-    let event = Some(stepper.event());
-    let text = Snapshot::take(&scene, &[], steps, stepper.state(), event).to_text()?;
+    let event = Some(solver.event());
+    let text = Snapshot::take(&scene, &[], steps, solver.state(), event).to_text()?;
     let Some(mut output) = output else {
         say(&text)?;
         return Ok(Exit::Good);

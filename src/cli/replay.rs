@@ -1,6 +1,7 @@
 //! `stickslip replay`: computes snapshots again, and compares.
 
 use super::base::{Error, Exit, say, scene_instead, tell};
+use super::solver::SolverArgs;
 use crate::record::differences::compare;
 use crate::record::snapshot::{Snapshot, SnapshotError};
 use std::path::{Path, PathBuf};
@@ -10,12 +11,14 @@ pub struct Args {
     /// Snapshots
     #[arg(required = true, value_name = "SNAPSHOT")]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    solver: SolverArgs,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut exit = Exit::Good;
     for file in &args.files {
-        let this = one(file)?;
+        let this = one(file, &args.solver)?;
         // What cannot be read is worse than what differs.
         if this as u8 > exit as u8 {
             exit = this;
@@ -24,7 +27,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(exit)
 }
 
-fn one(file: &Path) -> Result<Exit, Error> {
+fn one(file: &Path, solver: &SolverArgs) -> Result<Exit, Error> {
     let shown = file.display();
     let recorded = match Snapshot::read(file) {
         Ok(recorded) => recorded,
@@ -33,7 +36,14 @@ fn one(file: &Path) -> Result<Exit, Error> {
             return Ok(Exit::Bad);
         }
     };
-    let found = match recorded.replay() {
+    let replayed = match solver.is_named() {
+        true => {
+            let (_, mut attached, _) = solver.attach(false)?;
+            recorded.replay_with(&mut attached)
+        }
+        false => recorded.replay(),
+    };
+    let found = match replayed {
         Ok(found) => found,
         Err(error @ SnapshotError::Replay(_)) => {
             say(&format!("{shown}: {error}\n"))?;

@@ -2,8 +2,9 @@
 
 use super::base::{Error, Exit, tell};
 use super::debugger::has_terminal;
+use super::front;
+use super::solver::{SolverArgs, session_of};
 use crate::record::journal::{self, Journal, JournalError, Record};
-use crate::tui;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -13,9 +14,14 @@ pub struct Args {
     /// Only proves that the journal leads to the same bits again, without the debugger
     #[arg(long)]
     check: bool,
+    #[command(flatten)]
+    solver: SolverArgs,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    if !args.check {
+        front::ready()?;
+    }
     if !args.check && !has_terminal() {
         return Err(Error::Usage(
             "the debugger needs a terminal, and standard input or output is none; `stickslip resume --check` replays without one".into(),
@@ -40,7 +46,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         record.entries.len()
     );
     tell(&format!("replaying {told}"));
-    let mut session = match record.replay() {
+    let session = session_of(&record, &args.solver)?;
+    let mut session = match record.replay_in(session, &mut |_, _| {}) {
         Err(error @ JournalError::Differs { .. }) => {
             tell(&error.to_string());
             return Ok(Exit::Differ);
@@ -58,6 +65,6 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         "resumed after {} entries{reservations}",
         record.entries.len()
     );
-    tui::resume(session, &told).map_err(|error| Error::Usage(error.to_string()))?;
+    front::resume(session, &told)?;
     Ok(Exit::Good)
 }

@@ -1,10 +1,11 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, SceneArgs, tell};
+use super::base::{Error, Exit, tell};
 use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
 use super::outputs::aligned;
 use super::sink::{Sent, Sink};
+use super::solver::{Subject, SubjectArgs};
 use super::table;
 use crate::contact::record::ContactRecord;
 use crate::explain::bond;
@@ -12,6 +13,8 @@ use crate::explain::names;
 use crate::explain::number::six;
 use crate::explain::page;
 use crate::explain::report;
+use crate::history::rounds::{self, Watch};
+use crate::history::strip::Strip;
 use crate::linear::norms::Norms;
 use crate::linear::stability::Stability;
 use crate::model::Model;
@@ -21,13 +24,14 @@ use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::scene::gaps;
 use crate::scene::solver::solver;
-use crate::step::drive::{RunEnd, Until};
+use crate::step::drive::{RunEnd, Until, drive};
 use crate::step::event::{Event, Moves, Outcome};
-use crate::step::stepper::Stepper;
+use crate::step::solver::{Lost, Solver};
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
 use std::time::{Duration, Instant};
 
 /// Warnings that are printed one by one; the rest is counted.
@@ -42,7 +46,7 @@ const PROGRESS: Duration = Duration::from_millis(100);
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    subject: SubjectArgs,
     /// Writes a row per converged increment; - is standard output
     #[arg(long, value_name = "FILE|-")]
     csv: Option<String>,
@@ -64,6 +68,9 @@ pub struct Args {
         requires = "vtu"
     )]
     each: Each,
+    /// Most iterations of an attached solver in an increment
+    #[arg(long, value_name = "ITERATIONS", default_value_t = 1000)]
+    most: u64,
     /// Tells whether each accepted state is stable: a column of --csv, and a line at the end
     #[arg(long)]
     stability: bool,
@@ -77,7 +84,15 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
-    let scene = args.scene.open()?;
+    let Subject { scene, mut solver } = args.subject.open(args.force)?;
+    if args.vtu.is_some() && args.subject.solver.is_named() {
+        return Err(Error::Usage(
+            "--vtu writes what our own elements know; of an attached solver nothing but its contacts is known".into(),
+        ));
+    }
+    let asks = Arc::new(AtomicUsize::new(0));
+    interrupt.count(&asks);
+    solver.heed(asks);
     // Before the solve, so that nobody waits for a result that then has no place to go.
     let mut outputs = Outputs::open(args, &scene)?;
     if !args.quiet {
@@ -85,7 +100,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             tell(&format!("warning: {warning}"));
         }
     }
-    let mut run = Run::new(&scene, args);
+    let mut run = Run::new(&scene, solver, args);
     let end = run.go(&mut outputs, &interrupt)?;
     run.tally.progress.clear();
     let (snapshot, wrote) = outputs.close()?;
@@ -175,8 +190,8 @@ fn first_closed(a: Sent, b: Sent) -> Sent {
 
 fn write_snapshot(mut output: Output, run: &Run) -> Result<(), Error> {
     let (scene, steps) = (run.tally.scene, run.tally.steps);
-    let event = (steps > 0).then(|| run.stepper.event());
-    let snapshot = Snapshot::take(scene, &[], steps, run.stepper.state(), event);
+    let event = (steps > 0).then(|| run.solver.event());
+    let snapshot = Snapshot::take(scene, &[], steps, run.solver.state(), event);
     output
         .write_all(snapshot.to_text()?.as_bytes())
         .map_err(|e| output.failed(e))?;
@@ -185,7 +200,7 @@ fn write_snapshot(mut output: Output, run: &Run) -> Result<(), Error> {
 
 /// A run, as far as it has come.
 struct Run<'a> {
-    stepper: Stepper,
+    solver: Box<dyn Solver>,
     tally: Tally<'a>,
 }
 
@@ -208,22 +223,29 @@ struct Tally<'a> {
     quiet: bool,
     /// Stability of the accepted states, where it is asked for.
     stability: Option<Stretches>,
+    /// Most iterations of an attached solver in an increment, and what its modes do.
+    most: Option<(u64, Watch)>,
     /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
 }
 
-/// How a run ended; it is stopped where nobody reads on.
-type Ended = RunEnd<Closed>;
+/// How a run ended; it is stopped where nobody reads on, and lost where an attached solver cannot go on.
+type Ended = Result<RunEnd<Closed>, Lost>;
 
-/// Nobody reads on.
-struct Closed;
+/// Why a run was stopped from here.
+enum Closed {
+    /// Nobody reads on.
+    Pipe,
+    /// An attached solver does not come to an end; what its modes did last, in words.
+    Endless(String),
+}
 
 impl<'a> Run<'a> {
-    fn new(scene: &'a Scene, args: &Args) -> Self {
+    fn new(scene: &'a Scene, solver: Box<dyn Solver>, args: &Args) -> Self {
         let quiet = args.quiet;
         Run {
-            stepper: solver(Arc::new(scene.model.clone())),
+            solver,
             tally: Tally {
                 scene,
                 progress: Progress::new(quiet),
@@ -235,6 +257,11 @@ impl<'a> Run<'a> {
                 notes: 0,
                 noisiest: Norms::default(),
                 quiet,
+                most: args
+                    .subject
+                    .solver
+                    .is_named()
+                    .then(|| (args.most, Watch::default())),
                 stability: args.stability.then(Stretches::default),
                 monitors: Vec::new(),
                 slaves: Vec::new(),
@@ -243,27 +270,35 @@ impl<'a> Run<'a> {
     }
 
     fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<Ended, Error> {
-        let Run { stepper, tally } = self;
+        let Run { solver, tally } = self;
+        let solver = &mut **solver;
         let stability = tally.stability.is_some();
         if outputs.headers(&tally.scene.model, stability)? == Sent::Closed {
-            return Ok(RunEnd::Stopped(Closed));
+            return Ok(Ok(RunEnd::Stopped(Closed::Pipe)));
         }
-        if let Some(grids) = &mut outputs.grids {
+        if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.start(stepper)?;
         }
         let came = || interrupt.came();
         let until = Until::end().interrupted_by(&came);
-        let end = stepper.drive(until, |stepper| match tally.see(stepper, outputs) {
-            Ok(Sent::Well) => ControlFlow::Continue(()),
-            Ok(Sent::Closed) => ControlFlow::Break(Ok(Closed)),
+        let end = drive(solver, until, |solver| match tally.see(solver, outputs) {
+            Ok(Sent::Well) => match tally.endless(solver) {
+                None => ControlFlow::Continue(()),
+                Some(told) => ControlFlow::Break(Ok(Closed::Endless(told))),
+            },
+            Ok(Sent::Closed) => ControlFlow::Break(Ok(Closed::Pipe)),
             Err(error) => ControlFlow::Break(Err(error)),
         });
-        Ok(match end {
+        let end = match end {
+            Ok(end) => end,
+            Err(lost) => return Ok(Err(lost)),
+        };
+        Ok(Ok(match end {
             RunEnd::Stopped(stopped) => RunEnd::Stopped(stopped?),
             RunEnd::Failed(failure) => RunEnd::Failed(failure),
             RunEnd::Interrupted => RunEnd::Interrupted,
             RunEnd::Finished | RunEnd::Spent => RunEnd::Finished,
-        })
+        }))
     }
 
     /// Tells how the run ended.
@@ -290,17 +325,28 @@ impl<'a> Run<'a> {
             }
         }
         let name = &self.tally.scene.name;
+        let end = match end {
+            Ok(end) => end,
+            Err(lost) => {
+                tell(&format!("{name}: {lost}"));
+                return Exit::Unconverged;
+            }
+        };
         match end {
             RunEnd::Finished | RunEnd::Spent => Exit::Good,
             // Who closes the pipe has what he wanted.
-            RunEnd::Stopped(Closed) => Exit::Good,
+            RunEnd::Stopped(Closed::Pipe) => Exit::Good,
+            RunEnd::Stopped(Closed::Endless(told)) => {
+                tell(&format!("{name}: {told}"));
+                Exit::Unconverged
+            }
             RunEnd::Interrupted => {
-                let at = names::position(self.stepper.state().next);
+                let at = names::position(self.solver.state().next);
                 tell(&format!("{name}: interrupted before {at}"));
                 Exit::Interrupted
             }
             RunEnd::Failed(failure) => {
-                let (event, state) = (self.stepper.event(), self.stepper.state());
+                let (event, state) = (self.solver.event(), self.solver.state());
                 let told = report::failure(
                     &self.tally.scene.model,
                     state,
@@ -309,7 +355,11 @@ impl<'a> Run<'a> {
                     failure,
                 );
                 tell(&format!("{name}: {told}"));
-                let (state, model) = (state.clone(), self.stepper.model().clone());
+                if self.solver.stepper().is_none() {
+                    // Why, an attached solver alone knows.
+                    return Exit::Unconverged;
+                }
+                let (state, model) = (self.solver.state().clone(), self.solver.model().clone());
                 let mut scratch = solver(model);
                 for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
                     tell(&format!("  {line}"));
@@ -324,7 +374,7 @@ impl<'a> Run<'a> {
             "{}: {} increments accepted, up to load {}; {} major iterations for them, {} minor ones in all",
             self.tally.scene.name,
             self.tally.accepted,
-            self.stepper.state().start.load_factor,
+            self.solver.state().start.load_factor,
             self.tally.majors,
             self.tally.steps,
         ));
@@ -350,15 +400,15 @@ impl<'a> Run<'a> {
 
 impl Tally<'_> {
     /// Writes and tells what a minor iteration did.
-    fn see(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
-        if let Some(grids) = &mut outputs.grids {
+    fn see(&mut self, solver: &mut dyn Solver, outputs: &mut Outputs) -> Result<Sent, Error> {
+        if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.see(stepper)?;
         }
-        let event = stepper.event();
+        let event = solver.event();
         (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
         self.progress.show(event, self.steps);
         let sent = send(&mut outputs.trace, || {
-            let friction = &stepper.state().controls.friction;
+            let friction = &solver.state().controls.friction;
             table::trace_rows(&self.scene.model, friction, event)
         })?;
         match event.outcome {
@@ -372,7 +422,7 @@ impl Tally<'_> {
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {
-                let sent = first_closed(sent, self.accept(stepper, outputs)?);
+                let sent = first_closed(sent, self.accept(solver, outputs)?);
                 return Ok(outputs.after(sent));
             }
             Outcome::Moves(Moves::LetsGo { .. }) => self.note(event),
@@ -384,11 +434,31 @@ impl Tally<'_> {
         Ok(outputs.after(sent))
     }
 
-    fn accept(&mut self, stepper: &mut Stepper, outputs: &mut Outputs) -> Result<Sent, Error> {
+    /// Whether an attached solver has made as many iterations in this increment as it may; what its modes did last.
+    fn endless(&mut self, solver: &dyn Solver) -> Option<String> {
+        let (most, watch) = self.most.as_mut()?;
+        let (event, state) = (solver.event(), solver.state());
+        watch.see(&Strip::of(solver.model(), state, Some(event), None, 0.0));
+        if self.minors < *most {
+            return None;
+        }
+        let rounds = watch
+            .now()
+            .map(|now| rounds::words(solver.model(), &now, false));
+        Some(format!(
+            "stopped after {most} iterations without an increment (--most): {}",
+            rounds.unwrap_or_else(|| "the modes are at rest".into())
+        ))
+    }
+
+    fn accept(&mut self, solver: &mut dyn Solver, outputs: &mut Outputs) -> Result<Sent, Error> {
         self.monitors.clear();
-        stepper.monitors(&mut self.monitors);
-        let stability = self.stability.is_some().then(|| stepper.stability());
-        let event = stepper.event();
+        solver.monitors(&mut self.monitors);
+        let stability = self.stability.is_some().then(|| match solver.stepper() {
+            Some(stepper) => stepper.stability(),
+            None => Stability::NotKnown,
+        });
+        let event = solver.event();
         self.slaves.clone_from(&event.nodes);
         self.warn(event);
         let (minors, monitors) = (self.minors, &self.monitors);

@@ -3,6 +3,7 @@
 
 use super::base::{Error, Exit, say, tell};
 use super::past;
+use crate::attach::story::story;
 use crate::explain::past::summary;
 use crate::format::error::did_you_mean;
 use crate::outside::files;
@@ -13,7 +14,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Name of a built-in scene, study or lesson; or the .cel of a CalculiX run that is over
+    /// Name of a built-in scene, study or lesson; or the .cel of a CalculiX run that is over, or a kept exchange
     name: String,
     /// The work-precision chart of that scene
     #[arg(long)]
@@ -30,9 +31,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let text = match past::named(&args.name)? {
         Some(_) if args.chart => return Err(Error::Usage(past::read_only("--chart"))),
         Some(past) => summary::text(&past),
-        None => find(&args.name, args.chart)
-            .map_err(Error::Usage)?
-            .to_owned(),
+        None if args.chart => find(&args.name, true).map_err(Error::Usage)?.to_owned(),
+        None => match past::kept(&args.name)? {
+            Some(mut opened) => story(&args.name, &mut opened),
+            None => find(&args.name, false).map_err(Error::Usage)?.to_owned(),
+        },
     };
     match &args.output {
         Some(path) if path.as_os_str() != "-" => {

@@ -1,7 +1,9 @@
-//! `stickslip story JOURNAL`: what a session did and saw, as text; or what a CalculiX run that is over did.
+//! `stickslip story JOURNAL`: what a session did and saw, as text; or what a CalculiX run
+//! that is over did, or an attached solver whose exchange was kept.
 
 use super::base::{Error, Exit, say};
 use super::past;
+use crate::attach::story as kept;
 use crate::explain::past::summary;
 use crate::record::journal::Record;
 use crate::record::story::story;
@@ -9,7 +11,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A journal, or the .cel of a CalculiX run that is over
+    /// A journal, the .cel of a CalculiX run that is over, or the kept exchange of an attached solver
     journal: PathBuf,
 }
 
@@ -22,6 +24,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         .flatten()
     {
         say(&summary::text(&past))?;
+        return Ok(Exit::Good);
+    }
+    if let Some(mut opened) = args.journal.to_str().map(past::kept).transpose()?.flatten() {
+        let name = args.journal.display().to_string();
+        say(&kept::story(&name, &mut opened))?;
         return Ok(Exit::Good);
     }
     let record = Record::read(&args.journal)?;

@@ -4,10 +4,11 @@ use super::base::{Error, Exit, SetArgs, tell};
 use super::benchmarks;
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs, aligned};
+use super::parts::{PartArgs, failed};
 use crate::explain::number::six;
 use crate::study::benchmarks::Benchmarks;
 use crate::study::figure;
-use crate::study::{self, AxisQuantity, CaseEnd, Plan, Run, Study, Vary, Watch, csv, plot};
+use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, Watch, csv, plot, run};
 
 /// Monitors shown in the table of runs.
 const MONITORS: usize = 2;
@@ -23,8 +24,9 @@ benchmarks is a list of scenes whose answers are known from elsewhere; a file of
 (title: \"...\", benchmarks: [(scene: \"...\", what: \"...\", of: \"MONITOR\", source: \"...\", value: 1.0,
 within: 0.01)]). Exit code 1 where one does not hold.
 
-Runs that fail are results: the exit code is 0 if the study was done, 2 for bad input or usage,
-and 130 if it was interrupted; files are whole then and have what was done.")]
+Runs that fail are results: the exit code is 0 if the study was done, 2 for bad input or usage, 4 if runs
+are missing to --merge, 75 if a log is busy or cannot be written, and 130 if it was interrupted; files are
+whole then and have what was done.")]
 pub struct Args {
     /// A scene or a study: a file, or a built-in name
     #[arg(value_name = "SCENE|STUDY")]
@@ -40,6 +42,8 @@ pub struct Args {
     /// Vertical axis, likewise [default: load]
     #[arg(long, value_name = "QUANTITY")]
     y: Option<String>,
+    #[command(flatten)]
+    part: PartArgs,
     #[command(flatten)]
     out: OutputArgs,
 }
@@ -58,9 +62,19 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         stop: &|| interrupt.came(),
         done: &|increments| progress.inc(increments),
     };
-    let runs = study::run(&plan, args.out.jobs(), &watch);
+    let keeping = args.part.keeping(&args.out)?;
+    let kept = run::open(&plan, &keeping).map_err(|e| failed(e.into()))?;
+    if let Some(incomplete) = args.part.whole(&kept) {
+        return Ok(incomplete);
+    }
+    let runs = run::run_kept(&plan, &kept, args.out.jobs(), &watch);
     progress.finish_and_clear();
-    let runs = runs.map_err(|e| Error::Usage(e.to_string()))?;
+    let runs = runs.map_err(failed)?;
+    if args.part.is_part() {
+        let done = |k: usize| runs[k].as_ref().is_some_and(Run::is_over);
+        return Ok(args.part.end(&kept, done, args.out.quiet));
+    }
+    let runs: Vec<Run> = runs.into_iter().flatten().collect();
     let chart = figure::chart(&plan, &runs);
     outputs.write(
         &csv::table(&plan, &runs),
@@ -83,6 +97,7 @@ fn refuse_changes(args: &Args) -> Result<(), Error> {
         ("--set", !args.set.set.is_empty()),
         ("--x", args.x.is_some()),
         ("--y", args.y.is_some()),
+        ("--log", args.part.any()),
     ];
     match given.iter().find(|(_, given)| *given) {
         None => Ok(()),

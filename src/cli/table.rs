@@ -23,7 +23,7 @@
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
 use crate::linear::stability::Stability;
-use crate::model::{Control, Friction, Jumps, Model, Monitor, Watched};
+use crate::model::{Control, Friction, Jumps, Model, Monitor, ToldKind, Watched};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::motion::Motion;
 use crate::study::csv::field;
@@ -114,7 +114,16 @@ pub fn trace_header(model: &Model) -> String {
 
 /// Whether a scene has columns for pressures.
 fn has_pressures(model: &Model) -> bool {
-    let watched = |monitor: &Monitor| matches!(monitor.of, Watched::Pressure { .. });
+    let watched = |monitor: &Monitor| {
+        matches!(
+            monitor.of,
+            Watched::Pressure { .. }
+                | Watched::Told {
+                    kind: ToldKind::Pressure,
+                    ..
+                }
+        )
+    };
     model.contacts.iter().any(|contact| !contact.bond.is_hard())
         || model.monitors.iter().any(watched)
 }
@@ -175,6 +184,10 @@ fn residual(event: &Event) -> f64 {
         Outcome::Failed(Failure::MajorLimit { relative, .. } | Failure::Diverged { relative }) => {
             *relative
         }
+        Outcome::Failed(Failure::Reported {
+            relative: Some(relative),
+            ..
+        }) => *relative,
         _ => event.before.relative,
     }
 }

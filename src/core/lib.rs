@@ -113,7 +113,7 @@
 //!   It linearises at a state, solves for the modes of the nodes, takes the forces back, and says where the nodes are then.
 //!   [`linear::bodies`] is the source of our own bodies and [`linear::constant`] one of constant matrices; a source of
 //!   your own goes into [`Stepper::with_source`].
-//! - [`step`]: increments, major and minor iterations: the algorithm box.
+//! - [`step`]: increments, major and minor iterations: the algorithm box. [`Solver`] is the seam above it: what a debugger steps.
 //!
 //! # Conventions
 //!
@@ -139,5 +139,5 @@ pub use interface::trials::Trials;
 pub use linear::source::Source;
 pub use model::{Mode, Model, Settings, Strategy};
 pub use step::intervene::Intervention;
-pub use step::{Event, Failure, Outcome, State, Status, Stepper};
+pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;

@@ -18,9 +18,11 @@
 //! - [`matrix_market`]: single matrices in the Matrix Market's exchange format.
 //! - [`fclib`]: friction problems in the HDF5 files of the library fclib.
 //! - [`vtu`]: results for ParaView: VTK's unstructured grids, and collections of them.
+//! - [`attach`]: the protocol by which other programs' solvers are stepped.
 
 #![forbid(unsafe_code)]
 
+pub mod attach;
 pub mod broken;
 pub mod calculix;
 pub mod fclib;

@@ -147,6 +147,8 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
         | Failure::Restless { .. }
         | Failure::RoundOff { .. }
         | Failure::OverConstrained { .. } => {}
+        // Its method is not ours, and what it takes it says itself.
+        Failure::Reported { .. } => {}
     }
     all
 }
@@ -187,6 +189,10 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             &["past a limit point, a prescribed displacement instead of the load"]
         }
         Failure::Diverged { .. } => &["the debugger, to see what moves"],
+        Failure::Reported { .. } => &[
+            "the debugger, to see which nodes still change (t), and to force one (m)",
+            "another increment, where the solver takes one",
+        ],
         Failure::Refused(_) => &["a smaller history.least"],
         Failure::Restless { .. } => &["a support, or a surface, that stops what moves"],
         Failure::Leapt { .. } => match model.jumps {

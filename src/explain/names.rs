@@ -50,7 +50,7 @@ const NEWTON: [[&str; 2]; 3] = [
 pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
     match rule {
         Rule::NewtonOpens | Rule::NewtonSticks | Rule::NewtonSlides => [NEWTON; 3],
-        Rule::Pivots | Rule::Sweeps | Rule::Found => [[["", ""]; 3]; 3],
+        Rule::Pivots | Rule::Sweeps | Rule::Found | Rule::Theirs => [[["", ""]; 3]; 3],
         Rule::FreeEnters => {
             let mut table = TABLE_2;
             table[2] = [["", ""], ["g < 0", ""], ["g > 0", ""]];
@@ -88,6 +88,7 @@ pub fn rule(rule: Rule) -> &'static str {
         Rule::Pivots => "pivots",
         Rule::Sweeps => "sweeps",
         Rule::Found => "found",
+        Rule::Theirs => "theirs",
     }
 }
 

@@ -1,5 +1,8 @@
 //! Numbers for a person: in tables narrow, aligned at the decimal point, and never hiding a near-tie behind rounding.
 
+/// What stands for a number that an attached solver does not tell.
+pub const UNTOLD: &str = "-";
+
 /// A number in a table cell: sign slot first, then as many of six significant digits as leave the last column
 /// empty, padded to the width. Decimal points stand in one column. An exact zero is `0` and nothing else is.
 pub fn cell(value: f64, width: usize) -> String {

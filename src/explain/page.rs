@@ -192,7 +192,10 @@ impl Page {
                 }
                 None => self.not_again(),
             },
-            Failure::Cycle(_) | Failure::MinorLimit { .. } | Failure::NotFound(_) => {
+            Failure::Cycle(_)
+            | Failure::MinorLimit { .. }
+            | Failure::NotFound(_)
+            | Failure::Reported { .. } => {
                 self.look_at_frozen(stepper, state, stop);
             }
             Failure::NoAnswer { first, .. } => {

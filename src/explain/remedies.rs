@@ -4,16 +4,17 @@
 //! after [`BUDGET`] minor iterations. What it did is kept as steps, so that the chosen one can be done again in a branch.
 
 use super::advice::{Advice, advice};
-use super::examination::frozen;
+use super::examination::{Examination, frozen};
 use super::remedy::{How, Kind, Remedy};
 use crate::contact::laws::Law;
 use crate::contact::record::{ContactRecord, Forced};
 use crate::interface::method::NotFound;
 use crate::linear::norms::Norms;
-use crate::model::{Mode, Strategy};
-use crate::step::drive::{RunEnd, Until};
+use crate::model::{Mode, Model, Strategy};
+use crate::step::drive::{RunEnd, Until, drive};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::Intervention;
+use crate::step::solver::{Offers, Solver};
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::cmp::Ordering;
@@ -22,6 +23,8 @@ use std::time::Instant;
 
 /// Most minor iterations of a trial.
 pub const BUDGET: u32 = 400;
+/// Most iterations of a trial on an attached solver, which may take its time.
+const BUDGET_ATTACHED: u64 = 60;
 /// A node keeps its mode while the inequality is violated by less than this, relatively.
 pub const HYSTERESIS: f64 = 1e-3;
 /// Violations below this, relatively, are round-off.
@@ -83,6 +86,23 @@ pub struct Trial {
     pub steps: Vec<Option<Intervention>>,
 }
 
+impl Trial {
+    /// One that has not begun.
+    fn new(remedy: &Remedy) -> Trial {
+        Trial {
+            label: remedy.label.clone(),
+            how: remedy.how.clone(),
+            end: TrialEnd::Budget,
+            minors: 0,
+            majors: 0,
+            factorizations: 0,
+            seconds: 0.0,
+            left: None,
+            steps: Vec::new(),
+        }
+    }
+}
+
 /// Everything that is tried from a state, whatever it failed of, in the order of the list.
 const KINDS: [Kind; 19] = [
     Kind::Strategy(Strategy::Sliding),
@@ -135,6 +155,59 @@ pub fn all(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Vec
     all
 }
 
+/// What there is to try on an attached solver: it takes modes to start from, and perhaps another increment.
+pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examination) -> Vec<Remedy> {
+    let parts = [Kind::Part(0.5), Kind::Part(0.1)];
+    let parts = parts
+        .into_iter()
+        .filter_map(|kind| Remedy::of(kind, model, state));
+    let touching = [Mode::Fixed, Mode::Sliding]
+        .into_iter()
+        .filter_map(|mode| Remedy::touching(state, mode));
+    let answers = Remedy::answers(model, found).into_iter();
+    let all = answers.chain(touching).chain(parts);
+    let takes = |remedy: &Remedy| remedy.first.iter().all(|first| offers.check(first).is_ok());
+    all.filter(takes).collect()
+}
+
+/// Tries a remedy on an attached solver; `None` if it was stopped, or the solver is lost.
+pub fn attempt_attached(
+    solver: &mut dyn Solver,
+    state: &State,
+    remedy: &Remedy,
+    stop: &dyn Fn() -> bool,
+) -> Option<Trial> {
+    solver.restore(state).ok()?;
+    let target = (state.start.leg, state.load_factor);
+    let mut trial = Trial::new(remedy);
+    for first in &remedy.first {
+        if solver.intervene(first).is_ok() {
+            trial.steps.push(Some(first.clone()));
+        }
+    }
+    let until = Until::end().minors(BUDGET_ATTACHED).interrupted_by(stop);
+    let began = Instant::now();
+    let end = drive(solver, until, |solver| {
+        trial.minors += 1;
+        trial.steps.push(None);
+        let event = solver.event();
+        trial.majors += u32::from(event.outcome.ends_major());
+        let accepted = matches!(event.outcome, Outcome::Increment { .. });
+        match accepted && is_there(solver.state(), event, target) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    trial.seconds = began.elapsed().as_secs_f64();
+    trial.end = match end.ok()? {
+        RunEnd::Interrupted => return None,
+        RunEnd::Stopped(()) | RunEnd::Finished => TrialEnd::Converged,
+        RunEnd::Failed(failure) => TrialEnd::Failed(failure),
+        RunEnd::Spent => TrialEnd::Budget,
+    };
+    Some(trial)
+}
+
 /// Tries a remedy; `None` if it was stopped.
 pub fn attempt(
     stepper: &mut Stepper,
@@ -144,17 +217,7 @@ pub fn attempt(
 ) -> Option<Trial> {
     stepper.restore(state);
     let target = (state.start.leg, state.load_factor);
-    let mut trial = Trial {
-        label: remedy.label.clone(),
-        how: remedy.how.clone(),
-        end: TrialEnd::Budget,
-        minors: 0,
-        majors: 0,
-        factorizations: 0,
-        seconds: 0.0,
-        left: None,
-        steps: Vec::new(),
-    };
+    let mut trial = Trial::new(remedy);
     let change = |stepper: &mut Stepper, trial: &mut Trial, what: Intervention| {
         // What cannot be done is not a part of the trial: a node past its surface cannot touch.
         if stepper.intervene(&what).is_ok() {
@@ -251,7 +314,7 @@ fn scale_of(tested: crate::contact::table2::Tested, stepper: &Stepper, event: &E
             event.before.scale
         }
         Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
-        Tested::Cover | Tested::Change => 1.0,
+        Tested::Cover | Tested::Change | Tested::Own => 1.0,
     }
 }
 
@@ -319,6 +382,7 @@ pub fn end_words(end: &TrialEnd) -> String {
         TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),
         TrialEnd::Failed(Failure::Unmoved) => "does not move".into(),
         TrialEnd::Failed(Failure::RoundOff { .. }) => "round-off".into(),
+        TrialEnd::Failed(Failure::Reported { .. }) => "failed".into(),
         TrialEnd::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
         TrialEnd::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
         TrialEnd::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),

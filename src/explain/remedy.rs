@@ -105,6 +105,25 @@ pub struct Remedy {
 }
 
 impl Remedy {
+    /// What touches in a state, and not as its surface tells, goes on in another mode; `None` where it has that mode.
+    pub fn touching(state: &State, mode: Mode) -> Option<Remedy> {
+        let nodes = state.nodes.iter().enumerate();
+        let others = nodes.filter(|(_, node)| node.mode != Mode::Free && node.mode != mode);
+        let first: Vec<Intervention> = others
+            .map(|(slave, _)| Intervention::Force {
+                slave,
+                mode,
+                hold: false,
+            })
+            .collect();
+        (!first.is_empty()).then(|| Remedy {
+            kind: Kind::Start(mode),
+            label: format!("start what touches {}", names::mode(mode)),
+            how: How::Listed,
+            first,
+        })
+    }
+
     /// The remedy of a kind at a state; `None` where it would change nothing, or there is nothing to start from.
     pub fn of(kind: Kind, model: &Model, state: &State) -> Option<Remedy> {
         let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {

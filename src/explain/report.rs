@@ -105,6 +105,15 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
             let (next, wanted) = (mode(decision.next), mode(decision.wanted));
             return format!("You hold it {next}; Table 2 (◁) wanted {wanted}. M releases it.");
         }
+        Rule::Theirs if decision.wanted == decision.next => {
+            "The solver decided by rules of its own, which are not Table 2's."
+        }
+        Rule::Theirs => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!(
+                "The solver takes {next}; on the same numbers its rules, as we know them (◁), want {wanted}."
+            );
+        }
     };
     text.into()
 }
@@ -119,6 +128,14 @@ pub fn outcome(model: &Model, event: &Event) -> String {
         Outcome::Minor if together(event, Rule::Pivots) => format!("{at}: {}", pivot(model, event)),
         Outcome::Minor if together(event, Rule::Sweeps) => format!("{at}: {}", sweeps(event)),
         Outcome::Minor => match changes(model, event).as_str() {
+            // Of an attached solver it is not known what else moves.
+            "" if event
+                .nodes
+                .iter()
+                .all(|node| node.t_max_used == node.t_max || node.t_max.is_nan()) =>
+            {
+                format!("{at}: no mode changes")
+            }
             "" => format!("{at}: modes settled, T_max still moves"),
             changes => format!("{at}: {changes}"),
         },
@@ -276,10 +293,23 @@ pub fn reservations(model: &Model, event: &Event) -> String {
         1 => ", although one loop was cut off unsettled".into(),
         n => format!(", although {n} loops were cut off unsettled"),
     };
-    let defied: Vec<&str> = (0..event.nodes.len())
-        .filter(|&s| event.nodes[s].decision.wanted != event.nodes[s].decision.next)
-        .map(|s| slave(model, s))
-        .collect();
+    let defied = |rule: fn(Rule) -> bool| -> Vec<&str> {
+        (0..event.nodes.len())
+            .filter(|&s| {
+                let decision = &event.nodes[s].decision;
+                decision.wanted != decision.next && rule(decision.rule)
+            })
+            .map(|s| slave(model, s))
+            .collect()
+    };
+    let otherwise = defied(|rule| rule == Rule::Theirs);
+    if !otherwise.is_empty() {
+        text += &format!(
+            ", although its rules, as we know them, want another mode at {}",
+            otherwise.join(", ")
+        );
+    }
+    let defied = defied(|rule| rule != Rule::Theirs);
     if !defied.is_empty() {
         text += &format!(
             ", although Table 2 rejects the mode held at {}",
@@ -361,6 +391,7 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
             format!("friction angle {angle} degrees, cohesion of each node by its area")
         }
         Intervention::Settings(_) => "settings changed".into(),
+        Intervention::Parameter { name, value } => format!("{name} is {value} from now on"),
     }
 }
 
@@ -398,6 +429,10 @@ pub fn sound(at: Position, state: &State) -> String {
 pub fn describe_failure(model: &Model, failure: &Failure) -> String {
     match failure {
         Failure::Cycle(c) => cycle(model, c),
+        Failure::Reported { reason, .. } if reason.is_empty() => {
+            "the solver failed, and does not say why".into()
+        }
+        Failure::Reported { reason, .. } => format!("the solver failed: {reason}"),
         Failure::MinorLimit { limit, changing } => {
             let nodes = changing.iter().map(|&s| slave(model, s).to_owned());
             format!(

@@ -14,6 +14,7 @@
 
 use super::contact_law::{ContactLaw, FrictionSpec};
 use super::error::{Path, Step, at};
+use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
 use crate::model::{Friction, InitialState, Jumps, Mode, Settings};
 use serde::de::Error;
@@ -199,6 +200,7 @@ impl Problem {
             history: self.history.clone(),
             settings: self.settings,
             monitors: Vec::new(),
+            attached: None,
         }
     }
 
@@ -301,14 +303,14 @@ fn quoted(text: &str) -> String {
 }
 
 fn ron(value: &impl Serialize) -> Option<String> {
-    ron::to_string(value).ok()
+    notation::strict_line(value).ok()
 }
 
 /// The fields of a flat struct that differ from those of another, as `name: value`.
 fn differences<T: Serialize>(value: &T, other: &T) -> Vec<String> {
     // Pretty-printed, each field has a line.
     let pretty = || ron::ser::PrettyConfig::new().indentor("").new_line("\n");
-    let lines = |value: &T| ron::ser::to_string_pretty(value, pretty()).unwrap_or_default();
+    let lines = |value: &T| notation::strict_lines(value, pretty()).unwrap_or_default();
     let (ours, theirs) = (lines(value), lines(other));
     let pairs = ours.lines().zip(theirs.lines());
     let differing = pairs.filter(|(ours, theirs)| ours != theirs);

@@ -3,7 +3,7 @@
 //! Paths name things by their ids where they have any, and by their position where not; a point's parts are `x` and
 //! `y`. One walk over the scene serves listing and setting, so that neither can know more than the other.
 
-use super::described::{Described, Scalar, ScalarPlace, Visit};
+use super::described::{Described, ScalarPlace, Visit};
 use super::error::{NotSet, Path, nearest, quoted};
 use super::spec::Spec;
 use crate::model::Settings;
@@ -28,6 +28,8 @@ pub struct Listed {
     pub value: String,
     /// What can be set: "a number", "one of lagged, consistent".
     pub kind: String,
+    /// The words that it can be; none where it is no word.
+    pub words: &'static [&'static str],
 }
 
 /// All scalars of a scene, in the order of the file.
@@ -39,6 +41,7 @@ pub fn list(spec: &Spec) -> Vec<Listed> {
             path: place.name(),
             value: scalar.value(),
             kind: scalar.kind(),
+            words: scalar.words(),
         });
     });
     all
@@ -50,11 +53,7 @@ pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
     let root = ScalarPlace::root();
     let place = root.field("settings");
     Settings::default().walk(&place, &mut |place, scalar| {
-        let words: &[&str] = match scalar {
-            Scalar::Choice(choice) => choice.names(),
-            _ => &[],
-        };
-        all.push((place.name(), words));
+        all.push((place.name(), scalar.words()));
     });
     all
 }

@@ -61,6 +61,10 @@ described! {
         /// What `--csv` and the load-displacement view report. Default: none.
         #[serde(default)]
         pub monitors: Vec<MonitorSpec>,
+        /// The scene of an attached solver, as it told it; nothing else of the file counts then, and nothing of ours solves it
+        /// (manual page `attaching`). Default: none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub attached: Option<String> => skip,
     }
 }
 

@@ -101,6 +101,7 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
             None => "friction".into(),
         },
         Intervention::Settings(_) => "settings".into(),
+        Intervention::Parameter { name, value } => format!("{name} {value}"),
     }
 }
 

@@ -3,7 +3,7 @@
 //! Memory: [`Strip::BYTES_PER_NODE`] bytes for each slave node, and [`Strip::BYTES_PER_ITERATION`] for the iteration. An
 //! iteration that moves a node to another element adds 4 bytes a node, one that begins an increment or ends a major iteration its norms.
 
-use crate::contact::record::Forced;
+use crate::contact::record::{ContactRecord, Forced};
 use crate::linear::norms::Norms;
 use crate::model::{Mode, Model};
 use crate::step::event::{Event, Failure, Outcome, Position};
@@ -121,7 +121,8 @@ pub struct Strip {
     pub after: Option<Box<Norms>>,
     /// Wall time that it took to solve; not a part of the state, and never compared.
     pub seconds: f32,
-    /// A byte a slave node: bits 0-1 the mode before, 2-3 the mode next, 4 forced once, 5 held, 6 held where two sides meet.
+    /// A byte a slave node: bits 0-1 the mode before, 2-3 the mode next, 4 forced once, 5 held, 6 held where two sides meet, 7 an
+    /// attached solver decided otherwise than the rules that it names.
     marks: Box<[u8]>,
     /// Signed distance of the deciding inequality from switching, by slave node (force or length), rounded.
     margins: Box<[f32]>,
@@ -135,6 +136,7 @@ const NOWHERE: u32 = u32::MAX;
 const ONCE: u8 = 1 << 4;
 const HELD: u8 = 1 << 5;
 const CORNER: u8 = 1 << 6;
+const DIFFERS: u8 = 1 << 7;
 
 impl Strip {
     /// A mark and a margin.
@@ -158,7 +160,9 @@ impl Strip {
                 None => (now.mode, now.forced),
             };
             let corner = record(s).is_some_and(|found| found.corner.is_some());
-            mark(mode, now.mode, forced) | if corner { CORNER } else { 0 }
+            let differs = state.outside.is_some() && record(s).is_some_and(ContactRecord::differs);
+            let flag = |is: bool, flag: u8| if is { flag } else { 0 };
+            mark(mode, now.mode, forced) | flag(corner, CORNER) | flag(differs, DIFFERS)
         };
         let count = state.nodes.len();
         Strip {
@@ -228,6 +232,11 @@ impl Strip {
     /// Whether it was held where two sides meet.
     pub fn in_corner(&self, slave: usize) -> bool {
         self.marks[slave] & CORNER != 0
+    }
+
+    /// Whether an attached solver decided otherwise on it than the rules that it names.
+    pub fn differs(&self, slave: usize) -> bool {
+        self.marks[slave] & DIFFERS != 0
     }
 
     /// Whether its mode was held until released.

@@ -45,6 +45,9 @@ pages! {
     strategies "strategies" "pages/strategies.md" "How the next modes are chosen; the ladder; jumps";
     decks "decks" "pages/decks.md" "Decks of CalculiX and Abaqus: what is read, and as what";
     past_runs "past-runs" "pages/past-runs.md" "A CalculiX run that is over: what cycled, and who chatters";
+    attaching "attaching" "pages/attaching.md" "Another program's solver, stepped in this debugger";
+    protocol "protocol" "pages/protocol.md" "What an attached solver and the debugger say to each other";
+    adapters "adapters" "pages/adapters.md" "Attaching a solver with Python: an example, and three that are there";
     corners "corners" "pages/corners.md" "Where two sides of a surface meet";
     limit_points "limit-points" "pages/limit-points.md" "Where a load can go no further, and what comes after";
     jumps "jumps" "pages/jumps.md" "Stability; what comes past a limit point";
@@ -54,10 +57,12 @@ pages! {
     keys "keys" "pages/keys.md" "Keys and actions of the debugger; branches, breakpoints, journals";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";
     maps_and_charts "maps-and-charts" "pages/maps-and-charts.md" "Where it converges; random problems; error over cost";
+    cluster "cluster" "pages/cluster.md" "Past one machine: shards, logs, merging; HyperQueue, Slurm, parallel";
     theory "theory" "pages/theory.md" "The method, its symbols, and where the program departs from the paper";
     verification "verification" "pages/verification.md" "What is accepted, how good it is, and how that is tested";
     benchmarks "benchmarks" "pages/benchmarks.md" "Scenes whose answers are known from elsewhere, and how near ours are";
     speed "speed" "pages/speed.md" "What runs cost, and how that grows";
+    install "install" "pages/install.md" "Installing, features, completions, pages for man, older clusters";
     architecture "architecture" "pages/architecture.md" "How the source is built";
     contributing "contributing" "pages/contributing.md" "How to change it: tests, fuzzing, rules";
     changes "changes" "pages/changes.md" "What became different";

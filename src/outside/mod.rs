@@ -3,9 +3,11 @@
 //! - [`input`]: the one way in which files are read: regular ones only, never waiting, never more than a stated size.
 //! - [`files`]: the one way in which files are written: whole or not at all, and never over another one unasked.
 //! - [`calculix`]: a CalculiX run that is over.
+//! - [`terminal`]: what the terminal is, and what it says when it is asked.
 //! - [`shown`]: the one way in which texts of others reach a terminal, a table or a picture.
 
 pub mod calculix;
 pub mod files;
 pub mod input;
 pub mod shown;
+pub mod terminal;

@@ -300,7 +300,7 @@ impl Journal {
 
     fn write(&mut self, line: &impl Serialize, sync: bool) -> Result<(), JournalError> {
         let failed = |source| failure(&self.path, "written", source);
-        let text = notation::options().to_string(line);
+        let text = notation::line(line);
         let text = text.map_err(|e| failed(io::Error::other(e)))? + "\n";
         let written = self.file.write_all(text.as_bytes());
         let written = written.and_then(|()| match sync {
@@ -537,7 +537,7 @@ pub fn digest(state: &State) -> String {
         }
     }
     let mut hash = Hash(0xcbf2_9ce4_8422_2325);
-    match notation::options().to_writer(&mut hash, state) {
+    match notation::line_to(&mut hash, state) {
         Ok(()) => format!("{:016x}", hash.0),
         // No state is known that RON cannot take; a digest that equals no other says so.
         Err(error) => format!("none: {error}"),

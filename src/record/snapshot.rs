@@ -14,11 +14,11 @@ use crate::outside::files::{self, FileError};
 use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::scene::Scene;
 use crate::scene::solver::solver;
-use crate::step::drive::{RunEnd, Until};
+use crate::step::drive::{RunEnd, Until, drive};
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervene::Intervention;
+use crate::step::solver::Solver;
 use crate::step::state::{State, Status};
-use crate::step::stepper::Stepper;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -188,6 +188,14 @@ pub enum SnapshotError {
     /// The scene in it is unsound.
     #[error("the snapshot's scene is unsound: {0}")]
     Scene(#[from] SceneError),
+    /// It is of an attached solver.
+    #[error(
+        "it was taken of the attached solver {name}; replay FILE -- COMMAND does it again with that"
+    )]
+    Attached {
+        /// What the solver is called.
+        name: String,
+    },
     /// Its steps cannot be done again.
     #[error("it cannot be computed again: {0}")]
     Replay(String),
@@ -223,9 +231,7 @@ impl Snapshot {
             .new_line("\n")
             // Lists of slaves and nodes are tables: one row, one line.
             .depth_limit(3);
-        let text = notation::options()
-            .to_string_pretty(self, layout)
-            .map_err(SnapshotError::Unwritable)?;
+        let text = notation::lines(self, layout).map_err(SnapshotError::Unwritable)?;
         Ok(text + "\n")
     }
 
@@ -305,10 +311,31 @@ impl Snapshot {
     /// # Errors
     /// If the scene is unsound, or the run does not come that far.
     pub fn replay(&self) -> Result<Snapshot, SnapshotError> {
+        if self.scene.attached.is_some() {
+            let name = self.name.clone();
+            return Err(SnapshotError::Attached { name });
+        }
         let scene = Scene::from_spec(&self.name, self.scene.clone())?;
-        let mut stepper = solver(Arc::new(scene.model.clone()));
+        self.replay_on(&scene, &mut solver(Arc::new(scene.model.clone())))
+    }
+
+    /// The same with an attached solver, from its start.
+    ///
+    /// # Errors
+    /// As [`Snapshot::replay`]; if the solver solves something else, or cannot go on.
+    pub fn replay_with(&self, solver: &mut dyn Solver) -> Result<Snapshot, SnapshotError> {
+        let scene = Scene::from_spec(&self.name, self.scene.clone())?;
+        if scene.model != **solver.model() {
+            return Err(SnapshotError::Replay(
+                "the solver's scene is not that of the snapshot".into(),
+            ));
+        }
+        self.replay_on(&scene, solver)
+    }
+
+    fn replay_on(&self, scene: &Scene, solver: &mut dyn Solver) -> Result<Snapshot, SnapshotError> {
         let mut applied = self.interventions.iter().peekable();
-        let mut intervene = |stepper: &mut Stepper, done: u64| {
+        let mut intervene = |stepper: &mut dyn Solver, done: u64| {
             while let Some(next) = applied.next_if(|a| a.step == done) {
                 stepper
                     .intervene(&next.intervention)
@@ -316,17 +343,17 @@ impl Snapshot {
             }
             Ok(())
         };
-        intervene(&mut stepper, 0)?;
+        intervene(solver, 0)?;
         let mut done = 0;
         let until = Until::end().minors(self.steps).past_failures();
-        let end = stepper.drive(until, |stepper| {
+        let end = drive(solver, until, |stepper| {
             done += 1;
             match intervene(stepper, done) {
                 Ok(()) => ControlFlow::Continue(()),
                 Err(error) => ControlFlow::Break(error),
             }
         });
-        match end {
+        match end.map_err(|lost| SnapshotError::Replay(lost.to_string()))? {
             RunEnd::Stopped(error) => return Err(error),
             RunEnd::Spent => {}
             RunEnd::Finished | RunEnd::Failed(_) | RunEnd::Interrupted => {
@@ -341,12 +368,12 @@ impl Snapshot {
                 "its interventions are not in order, or lie beyond its last step".into(),
             ));
         }
-        let event = (self.steps > 0).then(|| stepper.event());
+        let event = (self.steps > 0).then(|| solver.event());
         Ok(Snapshot::take(
-            &scene,
+            scene,
             &self.interventions,
             self.steps,
-            stepper.state(),
+            solver.state(),
             event,
         ))
     }

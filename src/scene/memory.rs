@@ -2,6 +2,7 @@
 
 use crate::linear::estimate::GIGABYTE;
 use std::fs;
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// What may be taken where nothing tells what is free, in bytes.
@@ -12,7 +13,8 @@ pub fn budget(setting: Option<f64>) -> f64 {
     setting.map_or_else(free, |gigabytes| gigabytes * GIGABYTE)
 }
 
-/// Bytes that are free: of the machine, and of the group of processes that this one is confined to, if it is.
+/// Bytes that are free: of the machine, and of the groups of processes (cgroups, version 1 or 2) that this one is confined to, as
+/// a container or a scheduler's job is.
 ///
 /// It is read once, so that all solvers of a process choose the same.
 pub fn free() -> f64 {
@@ -23,13 +25,55 @@ pub fn free() -> f64 {
 fn read_free() -> f64 {
     let machine = fs::read_to_string("/proc/meminfo").ok();
     let machine = machine.as_deref().and_then(available);
-    let number = |file: &str| {
-        let text = fs::read_to_string(format!("/sys/fs/cgroup/{file}")).ok()?;
-        text.trim().parse::<f64>().ok()
-    };
-    let group = number("memory.max").zip(number("memory.current"));
-    let group = group.map_or(f64::INFINITY, |(most, now)| (most - now).max(0.0));
+    let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
+    let group = confined(Path::new("/sys/fs/cgroup"), &groups);
     machine.unwrap_or(UNTOLD).min(group)
+}
+
+/// Bytes that the groups of a process leave it; infinite where none confines it. `mount` is where the groups are mounted, `own` is
+/// what `/proc/self/cgroup` says: lines `number:controllers:path`, those of version 2 without controllers.
+fn confined(mount: &Path, own: &str) -> f64 {
+    let mut least = f64::INFINITY;
+    for line in own.lines() {
+        let mut fields = line.splitn(3, ':').skip(1);
+        let (Some(controllers), Some(path)) = (fields.next(), fields.next()) else {
+            continue;
+        };
+        let path = Path::new(path.trim_start_matches('/'));
+        // What confines a group confines those below it. A container may see the groups from its own downwards only.
+        for group in path.ancestors() {
+            let left = match controllers {
+                "" => left(&mount.join(group), ["memory.max", "memory.current"]).or_else(|| {
+                    left(
+                        &mount.join("unified").join(group),
+                        ["memory.max", "memory.current"],
+                    )
+                }),
+                _ if controllers.split(',').any(|own| own == "memory") => left(
+                    &mount.join("memory").join(group),
+                    ["memory.limit_in_bytes", "memory.usage_in_bytes"],
+                ),
+                _ => None,
+            };
+            least = left.map_or(least, |left| least.min(left));
+        }
+    }
+    least
+}
+
+/// Bytes that a group leaves, by the names of its files of the most and the used; `None` where it has no limit. Of what is used,
+/// copies of files that nobody has touched lately are given back where memory is short.
+fn left(group: &Path, [most, used]: [&str; 2]) -> Option<f64> {
+    let text = |file: &str| fs::read_to_string(group.join(file)).ok();
+    let number = |file: &str| text(file)?.trim().parse::<f64>().ok();
+    let (most, used) = (number(most)?, number(used)?);
+    let stat = text("memory.stat").unwrap_or_default();
+    let of = |name: &str| {
+        let line = stat.lines().find_map(|line| line.strip_prefix(name))?;
+        line.trim().parse::<f64>().ok()
+    };
+    let given_back = of("total_inactive_file ").or_else(|| of("inactive_file "));
+    Some((most - (used - given_back.unwrap_or(0.0)).max(0.0)).max(0.0))
 }
 
 /// What `/proc/meminfo` says is available.
@@ -50,6 +94,63 @@ mod tests {
         assert_eq!(available(table), Some(22.0 * 1024.0));
         assert_eq!(available("MemTotal: 24 kB\n"), None);
         assert!(free() > 0.0);
+    }
+
+    /// Makes the files of a group.
+    fn group(at: &Path, files: &[(&str, &str)]) {
+        fs::create_dir_all(at).unwrap();
+        for (name, text) in files {
+            fs::write(at.join(name), text).unwrap();
+        }
+    }
+
+    #[test]
+    fn the_tightest_group_above_a_process_confines_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let mount = folder.path();
+        let files = |most, used| [("memory.max", most), ("memory.current", used)];
+        group(&mount.join("job"), &files("5000\n", "1000\n"));
+        group(&mount.join("job/step"), &files("max\n", "600\n"));
+        assert_eq!(confined(mount, "0::/job/step\n"), 4000.0);
+        group(&mount.join("job/step"), &files("3000\n", "600\n"));
+        assert_eq!(confined(mount, "0::/job/step\n"), 2400.0);
+        // What has been read from files and is not in use does not count.
+        group(
+            &mount.join("job/step"),
+            &[("memory.stat", "anon 500\ninactive_file 100\n")],
+        );
+        assert_eq!(confined(mount, "0::/job/step\n"), 2500.0);
+        assert_eq!(confined(mount, "0::/other\n"), f64::INFINITY);
+    }
+
+    #[test]
+    fn groups_of_the_first_version_confine_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let mount = folder.path();
+        let files = |most, used| {
+            [
+                ("memory.limit_in_bytes", most),
+                ("memory.usage_in_bytes", used),
+            ]
+        };
+        group(
+            &mount.join("memory"),
+            &files("9223372036854771712\n", "7\n"),
+        );
+        group(
+            &mount.join("memory/slurm/job_3"),
+            &files("5000\n", "2000\n"),
+        );
+        let own = "9:cpu,cpuacct:/slurm/job_3\n4:memory:/slurm/job_3\n0::/\n";
+        assert_eq!(confined(mount, own), 3000.0);
+        // More than is used may have been taken away.
+        group(
+            &mount.join("memory/slurm/job_3"),
+            &files("1000\n", "2000\n"),
+        );
+        assert_eq!(confined(mount, own), 0.0);
+        let beside = "4:memory:/slurm/job_4\n";
+        assert!(confined(mount, beside) > 1e18);
     }
 
     #[test]

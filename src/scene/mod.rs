@@ -5,9 +5,11 @@
 //! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
 //! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
+//! - [`attached`]: scenes that attached solvers told.
 //! - [`problems`]: interface problems that other programs have written.
 //! - [`builtin`]: the scenes that the program carries.
 
+pub mod attached;
 pub mod base;
 pub mod bonds;
 pub mod builtin;
@@ -33,6 +35,7 @@ use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, re
 use crate::model::Model;
 pub use builtin::Builtin;
 pub use problems::siconos;
+use stickslip_exchange::attach::message;
 
 pub(crate) use compile::increments;
 use nodes::Names;
@@ -119,6 +122,15 @@ impl Scene {
             return Scene::compiled(name, "", spec, overrides, place);
         }
         let spec = read::spec(name, text)?;
+        if spec.attached.is_some() {
+            let why = "it is the scene of an attached solver, which alone can solve it: stickslip attach -- COMMAND";
+            return Err(placed(
+                name,
+                text,
+                &[],
+                Fault::new(error::at!["attached"], why),
+            ));
+        }
         let (mut spec, overrides) = changed(name, spec, overrides, Vec::new())?;
         let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
         let imports = imported(&mut spec, name, |fault| place(&overrides, fault))?;
@@ -158,6 +170,18 @@ impl Scene {
     /// If the scene is unsound; there are no lines to name then.
     pub fn from_spec(name: &str, spec: Spec) -> Result<Scene, SceneError> {
         Scene::assemble(name, "", spec, &[], Vec::new())
+    }
+
+    /// The scene that an attached solver tells, under a name; `increment` is the one that it begins with, if it tells that.
+    ///
+    /// # Errors
+    /// What is unsound in it.
+    pub fn told(
+        name: &str,
+        told: &message::Scene,
+        increment: Option<f64>,
+    ) -> Result<Scene, SceneError> {
+        Scene::from_spec(name, attached::spec(told, increment))
     }
 
     /// Checks a scene that stands inside another file, at a path of its text; `name` is what messages call the file.

@@ -4,7 +4,7 @@
 //!   thread goes over both iterations again and takes the frozen interface problem between them.
 //! - **Findings**: the diagnosis of the cycle that the shown state runs into, or else the census of the frozen problem
 //!   that is solved next from it.
-//! - **Exports**: files of a state: pictures, the frozen problem, the core of its cycle ([`export`]).
+//! - **Exports**: files of a state ([`exports`](super::exports)).
 //! - **Remedies**: trials of every way out ([`remedies`]).
 //!
 //! The thread has a solver of its own, of the session's scene. Where the session's solver has the frozen problem at hand, it lends
@@ -13,29 +13,21 @@
 //!
 //! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
 
+use super::exports::{Export, NotWritten, is_of_problem, write, write_posed};
 use super::worker::Lender;
-use crate::explain::core::core;
-use crate::explain::diagnosis::too_many;
-use crate::explain::examination::{Examination, NOT_CONDENSED, Untold, examine_nodes, going_round};
+use crate::explain::attached;
+use crate::explain::examination::{Examination, examine_nodes};
 use crate::explain::influence::{Push, Way, between, pushed, pushes};
 use crate::explain::page::page;
 use crate::explain::remedies::{self, Trial};
-use crate::explain::report;
 use crate::format::spec::Spec;
-use crate::history::strip::Strip;
 use crate::linear::estimate::Estimate;
 use crate::model::Model;
-use crate::outside::files::{self, FileError};
-use crate::record::command::Exported;
-use crate::record::export::shown::{NotMade, Shown};
-use crate::record::export::{self, Kind, NoExport, Origin, UnknownKind};
-use crate::scene::Scene;
 use crate::scene::solver::solver;
-use crate::step::event::Event;
+use crate::step::solver::{Lost, Offers, Posed};
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -65,74 +57,10 @@ pub struct Tried {
     pub stopped: bool,
 }
 
-/// A file to be made of a state.
-pub struct Export {
-    /// What is written.
-    pub what: Exported,
-    /// Where to.
-    pub file: PathBuf,
-    /// Whether a file of that name may be overwritten.
-    pub overwrite: bool,
-    /// What the file says of where it comes from.
-    pub origin: Origin,
-    /// The shown state.
-    pub state: Box<State>,
-    /// What a picture shows of it besides.
-    pub shown: Option<Box<Seen>>,
-}
-
-/// What there is to be seen of a state.
-pub struct Seen {
-    /// The scene that led there.
-    pub scene: Scene,
-    /// The last minor iteration.
-    pub event: Option<Arc<Event>>,
-    /// The last ones.
-    pub strips: Vec<Strip>,
-    /// The state in which the last major iteration began, if it is known.
-    pub last_major: Option<State>,
-}
-
-/// Why no scene was written.
-#[derive(Debug, thiserror::Error)]
-pub enum NotWritten {
-    /// The history is done.
-    #[error("the history is done; nothing is solved next from here")]
-    Finished,
-    /// The bodies cannot be condensed to the interface here.
-    #[error("{NOT_CONDENSED}")]
-    NotCondensed,
-    /// The minor iterations do not cycle here.
-    #[error("the minor iterations do not cycle from here, so there is no core")]
-    NoCycle,
-    /// Too many nodes take part; the words say how many.
-    #[error("{0}")]
-    TooMany(String),
-    /// What is to be written could not be found out.
-    #[error(transparent)]
-    Untold(#[from] Untold),
-    /// No file can say what the problem says.
-    #[error(transparent)]
-    NoExport(#[from] NoExport),
-    /// No file of that kind can be made of the state.
-    #[error(transparent)]
-    NotMade(#[from] NotMade),
-    /// The extension is none that is known.
-    #[error(transparent)]
-    UnknownKind(#[from] UnknownKind),
-    /// The kind is made of a journal.
-    #[error(
-        "a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is"
-    )]
-    OfJournal,
-    /// The file could not be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
-
 enum Ask {
     Pushes(LinePlace, usize, Way),
-    Examination(LinePlace, Box<State>, Vec<usize>),
+    /// With what is known already, of an attached solver.
+    Examination(LinePlace, Box<State>, Vec<usize>, Vec<String>),
     Remedies(Box<State>),
     Export(Export),
 }
@@ -160,7 +88,12 @@ enum Told {
 /// What the thread works with.
 struct Helper {
     model: Arc<Model>,
-    spec: Spec,
+    /// The scene, where a solver of ours solves it.
+    spec: Option<Spec>,
+    /// What the session's solver offers.
+    offers: Offers,
+    /// What stops it, for who works elsewhere.
+    stopping: Arc<AtomicBool>,
     /// Made when something is asked.
     stepper: Option<Stepper>,
     /// Whether the solver takes much memory.
@@ -193,6 +126,15 @@ impl Background {
     /// `spec` is the scene as its author wrote it, of which a finer mesh may be tried.
     /// `lender` takes looks at the session's own solver.
     pub fn new(model: Arc<Model>, spec: Spec, lender: Lender) -> Background {
+        Background::begun(model, Some(spec), Offers::all(), lender)
+    }
+
+    /// The same beside a solver of another's, which alone knows what deforms.
+    pub fn beside(model: Arc<Model>, offers: Offers, lender: Lender) -> Background {
+        Background::begun(model, None, offers, lender)
+    }
+
+    fn begun(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
         let (asks, orders) = channel::<Ask>();
         let (news, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
@@ -203,6 +145,8 @@ impl Background {
                 large: effort.bytes > LARGE,
                 model,
                 spec,
+                offers,
+                stopping: flag.clone(),
                 stepper: None,
                 lender,
             };
@@ -266,7 +210,14 @@ impl Background {
     }
 
     /// Asks for the finding at a place, with the state there: of these nodes, or (none) of what matters.
-    pub(super) fn ask_examination(&mut self, place: LinePlace, state: &State, nodes: &[usize]) {
+    /// `told` is what the line tells already of an attached solver.
+    pub(super) fn ask_examination(
+        &mut self,
+        place: LinePlace,
+        state: &State,
+        nodes: &[usize],
+        told: Vec<String>,
+    ) {
         let known = self.examinations.get(&place);
         if known.is_none_or(|(asked, _)| asked != nodes) {
             if self.examinations.len() >= KEPT {
@@ -276,7 +227,7 @@ impl Background {
             let state = Box::new(state.clone());
             self.stop.store(false, Ordering::Relaxed);
             self.examining += 1;
-            self.send(Ask::Examination(place, state, nodes.to_vec()));
+            self.send(Ask::Examination(place, state, nodes.to_vec(), told));
         }
     }
 
@@ -417,33 +368,143 @@ impl Helper {
                 let found = self.pushes(slave, way);
                 news.send(Told::Pushes(place, slave, found)).ok()
             }
-            Ask::Examination(place, state, nodes) => {
+            Ask::Examination(place, state, nodes, known) if self.spec.is_none() => {
+                let found = self.examine_attached(&state, &nodes, known, stop);
+                let found = (!stop.load(Ordering::Relaxed)).then(|| Box::new(found));
+                news.send(Told::Examination {
+                    place,
+                    nodes,
+                    found,
+                    going_on: false,
+                })
+                .ok()
+            }
+            Ask::Examination(place, state, nodes, _) => {
                 self.borrow(&state);
                 let (stepper, spec) = self.solver();
                 examine(stepper, spec, (place, &state, nodes), news, stop)
+            }
+            Ask::Export(ask) if self.spec.is_none() && is_of_problem(&ask) => {
+                let done = self
+                    .posed(&ask.state)
+                    .map_err(NotWritten::from)
+                    .and_then(|posed| write_posed(&self.model, &posed, &ask));
+                let told = done.map(|()| format!("wrote {}", ask.file.display()));
+                news.send(Told::Exported(told)).ok()
             }
             Ask::Export(ask) => {
                 let done = write(self.solver().0, &ask);
                 let told = done.map(|()| format!("wrote {}", ask.file.display()));
                 news.send(Told::Exported(told)).ok()
             }
+            Ask::Remedies(state) if self.spec.is_none() => self.try_attached(&state, news, stop),
             Ask::Remedies(state) => try_remedies(self.solver().0, &state, news, stop),
         }
     }
 
     /// Its own solver, and the scene as written.
-    fn solver(&mut self) -> (&mut Stepper, &Spec) {
+    fn solver(&mut self) -> (&mut Stepper, Option<&Spec>) {
         let model = &self.model;
         let stepper = self.stepper.get_or_insert_with(|| solver(model.clone()));
-        (stepper, &self.spec)
+        (stepper, self.spec.as_ref())
+    }
+
+    /// The interface problem that an attached solver tells of a state.
+    fn posed(&self, state: &State) -> Result<Posed, Lost> {
+        if !self.offers.problem {
+            return Err(Lost::new(self.offers.lacks("its interface problem")));
+        }
+        let wanted = state.clone();
+        let asked = self.lender.look(move |solver| solver.posed(&wanted));
+        asked.unwrap_or_else(|| Err(Lost::new("the solver is at work; :census asks again")))
+    }
+
+    /// What is known of an attached solver's state: what its line tells, and what is found in its interface problem.
+    fn examine_attached(
+        &self,
+        state: &State,
+        nodes: &[usize],
+        known: Vec<String>,
+        stop: &AtomicBool,
+    ) -> Examination {
+        let stopped = || stop.load(Ordering::Relaxed);
+        let mut found = match self.posed(state) {
+            Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
+            Err(lost) => Examination {
+                lines: vec![format!(
+                    "Nothing can be told of the frozen problem: {lost}."
+                )],
+                ..Examination::default()
+            },
+        };
+        found.fails |= matches!(state.status, Status::Failed(_));
+        let mut lines = known;
+        let told: Vec<String> = match &found.census {
+            Some(census) if self.offers.force => (1..=census.answers.len().min(2))
+                .map(|n| format!("do: start from a consistent state: :start-from {n}, its modes are sent as forces"))
+                .collect(),
+            _ => Vec::new(),
+        };
+        let by_hand = self.offers.force && told.is_empty() && !lines.is_empty();
+        if found.problem.is_some() {
+            lines.push("Its interface problem, gone through by Table 2:".into());
+        }
+        // What the settings of our own method do is nothing that it offers.
+        let offered = |line: &String| !line.starts_with("tried: settings.");
+        lines.extend(found.lines.drain(..).filter(offered));
+        lines.extend(told);
+        if by_hand {
+            lines.push("do: force one of the nodes that change to another mode (m)".into());
+        }
+        found.lines = lines;
+        found
+    }
+
+    /// Tries what an attached solver offers, on it.
+    fn try_attached(&self, state: &State, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
+        let stopped = || stop.load(Ordering::Relaxed);
+        let found = match self.posed(state) {
+            Ok(posed) => attached::examine(&self.model, state, &posed, &[], &stopped),
+            Err(_) => Examination::default(),
+        };
+        let all = remedies::offered(&self.model, state, &self.offers, &found);
+        let mut ended = false;
+        for remedy in &all {
+            let now = remedy.label.clone();
+            news.send(Told::Trying {
+                all: all.len(),
+                now,
+            })
+            .ok()?;
+            let (remedy, state) = (remedy.clone(), state.clone());
+            let stopping = self.stopping.clone();
+            let tried = self.lender.look(move |solver| {
+                let stopped = || stopping.load(Ordering::Relaxed);
+                let tried = remedies::attempt_attached(solver, &state, &remedy, &stopped);
+                // Where the session stands, whatever came of the trial; a solver that does not find back says so when it goes on.
+                let _ = solver.restore(&state);
+                tried
+            });
+            match tried.flatten() {
+                Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
+                None => {
+                    ended = true;
+                    break;
+                }
+            }
+        }
+        news.send(Told::Done { stopped: ended }).ok()
     }
 
     /// What pushed a node: by the session's solver where that has the problem at hand, else by its own.
     fn pushes(&mut self, slave: usize, way: Way) -> Option<Vec<Push>> {
+        // What deforms under an attached solver is not known.
+        self.spec.as_ref()?;
         let way = Arc::new(way);
         let theirs = way.clone();
         // Their solver goes the way alone; what takes time is found out here.
-        let between = self.lender.look(move |stepper| {
+        let between = self.lender.look(move |solver| {
+            let stepper = solver.stepper()?;
             let at_hand = stepper.condenses() && stepper.stands_for(&theirs.state);
             at_hand.then(|| between(stepper, &theirs))
         });
@@ -456,7 +517,9 @@ impl Helper {
     /// Takes over the frozen problem of a state that the session's solver has at hand.
     fn borrow(&mut self, state: &State) {
         let wanted = state.clone();
-        let lent = self.lender.look(move |stepper| stepper.lend(&wanted));
+        let lent = self
+            .lender
+            .look(move |solver| solver.stepper()?.lend(&wanted));
         if let Some(lent) = lent.flatten() {
             self.solver().0.borrow(lent);
         }
@@ -473,7 +536,7 @@ impl Helper {
 /// Finds out what there is to say of a state: of these nodes, or (none) of what matters.
 fn examine(
     stepper: &mut Stepper,
-    spec: &Spec,
+    spec: Option<&Spec>,
     (place, state, nodes): (LinePlace, &State, Vec<usize>),
     news: &Sender<Told>,
     stop: &AtomicBool,
@@ -491,7 +554,7 @@ fn examine(
         [] => page(
             stepper,
             state,
-            Some(spec),
+            spec,
             &stopped,
             // That nobody listens any more shows at the end.
             &mut |part| drop(send(Some(part.clone()), true)),
@@ -536,65 +599,4 @@ fn try_remedies(
         }
     }
     news.send(Told::Done { stopped: ended }).ok()
-}
-
-/// Makes a file of a state.
-fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
-    let bytes = match ask.what {
-        Exported::Core => {
-            let text = core_of(stepper, ask)?;
-            return Ok(files::write(&ask.file, text, ask.overwrite)?);
-        }
-        // Any name will do for it, as it always did.
-        Exported::Whole => match export::kind(&ask.file) {
-            Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
-            _ => shown(stepper, ask, export::kind(Path::new("a.ron"))?)?,
-        },
-        Exported::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
-    };
-    let kind = export::kind(&ask.file).ok();
-    let names = match kind.filter(|_| bytes.len() > 1) {
-        Some(kind) => kind.files(&ask.file).map_err(NotMade::NoFile)?,
-        None => vec![ask.file.clone()],
-    };
-    let whole: Vec<_> = names.into_iter().zip(bytes).collect();
-    Ok(files::write_all(&whole, ask.overwrite)?)
-}
-
-/// The scene of the core of the cycle that a state runs into.
-fn core_of(stepper: &mut Stepper, ask: &Export) -> Result<String, NotWritten> {
-    if ask.state.status == Status::Finished {
-        return Err(NotWritten::Finished);
-    }
-    stepper.restore(&ask.state);
-    let problem = stepper
-        .interface_problem()
-        .ok_or(NotWritten::NotCondensed)?;
-    let (problem, cycle) =
-        going_round(stepper, &ask.state, &problem)?.ok_or(NotWritten::NoCycle)?;
-    let core = core(&problem).ok_or_else(|| NotWritten::TooMany(too_many(&cycle)))?;
-    Ok(export::core(stepper.model(), &ask.origin, &cycle, &core)?)
-}
-
-/// What is in the files of a kind.
-fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>>, NotWritten> {
-    let Some(seen) = &ask.shown else {
-        return Err(NotWritten::Finished);
-    };
-    let ended = match &ask.state.status {
-        Status::Failed(failure) => report::describe_failure(stepper.model(), failure),
-        _ => String::new(),
-    };
-    let shown = Shown {
-        scene: &seen.scene,
-        origin: &ask.origin,
-        state: &ask.state,
-        event: seen.event.as_deref(),
-        strips: &seen.strips,
-        last_major: seen.last_major.as_ref(),
-        ended,
-        frozen: ask.what == Exported::Whole,
-    };
-    let made = kind.made(&shown, stepper).ok_or(NotWritten::OfJournal)?;
-    Ok(made?)
 }

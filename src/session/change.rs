@@ -34,6 +34,9 @@ impl Session {
         intervention: Intervention,
         setting: Option<(&str, &str)>,
     ) -> Result<Reply, Refusal> {
+        self.offers
+            .check(&intervention)
+            .map_err(Refusal::Intervention)?;
         let mut state = self.frame().state.clone();
         state
             .intervene(self.model(), &intervention)
@@ -76,20 +79,24 @@ impl Session {
         label: String,
         steps: Vec<Option<Intervention>>,
     ) -> Result<Reply, Refusal> {
-        let (state, before) = (
-            self.frame().state.clone(),
-            self.strips()[self.cursor].clone(),
-        );
         self.tree.fork(self.cursor);
         self.tree.rename(shown::line(&label).into_owned(), false);
+        self.take_steps(steps);
+        let name = branches::name(&self.tree, self.tree.current());
+        Ok(Reply(
+            self.way() + &format!("running in the new branch {name}"),
+        ))
+    }
+
+    /// Starts given steps from the cursor, which is at the tip.
+    pub(super) fn take_steps(&mut self, steps: Vec<Option<Intervention>>) {
+        self.stands.again = self.back_to(self.cursor).unwrap_or_default();
         self.task = Some(Task::Run);
         self.worker.start(Job::Follow {
-            state: Box::new(state),
-            before: Box::new(before),
+            state: Box::new(self.frame().state.clone()),
+            before: Box::new(self.strips()[self.cursor].clone()),
             steps,
         });
-        let name = branches::name(&self.tree, self.tree.current());
-        Ok(Reply(format!("running in the new branch {name}")))
     }
 
     /// The scene with what was set since.
@@ -145,14 +152,79 @@ impl Session {
 
     /// A scalar of the scene with what was set since, as a person types it.
     fn value_of(&self, path: &str, controls: &Controls) -> Option<String> {
+        if self.frame().state.outside.is_some() {
+            return None;
+        }
         let all = paths::list(&self.with(controls));
         let listed = all.into_iter().find(|listed| listed.path == path.trim());
         let plain = |value: String| value.strip_suffix(".0").map_or(value.clone(), String::from);
         listed.map(|listed| plain(listed.value))
     }
 
+    /// What `:set` means to an attached solver: one of its parameters, or what the debugger knows by names of its own.
+    fn parameter(&self, path: &str, value: &str) -> Result<Intervention, Refusal> {
+        let number = || {
+            let number: Option<f64> = value.parse().ok();
+            number.ok_or_else(|| Refusal::Unsound(format!("{value} is no number")))
+        };
+        let controls = &self.frame().state.controls;
+        let now = controls.friction.first().copied().unwrap_or_default();
+        let known = self
+            .offers
+            .parameters
+            .iter()
+            .find(|known| known.name == path);
+        match (path, known) {
+            ("increment" | "history.increment", _) => Ok(Intervention::Increment(number()?)),
+            ("friction", Some(_)) => Ok(Intervention::Friction(Friction::from_coefficient(
+                number()?,
+                now.cohesion,
+            ))),
+            ("friction.angle", _) if !self.offers.friction => {
+                Err(Refusal::Unsound(self.offers.lacks("another friction")))
+            }
+            ("cohesion" | "friction.cohesion", _) if !self.offers.cohesion => {
+                Err(Refusal::Unsound(self.offers.lacks("another cohesion")))
+            }
+            ("friction.angle", _) => Ok(Intervention::Friction(Friction {
+                angle: number()?,
+                ..now
+            })),
+            ("cohesion" | "friction.cohesion", _) if self.offers.cohesion => {
+                Ok(Intervention::Friction(Friction {
+                    cohesion: number()?,
+                    ..now
+                }))
+            }
+            (_, Some(known)) => Ok(Intervention::Parameter {
+                name: path.to_owned(),
+                value: known.read(value).map_err(Refusal::Intervention)?,
+            }),
+            (_, None) => Err(Refusal::NoParameter {
+                name: path.to_owned(),
+                known: self.offered_parameters(),
+            }),
+        }
+    }
+
+    /// The parameters of an attached solver, in words.
+    fn offered_parameters(&self) -> String {
+        let names = self
+            .offers
+            .parameters
+            .iter()
+            .map(|known| known.name.as_str());
+        match names.collect::<Vec<_>>().join(", ") {
+            none if none.is_empty() => "it has none".into(),
+            names => format!("it has {names}"),
+        }
+    }
+
     /// What `:set` means, on top of what was set before.
     pub(super) fn setting(&self, path: &str, value: &str) -> Result<Intervention, Refusal> {
+        if self.frame().state.outside.is_some() {
+            return self.parameter(path.trim(), value.trim());
+        }
         let mut spec = self.with(&self.frame().state.controls);
         paths::set(&mut spec, path, value)?;
         let sound =

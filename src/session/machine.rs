@@ -14,6 +14,7 @@ use super::background::Background;
 use super::diary::Diary;
 use super::refusal::Refusal;
 use super::worker::{Message, Worker};
+use crate::attach::Log;
 use crate::explain::advice;
 use crate::explain::report;
 use crate::history::branches;
@@ -30,11 +31,17 @@ use crate::record::command::Command;
 use crate::record::journal::{self, Entry, Journal};
 use crate::scene::Scene;
 use crate::scene::gaps;
+use crate::scene::solver::solver;
 use crate::step::intervene::Intervention;
-use crate::step::state::Status;
+use crate::step::solver::{Offers, Solver};
+use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long gathering may keep whoever looks at the keys besides.
+const SLICE: Duration = Duration::from_millis(10);
 
 /// What a command led to, as a line for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,6 +50,12 @@ pub struct Reply(pub String);
 /// A debugging session.
 pub struct Session {
     pub(super) scene: Scene,
+    /// What its solver offers.
+    pub(super) offers: Offers,
+    /// What an attached solver says besides; `None` for one of ours.
+    log: Option<Log>,
+    /// Where it stands, as far as that is known.
+    pub(super) stands: Stands,
     /// What the start gaps are, and what is doubtful about them.
     start: (String, Vec<String>),
     pub(super) tree: Tree,
@@ -60,6 +73,19 @@ pub struct Session {
     /// Minor iterations solved by the present command, and increments accepted among them.
     pub(super) solved: u64,
     pub(super) accepted: u64,
+    /// Whether the worker had done more than could be gathered in a slice of time.
+    is_behind: bool,
+}
+
+/// Where an attached solver stands.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Stands {
+    /// The place of the state that it went to last ([`crate::step::state::Outside::place`]); `None` where that is not known.
+    pub(super) at: Option<u64>,
+    /// Why it is gone; the next job starts it anew.
+    pub(super) lost: Option<String>,
+    /// What it has to do again before it goes on.
+    pub(super) again: String,
 }
 
 /// What the worker is at.
@@ -86,9 +112,42 @@ impl Session {
     pub fn with_budget(scene: Scene, bytes: usize) -> Self {
         let model = Arc::new(scene.model.clone());
         let start = Stepper::new(model.clone()).state().clone();
-        let worker = Worker::new(model.clone());
+        let own = model.clone();
+        let worker = Worker::new(move || Box::new(solver(own))).unattended();
         let background = Background::new(model.clone(), scene.spec.clone(), worker.lender());
+        Session::begun(scene, model, start, (worker, background), bytes)
+    }
+
+    /// A session with a solver of another's, at the start of the scene that it told.
+    pub fn attached(scene: Scene, solver: Box<dyn Solver>, log: Log) -> Self {
+        let (model, start) = (solver.model().clone(), solver.state().clone());
+        let offers = solver.offers();
+        let worker = Worker::new(move || solver);
+        let background = Background::beside(model.clone(), offers.clone(), worker.lender());
+        let parts = (worker, background);
         Session {
+            offers,
+            log: Some(log),
+            stands: Stands {
+                at: Some(0),
+                ..Stands::default()
+            },
+            ..Session::begun(scene, model, start, parts, tree::BUDGET)
+        }
+    }
+
+    fn begun(
+        scene: Scene,
+        model: Arc<Model>,
+        start: State,
+        (worker, background): (Worker, Background),
+        bytes: usize,
+    ) -> Self {
+        Session {
+            offers: Offers::all(),
+            log: None,
+            stands: Stands::default(),
+            is_behind: false,
             start: (gaps::words(&model).join(", "), gaps::warnings(&model)),
             scene,
             tree: Tree::new(model.clone(), start, bytes),
@@ -124,6 +183,29 @@ impl Session {
     /// Where the journal is, if there is one.
     pub fn journal(&self) -> Option<&Path> {
         self.diary.path()
+    }
+
+    /// What the solver offers.
+    pub fn offers(&self) -> &Offers {
+        &self.offers
+    }
+
+    /// What an attached solver said besides, line by line; `None` for a solver of ours.
+    pub fn log(&self) -> Option<&Log> {
+        self.log.as_ref()
+    }
+
+    /// Why an attached solver is gone; the next step starts it anew.
+    pub fn lost(&self) -> Option<&str> {
+        self.stands.lost.as_deref()
+    }
+
+    /// What an attached solver does again in the running job, before it goes on; empty where that is nothing.
+    pub fn again(&self) -> &str {
+        match self.is_running() {
+            true => &self.stands.again,
+            false => "",
+        }
     }
 
     /// Scene as read.
@@ -293,15 +375,27 @@ impl Session {
         }
     }
 
-    /// Gathers what the worker did since the last call; a message when a job came to its end. Never blocks.
+    /// Gathers what the worker did since the last call, for [`SLICE`] at most; a message when a job came to its end. Never
+    /// blocks.
     pub fn poll(&mut self) -> Option<Reply> {
+        let began = Instant::now();
+        self.is_behind = false;
         while self.is_running() {
             let message = self.worker.try_next()?;
             if let Some(reply) = self.take(message) {
                 return Some(reply);
             }
+            if began.elapsed() > SLICE {
+                self.is_behind = true;
+                return None;
+            }
         }
         None
+    }
+
+    /// Whether the worker has done more than the last [`poll`](Session::poll) gathered.
+    pub fn is_behind(&self) -> bool {
+        self.is_behind
     }
 
     /// Blocks until the worker is idle and returns its last message.
@@ -329,6 +423,7 @@ impl Session {
     fn gather(&mut self, message: Message) -> Option<Reply> {
         match message {
             Message::Made(frame, strip) => {
+                self.stand_at(&frame.state);
                 self.solved += 1;
                 self.accepted += u64::from(strip.kind.is_accepted());
                 self.tree.push(*frame, *strip);
@@ -342,10 +437,28 @@ impl Session {
                 None
             }
             Message::Again(state, event) => {
+                self.stand_at(&state);
                 self.refill(*state, event);
                 None
             }
-            Message::Done { interrupted, hits } => Some(self.done(interrupted, &hits)),
+            Message::Done {
+                interrupted,
+                hits,
+                remark,
+            } => {
+                let Reply(told) = self.done(interrupted, &hits);
+                let remark = remark.map_or(String::new(), |remark| remark + "; ");
+                Some(Reply(remark + &told))
+            }
+            Message::Lost(lost) => {
+                self.task = None;
+                if self.offers.past {
+                    return Some(Reply(lost.to_string()));
+                }
+                self.stands.at = None;
+                self.stands.lost = Some(lost.to_string());
+                Some(Reply(format!("{lost}; what was done so far is kept")))
+            }
             Message::Died => {
                 self.task = None;
                 Some(Reply(

@@ -4,8 +4,10 @@ use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
 use super::worker::Job;
 use crate::history::breakpoints::{self, Breakpoint};
+use crate::history::strip::Strip;
 use crate::record::command::Unit;
 use crate::step::event::Event;
+use crate::step::solver::GoesBack;
 use crate::step::state::{State, Status};
 use std::sync::Arc;
 
@@ -29,11 +31,12 @@ impl Session {
         }
         self.cursor = at;
         self.solve(unit, left, self.breakpoints.clone());
-        Reply("running; Ctrl-C interrupts".into())
+        Reply(self.way() + "running; Ctrl-C interrupts")
     }
 
     /// Starts new minor iterations from the cursor, which is at the tip.
     pub(super) fn solve(&mut self, unit: Unit, count: u32, breakpoints: Vec<Breakpoint>) {
+        self.stands.again = self.back_to(self.cursor).unwrap_or_default();
         self.task = Some(Task::Run);
         self.worker.start(Job::Run {
             state: Box::new(self.frame().state.clone()),
@@ -87,8 +90,15 @@ impl Session {
         let from = self.tree.whole_before(target);
         if from == target {
             self.cursor = target;
-            return Reply(self.stops(hits) + &self.told());
+            let way = match self.back_to(target) {
+                Some(way) if self.frame().state.status != Status::Finished => {
+                    format!("; to go on from here, {way}")
+                }
+                _ => String::new(),
+            };
+            return Reply(self.stops(hits) + &self.told() + &way);
         }
+        self.stands.again = self.back_to(from).unwrap_or_default();
         let frames = &self.frames()[from..=target];
         let job = Job::Again {
             state: Box::new(frames[0].state.clone()),
@@ -108,6 +118,57 @@ impl Session {
             "computing {} steps again; Ctrl-C interrupts",
             target - from
         ))
+    }
+
+    /// What an attached solver has to do again to come to a point of the line, before it can go on from there; `None` where it
+    /// stands there, or goes there at once.
+    pub(super) fn back_to(&self, target: usize) -> Option<String> {
+        self.log()?;
+        let place = self.frames()[target].state.outside.as_ref()?.place;
+        let lost = self.stands.lost.is_some();
+        if self.offers.past || self.stands.at == Some(place) {
+            return None;
+        }
+        let way = &self.strips()[..=target];
+        let solved =
+            |strips: &[Strip]| strips.iter().filter(|strip| strip.kind.is_solved()).count();
+        let again = |count: usize| match count {
+            0 => String::new(),
+            1 => ", and does 1 iteration again".into(),
+            count => format!(", and does {count} iterations again"),
+        };
+        match self.offers.goes_back {
+            _ if lost => Some(format!(
+                "the solver, which is lost, is started anew{}",
+                again(solved(way))
+            )),
+            GoesBack::Again => Some(format!("the solver is started anew{}", again(solved(way)))),
+            GoesBack::ToIncrements => {
+                let begun = way.iter().rposition(|strip| strip.kind.is_accepted());
+                match solved(&way[begun.map_or(0, |at| at + 1)..]) {
+                    0 => None,
+                    count => Some(format!(
+                        "the solver goes back to the start of the increment{}",
+                        again(count)
+                    )),
+                }
+            }
+            GoesBack::ToAny => None,
+        }
+    }
+
+    /// The same of the job that was begun, as the beginning of a reply.
+    pub(super) fn way(&self) -> String {
+        match self.stands.again.as_str() {
+            "" => String::new(),
+            again => format!("{again}; "),
+        }
+    }
+
+    /// An attached solver has come to a state.
+    pub(super) fn stand_at(&mut self, state: &State) {
+        self.stands.at = state.outside.as_ref().map(|outside| outside.place);
+        self.stands.lost = None;
     }
 
     pub(super) fn refill(&mut self, state: State, event: Option<Arc<Event>>) {

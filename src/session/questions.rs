@@ -1,11 +1,13 @@
 //! What is asked beside the run, and answered in the background.
 
-use super::background::{Background, Export, NotWritten, Seen};
+use super::background::Background;
+use super::exports::{Export, NotWritten, Seen};
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
 use crate::explain::influence::Way;
 use crate::explain::report;
 use crate::history::frame::Frame;
+use crate::history::rounds::{self, rounds};
 use crate::history::strip::{PointKind, Strip};
 use crate::outside::files;
 use crate::record::command::Exported;
@@ -87,9 +89,42 @@ impl Session {
     /// where these are given.
     pub(super) fn census(&mut self, nodes: &[usize]) -> Reply {
         let place = self.place();
+        let known = self.known_of_attached();
+        let way = match self.offers.problem {
+            true => self
+                .back_to(self.cursor)
+                .map_or(String::new(), |way| way + "; "),
+            false => String::new(),
+        };
         let state = &self.tree.frames()[self.cursor].state;
-        self.background.ask_examination(place, state, nodes);
-        Reply("the diagnosis (d) tells what is found".into())
+        // It goes there to be asked, and what was changed there it is told.
+        if self.offers.problem {
+            let outside = state
+                .outside
+                .as_ref()
+                .filter(|outside| outside.asked.is_empty());
+            self.stands.at = outside.map(|outside| outside.place);
+        }
+        self.background.ask_examination(place, state, nodes, known);
+        Reply(way + "the diagnosis (d) tells what is found")
+    }
+
+    /// What the line tells of an attached solver up to the cursor: how it failed, and whether its modes go round.
+    fn known_of_attached(&self) -> Vec<String> {
+        if self.log().is_none() {
+            return Vec::new();
+        }
+        let what = match &self.frame().state.status {
+            Status::Failed(failure) => Some(format!(
+                "what: {}",
+                report::describe_failure(self.model(), failure)
+            )),
+            _ => None,
+        };
+        let rounds = rounds(&self.strips()[..=self.cursor]);
+        let place =
+            rounds.map(|found| format!("where: {}", rounds::words(self.model(), &found, true)));
+        what.into_iter().chain(place).collect()
     }
 
     /// Has a file made of the shown state; what came of it comes with [`Session::exported`].
@@ -182,6 +217,8 @@ impl Session {
         let place = self.place();
         let state = &self.tree.frames()[self.cursor].state;
         self.background.ask_remedies(place, state);
+        // Every trial leads it elsewhere.
+        self.stands.at = None;
         Reply("trying every remedy from here; Ctrl-C stops".into())
     }
 }

@@ -1,6 +1,6 @@
 //! Why a session does not do what it is told, or not again what it did.
 
-use super::background::NotWritten;
+use super::exports::NotWritten;
 use crate::format::error::NotSet;
 use crate::history::branches::NoBranch;
 use crate::outside::files::FileError;
@@ -42,6 +42,14 @@ pub enum Refusal {
         path: String,
         /// What it was to be.
         value: String,
+    },
+    /// An attached solver has no such parameter.
+    #[error("the solver has no parameter '{name}'; {known}")]
+    NoParameter {
+        /// What was asked for.
+        name: String,
+        /// Those that there are, in words.
+        known: String,
     },
     /// No branch is called so.
     #[error(transparent)]

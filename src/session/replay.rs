@@ -82,18 +82,18 @@ impl Record {
     /// # Errors
     /// If the scene is unsound, or at the first entry that leads elsewhere.
     pub fn replay(&self) -> Result<Session, JournalError> {
-        self.replay_seen(&mut |_, _| {})
+        self.replay_in(Session::new(self.scene()?), &mut |_, _| {})
     }
 
-    /// The same, with a look at the session at its start, and after each entry.
+    /// The same in a session at the start of what the journal is of, with a look at it there, and after each entry.
     ///
     /// # Errors
     /// As [`Record::replay`].
-    pub fn replay_seen(
+    pub fn replay_in(
         &self,
+        mut session: Session,
         see: &mut dyn FnMut(&Session, Option<&Entry>),
     ) -> Result<Session, JournalError> {
-        let mut session = Session::new(self.scene()?);
         session.diary.keep_in_memory();
         see(&session, None);
         for (line, entry) in &self.entries {

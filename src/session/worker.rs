@@ -1,26 +1,27 @@
-//! The thread on which a session's solver runs.
+//! The thread on which a session's solver runs: one of ours, or one that is attached.
 
 use crate::history::breakpoints::{self, Breakpoint};
 use crate::history::frame::Frame;
+use crate::history::rounds;
 use crate::history::strip::Strip;
-use crate::model::Model;
 use crate::record::command::Unit;
-use crate::scene::solver::solver;
-use crate::step::drive::{RunEnd, Until};
+use crate::step::drive::{RunEnd, Until, drive};
 use crate::step::event::Event;
 use crate::step::intervene::Intervention;
+use crate::step::solver::{Lost, Solver};
 use crate::step::state::State;
-use crate::step::stepper::Stepper;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
-use std::thread;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, TryRecvError, channel, sync_channel};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// How long who waits for the worker sleeps between two looks: were it woken by every message, the solver would pay for
 /// that at every iteration.
 const NAP: Duration = Duration::from_millis(1);
+/// Most messages that wait to be gathered: a solver that is faster than who watches it waits, and takes no more memory.
+const AHEAD: usize = 1024;
 
 /// What the worker is to do.
 pub enum Job {
@@ -59,11 +60,13 @@ pub enum Job {
         /// The steps, in order; `None` is a minor iteration.
         steps: Vec<Option<Intervention>>,
     },
+    /// Nothing more: the thread ends.
+    End,
 }
 
 /// What is done with the solver, and told by whoever does it. It may leave the solver at another state, since every job goes to
 /// its own first.
-pub type Look = Box<dyn FnOnce(&mut Stepper) + Send>;
+pub type Look = Box<dyn FnOnce(&mut dyn Solver) + Send>;
 
 /// Where others may look at the worker's solver while it has nothing to do.
 pub struct Lender {
@@ -75,15 +78,15 @@ impl Lender {
     /// Has the solver looked at, and waits for what is seen; `None` where the solver is busy, or gone.
     pub fn look<T: Send + 'static>(
         &self,
-        look: impl FnOnce(&mut Stepper) -> T + Send + 'static,
+        look: impl FnOnce(&mut dyn Solver) -> T + Send + 'static,
     ) -> Option<T> {
         if self.busy.load(Ordering::Relaxed) {
             return None;
         }
         let (reply, answer) = channel();
-        let look: Look = Box::new(move |stepper| {
+        let look: Look = Box::new(move |solver| {
             // Who asked waits for it.
-            let _ = reply.send(look(stepper));
+            let _ = reply.send(look(solver));
         });
         self.jobs.send(Job::Look(look)).ok()?;
         answer.recv().ok()
@@ -104,7 +107,11 @@ pub enum Message {
         interrupted: bool,
         /// Numbers of the breakpoints at which it stopped.
         hits: Vec<u32>,
+        /// What the solver has to say besides.
+        remark: Option<String>,
     },
+    /// The solver cannot go on. What was told before stands.
+    Lost(Lost),
     /// The thread is gone.
     Died,
 }
@@ -113,22 +120,27 @@ pub enum Message {
 pub struct Worker {
     jobs: Sender<Job>,
     messages: Receiver<Message>,
-    stop: Arc<AtomicBool>,
+    /// How often the running job was asked to stop.
+    stop: Arc<AtomicUsize>,
     /// Whether it is at a job that takes its time.
     busy: Arc<AtomicBool>,
+    /// The thread, where its end is waited for.
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
-    /// Starts an idle worker with a solver of its own.
-    pub fn new(model: Arc<Model>) -> Self {
+    /// Starts an idle worker with the solver that this makes on its thread.
+    pub fn new(make: impl FnOnce() -> Box<dyn Solver> + Send + 'static) -> Self {
         let (jobs, orders) = channel::<Job>();
-        let (news, messages) = channel();
-        let stop = Arc::new(AtomicBool::new(false));
+        let (news, messages) = sync_channel(AHEAD);
+        let stop = Arc::new(AtomicUsize::new(0));
         let flag = stop.clone();
         let busy = Arc::new(AtomicBool::new(false));
         let at_work = busy.clone();
-        thread::spawn(move || {
-            let mut stepper = solver(model);
+        let thread = thread::spawn(move || {
+            let mut solver = make();
+            solver.heed(flag.clone());
+            let solver = &mut *solver;
             while let Ok(job) = orders.recv() {
                 at_work.store(!matches!(job, Job::Look(_)), Ordering::Relaxed);
                 let done = match job {
@@ -139,26 +151,24 @@ impl Worker {
                         count,
                         breakpoints,
                     } => {
-                        stepper.restore(&state);
-                        run(
-                            &mut stepper,
-                            *before,
-                            (unit, count),
-                            &breakpoints,
-                            &news,
-                            &flag,
-                        )
+                        let run = |solver: &mut dyn Solver| {
+                            let wanted = (unit, count);
+                            run(solver, *before, wanted, &breakpoints, &news, &flag)
+                        };
+                        from(solver, &state, &news, run)
                     }
                     Job::Follow {
                         state,
                         before,
                         steps,
                     } => {
-                        stepper.restore(&state);
-                        follow(&mut stepper, *before, steps, &news, &flag)
+                        let follow =
+                            |solver: &mut dyn Solver| follow(solver, *before, steps, &news, &flag);
+                        from(solver, &state, &news, follow)
                     }
+                    Job::End => None,
                     Job::Look(look) => {
-                        look(&mut stepper);
+                        look(solver);
                         Some(())
                     }
                     Job::Again {
@@ -166,8 +176,9 @@ impl Worker {
                         event,
                         steps,
                     } => {
-                        stepper.restore(&state);
-                        again(&mut stepper, event, &steps, &news, &flag)
+                        let again =
+                            |solver: &mut dyn Solver| again(solver, event, &steps, &news, &flag);
+                        from(solver, &state, &news, again)
                     }
                 };
                 at_work.store(false, Ordering::Relaxed);
@@ -181,7 +192,14 @@ impl Worker {
             messages,
             stop,
             busy,
+            thread: Some(thread),
         }
+    }
+
+    /// Lets its thread end by itself when this is dropped: only what runs outside has to be ended.
+    pub fn unattended(mut self) -> Worker {
+        self.thread = None;
+        self
     }
 
     /// Where a look may be asked for.
@@ -194,7 +212,7 @@ impl Worker {
 
     /// Starts a job. A dead worker answers [`Message::Died`].
     pub fn start(&self, job: Job) {
-        self.stop.store(false, Ordering::Relaxed);
+        self.stop.store(0, Ordering::Relaxed);
         self.busy.store(true, Ordering::Relaxed);
         // A failing send means that the thread is gone, which the next message says.
         let _ = self.jobs.send(job);
@@ -202,7 +220,7 @@ impl Worker {
 
     /// Asks the running job to stop after the present minor iteration.
     pub fn interrupt(&self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop.fetch_add(1, Ordering::Relaxed);
     }
 
     /// The next message; waits for it.
@@ -227,65 +245,104 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.interrupt();
+        // As often as it takes to end what is outside.
+        self.stop.store(usize::MAX, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // Who looks may hold another end of the channel.
+            let _ = self.jobs.send(Job::End);
+            // Nor may it wait for somebody to gather what it did.
+            drop(std::mem::replace(&mut self.messages, channel().1));
+            // A thread that has panicked is gone, which is all that is wanted.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Does a job from a state; `None` if nobody listens any more.
+fn from(
+    solver: &mut dyn Solver,
+    state: &State,
+    news: &SyncSender<Message>,
+    job: impl FnOnce(&mut dyn Solver) -> Option<()>,
+) -> Option<()> {
+    match solver.restore(state) {
+        Ok(()) => job(solver),
+        Err(lost) => news.send(Message::Lost(lost)).ok(),
     }
 }
 
 /// Goes on; `None` if nobody listens any more.
 fn run(
-    stepper: &mut Stepper,
+    solver: &mut dyn Solver,
     mut before: Strip,
     (unit, count): (Unit, u32),
     breakpoints: &[Breakpoint],
-    news: &Sender<Message>,
-    stop: &AtomicBool,
+    news: &SyncSender<Message>,
+    stop: &AtomicUsize,
 ) -> Option<()> {
     let (mut left, mut hits) = (count, Vec::new());
-    let interrupted = || stop.load(Ordering::Relaxed);
+    let interrupted = || stop.load(Ordering::Relaxed) > 0;
     let most = if count == 0 { 0 } else { u64::MAX };
     let until = Until::end().minors(most).past_failures();
     let until = until.interrupted_by(&interrupted);
     let mut began = Instant::now();
-    let end = stepper.drive(until, |stepper| {
-        let (frame, strip) = seen(stepper, &before, began);
+    // Ours say themselves that they cycle.
+    let mut watch = solver.stepper().is_none().then(rounds::Watch::default);
+    let mut round = None;
+    let end = drive(solver, until, |solver| {
+        let (frame, strip) = seen(solver, &before, began);
         left -= u32::from(unit.ends(strip.kind));
         if strip.kind.is_failure() {
             left = 0;
         }
         hits = breakpoints::hits(breakpoints, &before, &strip);
         before = strip.clone();
+        round = watch.as_mut().and_then(|watch| watch.see(&strip));
         let heard = news.send(Message::Made(Box::new(frame), Box::new(strip)));
-        if heard.is_err() || left == 0 || !hits.is_empty() {
+        if heard.is_err() || left == 0 || !hits.is_empty() || round.is_some() {
             return ControlFlow::Break(heard.ok());
         }
         began = Instant::now();
         ControlFlow::Continue(())
     });
-    if let RunEnd::Stopped(heard) = end {
-        heard?;
-    }
+    let end = match end {
+        Ok(RunEnd::Stopped(heard)) => {
+            heard?;
+            RunEnd::Spent
+        }
+        Ok(end) => end,
+        Err(lost) => return news.send(Message::Lost(lost)).ok(),
+    };
     let interrupted = matches!(end, RunEnd::Interrupted);
-    news.send(Message::Done { interrupted, hits }).ok()
+    let round = round.map(|round| rounds::words(solver.model(), &round, false));
+    let parts: Vec<String> = solver.remark().into_iter().chain(round).collect();
+    let remark = (!parts.is_empty()).then(|| parts.join("; "));
+    news.send(Message::Done {
+        interrupted,
+        hits,
+        remark,
+    })
+    .ok()
 }
 
 /// The last minor iteration, which began then, as a frame and its strip.
-fn seen(stepper: &mut Stepper, before: &Strip, began: Instant) -> (Frame, Strip) {
+fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Strip) {
     let seconds = began.elapsed().as_secs_f32();
-    let event = Arc::new(stepper.event().clone());
+    let event = Arc::new(solver.event().clone());
     let strip = Strip::of(
-        stepper.model(),
-        stepper.state(),
+        solver.model(),
+        solver.state(),
         Some(&event),
         Some(before),
         seconds,
     );
     let frame = Frame {
-        state: stepper.state().clone(),
+        state: solver.state().clone(),
         event: Some(event),
         intervention: None,
         monitors: strip.kind.is_accepted().then(|| {
             let mut values = Vec::new();
-            stepper.monitors(&mut values);
+            solver.monitors(&mut values);
             Arc::new(values)
         }),
     };
@@ -294,33 +351,35 @@ fn seen(stepper: &mut Stepper, before: &Strip, began: Instant) -> (Frame, Strip)
 
 /// Takes given steps, as far as they can be taken; `None` if nobody listens any more.
 fn follow(
-    stepper: &mut Stepper,
+    solver: &mut dyn Solver,
     mut before: Strip,
     steps: Vec<Option<Intervention>>,
-    news: &Sender<Message>,
-    stop: &AtomicBool,
+    news: &SyncSender<Message>,
+    stop: &AtomicUsize,
 ) -> Option<()> {
     let mut interrupted = false;
     for given in steps {
-        if stop.load(Ordering::Relaxed) {
+        if stop.load(Ordering::Relaxed) > 0 {
             interrupted = true;
             break;
         }
         match given {
             Some(intervention) => {
-                if stepper.intervene(&intervention).is_err() {
+                if solver.intervene(&intervention).is_err() {
                     break;
                 }
-                let state = Box::new(stepper.state().clone());
-                before = Strip::intervention(stepper.model(), &state, &before);
+                let state = Box::new(solver.state().clone());
+                before = Strip::intervention(solver.model(), &state, &before);
                 news.send(Message::Changed(state, intervention)).ok()?;
             }
             None => {
                 let began = Instant::now();
-                if stepper.step().is_none() {
-                    break;
+                match solver.step() {
+                    Ok(true) => {}
+                    Ok(false) => break,
+                    Err(lost) => return news.send(Message::Lost(lost)).ok(),
                 }
-                let (frame, strip) = seen(stepper, &before, began);
+                let (frame, strip) = seen(solver, &before, began);
                 before = strip.clone();
                 news.send(Message::Made(Box::new(frame), Box::new(strip)))
                     .ok()?;
@@ -328,32 +387,47 @@ fn follow(
         }
     }
     let hits = Vec::new();
-    news.send(Message::Done { interrupted, hits }).ok()
+    let remark = solver.remark();
+    news.send(Message::Done {
+        interrupted,
+        hits,
+        remark,
+    })
+    .ok()
 }
 
 /// Does what was done before; `None` if nobody listens any more.
 fn again(
-    stepper: &mut Stepper,
+    solver: &mut dyn Solver,
     mut event: Option<Arc<Event>>,
     steps: &[Option<Intervention>],
-    news: &Sender<Message>,
-    stop: &AtomicBool,
+    news: &SyncSender<Message>,
+    stop: &AtomicUsize,
 ) -> Option<()> {
     let mut interrupted = false;
     for step in steps {
-        if stop.load(Ordering::Relaxed) {
+        if stop.load(Ordering::Relaxed) > 0 {
             interrupted = true;
             break;
         }
         match step {
             // It was sound the first time, from the same state.
-            Some(intervention) if stepper.intervene(intervention).is_err() => break,
+            Some(intervention) if solver.intervene(intervention).is_err() => break,
             Some(_) => {}
-            None => event = stepper.step().map(|event| Arc::new(event.clone())),
+            None => match solver.step() {
+                Ok(solved) => event = solved.then(|| Arc::new(solver.event().clone())),
+                Err(lost) => return news.send(Message::Lost(lost)).ok(),
+            },
         }
-        let state = Box::new(stepper.state().clone());
+        let state = Box::new(solver.state().clone());
         news.send(Message::Again(state, event.clone())).ok()?;
     }
     let hits = Vec::new();
-    news.send(Message::Done { interrupted, hits }).ok()
+    let remark = solver.remark();
+    news.send(Message::Done {
+        interrupted,
+        hits,
+        remark,
+    })
+    .ok()
 }

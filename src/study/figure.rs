@@ -1,9 +1,9 @@
 //! The results of a study as curves: the form of the paper's figures.
 
+use super::drawn::{Axis, Chart, Curve, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
-use super::plot::{Axis, Chart, Curve, CurveEnd};
 use super::read::AxisQuantity;
 use super::result::{CaseEnd, Run};
 use crate::explain::number::six;
@@ -48,6 +48,11 @@ pub fn label(names: &[String], values: &[String]) -> String {
         _ => format!("{name}={value}"),
     });
     pairs.collect::<Vec<_>>().join(", ")
+}
+
+/// What tells a case of a plan from the others.
+pub fn name(plan: &Plan, case: usize) -> String {
+    label(&short_names(&plan.columns), &plan.cases[case].values)
 }
 
 /// The last step of each path where that is enough to tell them apart, else the whole paths.

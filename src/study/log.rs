@@ -2,15 +2,19 @@
 //!
 //! The first line tells which program wrote it: results of another one are not ours. Every other line is a key, a tab,
 //! and a result as RON; the key is a hash of all that the result depends on, so that whatever is asked for next time, what
-//! is there already is not computed again. A line that a kill has cut off has no end, and is taken away.
+//! is there already is not computed again. A line whose key is `input` tells what the results are of ([`Input`]). A line that
+//! a kill has cut off has no end, and is taken away, or passed over where the file is only read.
 
+use super::origin;
+use super::shard::Key;
+use super::sweep_input::Input;
 use crate::format::kind::{FileKind, mistaken};
+use crate::format::notation;
 use crate::format::read::plainly;
 use crate::outside::input::{self, Unreadable};
 use rustix::fs::{FlockOperation, flock};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -48,6 +52,27 @@ pub enum LogError {
         /// What it is, and what reads it, where it is of the program.
         told: Option<String>,
     },
+    /// Another revision of the program wrote it, whose results may differ in their last bits.
+    #[error("{}:1:1: it is of another revision of the program, whose bits may differ: {theirs:?}, and this is {ours:?}", path.display())]
+    Revision {
+        /// The file.
+        path: PathBuf,
+        /// Its first line.
+        theirs: String,
+        /// What ours would be.
+        ours: String,
+    },
+    /// The results are of something else.
+    #[error("{}: {why}", path.display())]
+    Other {
+        /// The file.
+        path: PathBuf,
+        /// In what it differs.
+        why: String,
+    },
+    /// Two results of one cell are not the same.
+    #[error(transparent)]
+    Disagree(#[from] Box<Disagreement>),
     /// A line of it cannot be read.
     #[error("{}:{line}:{column}: this result cannot be read: {message}", path.display())]
     Broken {
@@ -62,16 +87,41 @@ pub enum LogError {
     },
 }
 
+/// Two results of one cell that are not the same.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "{cell} has two results that differ: {}:{} and {}:{}; one of them was computed by another program or on another kind of \
+     machine",
+    first.0.display(), first.1, second.0.display(), second.1
+)]
+pub struct Disagreement {
+    /// What the cell is called.
+    pub cell: String,
+    /// File and line.
+    pub first: (PathBuf, usize),
+    /// File and line of the other.
+    pub second: (PathBuf, usize),
+}
+
 /// Most bytes of a file that is taken up.
 const MOST_BYTES: u64 = 2 << 30;
-/// Most bytes of a line of it.
-const MOST_LINE: usize = 1 << 20;
+/// What stands before a line that tells what results are of.
+const INPUT: &str = "input";
 
 /// Where results are kept.
 #[derive(Debug)]
 pub struct Log {
     path: PathBuf,
     file: Mutex<File>,
+}
+
+/// What a file of results has.
+#[derive(Debug)]
+pub struct Content<T> {
+    /// What they are of; nothing where nobody said.
+    pub inputs: Vec<Input>,
+    /// The results in the order of the file.
+    pub results: Vec<(Key, Found<T>)>,
 }
 
 /// A result that was there, and its line.
@@ -87,6 +137,8 @@ pub struct Found<T> {
 struct Lines<'a> {
     from: BufReader<&'a File>,
     path: &'a Path,
+    /// Most bytes of a line.
+    most: usize,
     /// Number of the last line.
     number: usize,
     /// Bytes of all whole lines so far.
@@ -102,8 +154,9 @@ impl Lines<'_> {
             ours: head(),
             told: told(path),
         };
-        // Were it longer, it would not be ours.
-        let bytes = self.bytes(head().len() + 8)?;
+        /// Most bytes of the first line of any revision.
+        const MOST_HEAD: usize = 256;
+        let bytes = self.bytes(MOST_HEAD)?;
         let mark = input::MARK.to_string();
         let text = bytes.strip_prefix(mark.as_bytes()).unwrap_or(&bytes);
         match text.strip_suffix(b"\n") {
@@ -112,6 +165,15 @@ impl Lines<'_> {
                 Ok(true)
             }
             None if head().as_bytes().starts_with(text) => Ok(false),
+            Some(line)
+                if FileKind::of(&String::from_utf8_lossy(line)) == Some(FileKind::Results) =>
+            {
+                Err(LogError::Revision {
+                    path: path.to_owned(),
+                    theirs: String::from_utf8_lossy(line).into_owned(),
+                    ours: head(),
+                })
+            }
             _ => Err(foreign()),
         }
     }
@@ -121,7 +183,7 @@ impl Lines<'_> {
         if self.number == 0 {
             return Ok(None);
         }
-        let mut bytes = self.bytes(MOST_LINE)?;
+        let mut bytes = self.bytes(self.most)?;
         let broken = |message: &str| LogError::Broken {
             path: self.path.to_owned(),
             line: self.number + 1,
@@ -130,7 +192,7 @@ impl Lines<'_> {
         };
         let length = bytes.len();
         if bytes.pop_if(|last| *last == b'\n').is_none() {
-            return match length < MOST_LINE {
+            return match length < self.most {
                 true => Ok(None),
                 false => Err(broken("the line is longer than any result")),
             };
@@ -163,16 +225,27 @@ fn told(path: &Path) -> Option<String> {
     mistaken(&name, &String::from_utf8_lossy(&start), FileKind::Results)
 }
 
-/// A line's key and its result; the column where that is no such line, and why.
-fn entry<T: DeserializeOwned>(line: &str) -> Result<(String, T), (usize, String)> {
+/// What a line is.
+enum Entry<T> {
+    Input(Input),
+    Result(Key, T),
+}
+
+/// A line; the column where that is no such line, and why.
+fn entry<T: DeserializeOwned>(line: &str) -> Result<Entry<T>, (usize, String)> {
     let (key, value) = line
         .split_once('\t')
         .ok_or((1, "it has no key".to_owned()))?;
-    let value = ron::from_str(value).map_err(|e| {
+    let wrong = |e: ron::error::SpannedError| {
         let column = key.chars().count() + 1 + e.span.start.col;
         (column, plainly(&e.code))
-    })?;
-    Ok((key.to_owned(), value))
+    };
+    if key == INPUT {
+        return ron::from_str(value).map(Entry::Input).map_err(wrong);
+    }
+    let key = Key::read(key).ok_or((1, "its key has not 32 hexadecimal digits".to_owned()))?;
+    let value = ron::from_str(value).map_err(wrong)?;
+    Ok(Entry::Result(key, value))
 }
 
 /// The first line.
@@ -180,67 +253,118 @@ fn head() -> String {
     format!(
         "stickslip {} results, {}",
         env!("CARGO_PKG_VERSION"),
-        super::origin::REVISION
+        origin::REVISION
     )
 }
 
+/// All that a file has, and the bytes of its whole lines; nothing where it has no first line yet. A file that says that it is of
+/// something else than `ours` is refused before its results are read.
+fn content<T: DeserializeOwned>(
+    file: &File,
+    path: &Path,
+    most: usize,
+    ours: Option<&Input>,
+) -> Result<(Content<T>, u64), LogError> {
+    let failed = |source| LogError::File {
+        path: path.to_owned(),
+        source,
+    };
+    let size = file.metadata().map_err(failed)?.len();
+    if size > MOST_BYTES {
+        let what = "no file of kept results is read that has";
+        let why = Unreadable::TooLarge {
+            most: MOST_BYTES,
+            what,
+        };
+        return Err(LogError::Unread {
+            path: path.to_owned(),
+            why,
+        });
+    }
+    let mut lines = Lines {
+        from: BufReader::new(file),
+        path,
+        most,
+        number: 0,
+        whole: 0,
+    };
+    let mut content = Content {
+        inputs: Vec::new(),
+        results: Vec::new(),
+    };
+    lines.head()?;
+    while let Some(line) = lines.next()? {
+        let read = entry(&line).map_err(|(column, message)| LogError::Broken {
+            path: path.to_owned(),
+            line: lines.number,
+            column,
+            message,
+        })?;
+        match read {
+            Entry::Input(input) => {
+                if let Some(why) = ours.and_then(|ours| ours.difference(&input)) {
+                    let path = path.to_owned();
+                    return Err(LogError::Other { path, why });
+                }
+                content.inputs.push(input);
+            }
+            Entry::Result(key, value) => {
+                let line = lines.number;
+                content.results.push((key, Found { line, value }));
+            }
+        }
+    }
+    Ok((content, lines.whole))
+}
+
+/// Opens a file of results as the options say.
+fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogError> {
+    input::open(path, options).map_err(|why| LogError::Unread {
+        path: path.to_owned(),
+        why,
+    })
+}
+
+/// Reads a file of results, which may be written to at the same time, and leaves it as it is; no line of it has more than `most`
+/// bytes.
+///
+/// # Errors
+/// If it cannot be read, or is of something else.
+pub fn read<T: DeserializeOwned>(
+    path: &Path,
+    most: usize,
+    ours: &Input,
+) -> Result<Content<T>, LogError> {
+    let file = opened(path, File::options().read(true))?;
+    Ok(content(&file, path, most, Some(ours))?.0)
+}
+
 impl Log {
-    /// Opens a file of results, or begins one, and reads what is there: by key.
+    /// Opens a file of results, or begins one, and reads what is there; no line has more than `most` bytes.
     ///
     /// # Errors
     /// If it cannot be read or written, if it is something else, or if another run has it open.
     pub fn open<T: DeserializeOwned>(
         path: &Path,
-    ) -> Result<(Log, HashMap<String, Found<T>>), LogError> {
+        most: usize,
+        ours: Option<&Input>,
+    ) -> Result<(Log, Content<T>), LogError> {
         let failed = |source| LogError::File {
             path: path.to_owned(),
             source,
         };
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
-        let mut file = input::open(path, &mut options).map_err(|why| LogError::Unread {
-            path: path.to_owned(),
-            why,
-        })?;
+        let mut file = opened(path, &mut options)?;
         if flock(&file, FlockOperation::NonBlockingLockExclusive)
             .is_err_and(|e| e == rustix::io::Errno::WOULDBLOCK)
         {
             return Err(LogError::Busy(path.to_owned()));
         }
-        let size = file.metadata().map_err(failed)?.len();
-        if size > MOST_BYTES {
-            let what = "no file of kept results is read that has";
-            let why = Unreadable::TooLarge {
-                most: MOST_BYTES,
-                what,
-            };
-            return Err(LogError::Unread {
-                path: path.to_owned(),
-                why,
-            });
-        }
-        let mut lines = Lines {
-            from: BufReader::new(&file),
-            path,
-            number: 0,
-            whole: 0,
-        };
-        let mut found = HashMap::new();
-        let begun = lines.head()?;
-        while let Some(line) = lines.next()? {
-            let (key, value) = entry(&line).map_err(|(column, message)| LogError::Broken {
-                path: path.to_owned(),
-                line: lines.number,
-                column,
-                message,
-            })?;
-            let line = lines.number;
-            found.insert(key, Found { line, value });
-        }
-        let whole = lines.whole;
+        let (found, whole) = content(&file, path, most, ours)?;
         file.set_len(whole).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
-        if !begun {
+        if whole == 0 {
             file.write_all((head() + "\n").as_bytes()).map_err(failed)?;
         }
         let log = Log {
@@ -250,70 +374,69 @@ impl Log {
         Ok((log, found))
     }
 
-    /// What is wrong with the result of a line.
-    pub fn broken(&self, line: usize, message: &str) -> LogError {
-        LogError::Broken {
-            path: self.path.clone(),
-            line,
-            column: 1,
-            message: message.to_owned(),
-        }
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Keeps a result, in one write.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn keep<T: Serialize>(&self, key: &str, value: &T) -> Result<(), LogError> {
+    pub fn keep<T: Serialize>(&self, key: Key, value: &T) -> Result<(), LogError> {
+        self.write(&key.to_string(), value)
+    }
+
+    /// Says what the results are of.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn name(&self, input: &Input) -> Result<(), LogError> {
+        self.write(INPUT, input)
+    }
+
+    fn write<T: Serialize>(&self, key: &str, value: &T) -> Result<(), LogError> {
         let failed = |source| LogError::File {
             path: self.path.clone(),
             source,
         };
-        let value = ron::to_string(value).map_err(|e| failed(io::Error::other(e)))?;
+        let value = notation::strict_line(value).map_err(|e| failed(io::Error::other(e)))?;
         let line = format!("{key}\t{value}\n");
         let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
         file.write_all(line.as_bytes()).map_err(failed)
     }
 }
 
-/// A key: a hash (FNV-1a, 128 bits) of parts of text, the same on every machine.
-pub fn key<'a>(parts: impl IntoIterator<Item = &'a str>) -> String {
-    let mut hash: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
-    // A part's end is a byte that no text has.
-    let bytes = parts.into_iter().flat_map(|p| p.bytes().chain([0xff]));
-    for byte in bytes {
-        hash = (hash ^ u128::from(byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
-    }
-    format!("{hash:032x}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const MOST: usize = 1 << 10;
 
     #[test]
     fn results_are_there_again_and_a_cut_line_is_not() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
-        let (log, found) = Log::open::<Vec<f64>>(&path).unwrap();
-        assert!(found.is_empty());
-        log.keep("a", &vec![0.1, f64::INFINITY]).unwrap();
-        log.keep("b", &vec![1e-300]).unwrap();
+        let (log, found) = Log::open::<Vec<f64>>(&path, MOST, None).unwrap();
+        assert!(found.results.is_empty());
+        log.keep(Key::of(["a"]), &vec![0.1, f64::INFINITY]).unwrap();
+        log.keep(Key::of(["b"]), &vec![1e-300]).unwrap();
         assert!(matches!(
-            Log::open::<Vec<f64>>(&path),
+            Log::open::<Vec<f64>>(&path, MOST, None),
             Err(LogError::Busy(_))
         ));
         drop(log);
         let whole = std::fs::read(&path).unwrap();
         for cut in 0..whole.len() {
             std::fs::write(&path, &whole[..cut]).unwrap();
-            let (log, found) = Log::open::<Vec<f64>>(&path).unwrap();
+            let (log, found) = Log::open::<Vec<f64>>(&path, MOST, None).unwrap();
             let lines = whole[..cut].iter().filter(|&&b| b == b'\n').count();
-            assert_eq!(found.len(), lines.saturating_sub(1), "cut at {cut}");
-            log.keep("c", &vec![2.0]).unwrap();
+            assert_eq!(found.results.len(), lines.saturating_sub(1), "cut at {cut}");
+            log.keep(Key::of(["c"]), &vec![2.0]).unwrap();
             drop(log);
-            let (_, found) = Log::open::<Vec<f64>>(&path).unwrap();
-            assert_eq!(found["c"].value, [2.0]);
+            let (_, found) = Log::open::<Vec<f64>>(&path, MOST, None).unwrap();
+            let last = found.results.last().unwrap();
+            assert_eq!((last.0, &last.1.value[..]), (Key::of(["c"]), &[2.0][..]));
         }
     }
 
@@ -323,15 +446,9 @@ mod tests {
         let path = directory.path().join("a.csv");
         for text in ["a,b\n1,2\n", "a,b"] {
             std::fs::write(&path, text).unwrap();
-            let refused = Log::open::<f64>(&path);
+            let refused = Log::open::<f64>(&path, MOST, None);
             assert!(matches!(refused, Err(LogError::Foreign { .. })), "{text}");
             assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
         }
-    }
-
-    #[test]
-    fn a_key_tells_where_parts_end() {
-        assert_ne!(key(["ab", "c"]), key(["a", "bc"]));
-        assert_eq!(key(["ab", "c"]), key(["ab", "c"]));
     }
 }

@@ -6,13 +6,15 @@
 //! the first. Where that is itself wrong, the map is; it names its references. Where there is nothing to compare with, a run
 //! that went to the end counts as converged, and the table says that it was not compared.
 
-use super::figure::{label, short_names};
-use super::log::{Log, key};
+use super::figure::{label, name, short_names};
+use super::log::LogError;
+use super::merge::{Cells, Keeping, Kept, Reading, same};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
 use super::result::{CaseEnd, Run};
 use super::run::{RunError, Spare, Watch, one, pool};
+use super::sweep_input::Input;
 use super::verdict::RunVerdict;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -175,6 +177,26 @@ impl Cell {
     }
 }
 
+/// Most bytes of a result in a file.
+const MOST_LINE: usize = 1 << 20;
+
+/// What there is of the results of a plan's cases.
+///
+/// # Errors
+/// If a file will not do.
+pub fn open(plan: &Plan, keeping: &Keeping) -> Result<Kept<Ended>, LogError> {
+    let cells = Cells {
+        keys: plan.cases.iter().map(Case::key).collect(),
+        unit: "cells",
+        name: &|k| name(plan, k),
+    };
+    let reading = Reading {
+        most: MOST_LINE,
+        join: same,
+    };
+    Kept::open(keeping, || Input::new("map", plan.input()), cells, &reading)
+}
+
 /// Runs the cases of a plan. With a file, what is kept there is not run again, and what is run is kept there.
 ///
 /// # Errors
@@ -186,20 +208,36 @@ pub fn run(
     jobs: NonZeroUsize,
     watch: &Watch,
 ) -> Result<Map, RunError> {
-    let opened = kept.map(Log::open::<Ended>).transpose()?;
+    let keeping = kept.map_or(Keeping::Nowhere, |path| Keeping::Beside(path.to_owned()));
+    let kept = open(&plan, &keeping)?;
+    run_kept(plan, tolerance, &kept, jobs, watch)
+}
+
+/// Runs those cases of a plan that are to be run here and whose results are not there.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_kept(
+    plan: Plan,
+    tolerance: f64,
+    kept: &Kept<Ended>,
+    jobs: NonZeroUsize,
+    watch: &Watch,
+) -> Result<Map, RunError> {
     let spare = Spare::default();
     let ended = |case: &Case| -> Result<Option<Ended>, RunError> {
-        let key = key(case.identity());
-        if let Some((_, found)) = &opened
-            && let Some(ended) = found.get(&key)
-        {
+        let key = case.key();
+        if let Some(found) = kept.get(key) {
             (watch.done)(case.increments);
-            return Ok(Some(ended.value.clone()));
+            return Ok(Some(found.value.clone()));
+        }
+        if !kept.does(key) {
+            return Ok(None);
         }
         let model = Arc::new(case.model()?);
         let ended = Ended::of(&one(case.increments, model.clone(), &spare, watch), &model);
-        if let (Some((log, _)), Some(ended)) = (&opened, &ended) {
-            log.keep(&key, ended)?;
+        if let Some(ended) = &ended {
+            kept.keep(key, ended)?;
         }
         Ok(ended)
     };
@@ -337,8 +375,7 @@ impl Map {
 
     /// What tells a case from the others.
     pub fn name(&self, case: usize) -> String {
-        let names = short_names(&self.plan.columns);
-        label(&names, &self.plan.cases[case].values)
+        name(&self.plan, case)
     }
 
     /// A row for each cell, after lines that say what it is.

@@ -2,10 +2,11 @@
 //!
 //! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
 //! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
-//! - [`run`](mod@run): the cases side by side, each on one thread; [`result`]: what one of them came to;
+//! - [`run`](mod@run): the cases side by side, each on one thread; [`room`]: as many as the memory has room for;
+//!   [`result`]: what one of them came to;
 //!   [`monitor_kind`]: what its numbers are measured in.
-//! - [`csv`]: all results as one table; [`figure`]: as curves; [`plot`]: curves as SVG and PNG;
-//!   [`bitmap`]: the letters of the latter; [`placing`]: places for labels; [`log_axis`]: an axis in powers of ten.
+//! - [`csv`]: all results as one table; [`figure`]: as curves; [`drawn`]: curves and shapes as plain data; [`plot`] and
+//!   [`pen`]: these as SVG and PNG, with the feature `plot`; [`placing`]: places for labels; [`log_axis`]: an axis in powers of ten.
 //!
 //! Values that are known from elsewhere: [`benchmarks`].
 //!
@@ -13,28 +14,43 @@
 //!
 //! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, judged; [`survey`]: all of them.
 //! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures; [`sheet`]: pictures as plain data.
-//! - [`verdict`]: what a run is worth; [`log`]: results that outlive a kill; [`origin`]: where results come from.
+//! - [`verdict`]: what a run is worth; [`origin`]: where results come from.
+//!
+//! Results that outlive a kill, and sweeps on many machines:
+//!
+//! - [`log`]: a file of results; [`sweep_input`]: what these are of; [`shard`]: which cells a shard does.
+//! - [`merge`]: where results come from and go to: a file, one of many shards, or all of them together.
+//! - [`sums`]: sweeps of so many cells that only sums are kept; [`large_map`]: such a map of scenes;
+//!   [`sketch`]: quantiles in little room.
 //!
 //! Work-precision charts:
 //!
-//! - [`chart_file`]: a chart as its author writes it; [`precision`]: run and measured; [`precision_table`]: as a table;
+//! - [`chart_file`]: a chart as its author writes it; [`chart_runs`]: its runs; [`precision`]: measured; [`precision_table`]: as a table;
 //!   [`precision_figure`]: drawn.
 //! - [`reference`](mod@reference): what runs are measured against; [`measuring`]: a chart measured beside other work.
 //!
 //! Nothing here knows a command line.
 
 pub mod benchmarks;
-pub mod bitmap;
 pub mod builtin;
 pub mod chart_file;
+pub mod chart_runs;
 pub mod csv;
+pub mod drawn;
 pub mod figure;
+pub mod large_map;
 pub mod log;
 pub mod log_axis;
 pub mod map;
 pub mod measuring;
+pub mod merge;
 pub mod monitor_kind;
 pub mod origin;
+#[cfg(feature = "plot")]
+pub mod pen;
+#[cfg(not(feature = "plot"))]
+#[path = "penless.rs"]
+pub mod pen;
 pub mod placing;
 pub mod plan;
 pub mod plot;
@@ -46,9 +62,14 @@ pub mod read;
 pub mod reason;
 pub mod reference;
 pub mod result;
+pub mod room;
 pub mod run;
+pub mod shard;
 pub mod sheet;
+pub mod sketch;
+pub mod sums;
 pub mod survey;
+pub mod sweep_input;
 pub mod trial;
 pub mod verdict;
 pub mod verdict_figure;

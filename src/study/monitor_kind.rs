@@ -1,6 +1,6 @@
 //! What monitors are measured in: those of one kind can be compared, and have one scale.
 
-use crate::model::{Model, Watched};
+use crate::model::{Model, ToldKind, Watched};
 use serde::{Deserialize, Serialize};
 
 /// What a monitor is: those of one kind have one scale.
@@ -44,5 +44,11 @@ pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
         Watched::Drift { .. } => MonitorKind::Drift,
         Watched::Pressure { .. } => MonitorKind::Pressure,
         Watched::Arc => MonitorKind::Length,
+        Watched::Told { kind, .. } => match kind {
+            ToldKind::Length | ToldKind::Other => MonitorKind::Length,
+            ToldKind::Force => MonitorKind::Force,
+            ToldKind::Pressure => MonitorKind::Pressure,
+            ToldKind::Count => MonitorKind::Count,
+        },
     }
 }

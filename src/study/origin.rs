@@ -19,13 +19,17 @@ pub fn program() -> String {
 /// The processor's name, where the system tells it, else its kind; and the number of cores.
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let (system, kind) = (std::env::consts::OS, std::env::consts::ARCH);
+    format!("{}, {cores} cores, {system}/{kind}", processor())
+}
+
+/// The processor's name, where the system tells it, else its kind.
+pub fn processor() -> String {
     let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = told.lines().find_map(|line| {
         let (field, value) = line.split_once(':')?;
         (field.trim() == "model name").then(|| value.trim().to_owned())
     });
-    let (system, kind) = (std::env::consts::OS, std::env::consts::ARCH);
     let name = name.filter(|name| !name.is_empty());
-    let name = name.unwrap_or_else(|| kind.to_owned());
-    format!("{name}, {cores} cores, {system}/{kind}")
+    name.unwrap_or_else(|| std::env::consts::ARCH.to_owned())
 }

@@ -1,7 +1,8 @@
 //! The product of all settings of a study, with every case found sound before any is run.
 
-use super::log::key;
 use super::read::{AxisQuantity, Study, Vary};
+use super::shard::Key;
+use super::sweep_input::digest;
 use crate::format::error::{SceneError, did_you_mean, some_of};
 use crate::format::paths::{self, Listed};
 use crate::model::Model;
@@ -9,8 +10,8 @@ use crate::scene::base::{Base, Place};
 use crate::scene::{Scene, increments};
 use std::sync::Arc;
 
-/// More runs than this are a slip of the finger.
-const MOST_CASES: usize = 100_000;
+/// More runs than this are not listed: only sums of them can be had.
+pub const MOST_CASES: u64 = 10_000_000;
 
 /// What is run.
 #[derive(Debug, Clone)]
@@ -51,6 +52,8 @@ struct Posed {
     text: Arc<str>,
     /// Key of the meshes that it imports, if it does.
     meshes: Option<String>,
+    /// Key of the text and these.
+    key: Key,
     base: Base,
     /// The paths that are set, in this order.
     paths: Vec<String>,
@@ -83,14 +86,10 @@ impl Case {
         quick.map_or_else(|| Ok(self.open()?.model), Ok)
     }
 
-    /// All that its result depends on, in parts.
-    pub fn identity(&self) -> impl Iterator<Item = &str> {
+    /// The key of its result: of the scene's text, the meshes that it imports, and each path with its value.
+    pub fn key(&self) -> Key {
         let settings = self.of.paths.iter().zip(&self.set);
-        let settings = settings.flat_map(|(path, value)| [path.as_str(), value.as_str()]);
-        let meshes = self.of.meshes.as_deref();
-        std::iter::once(&*self.of.text)
-            .chain(meshes)
-            .chain(settings)
+        settings.fold(self.of.key, |key, (path, value)| key.and(path).and(value))
     }
 
     /// What was set last at a path from outside, if anything.
@@ -126,14 +125,7 @@ impl Plan {
     /// # Errors
     /// If a scene, a path or a value will not do, in any of the cases, or an axis is nothing that the scenes have.
     pub fn new(mut study: Study) -> Result<Plan, SceneError> {
-        if let Some(first) = study.scenes.first() {
-            let spec = Scene::open(first, &[])?.spec;
-            let paths = study.vary.iter_mut().map(|vary| &mut vary.path);
-            for path in paths.chain(study.set.iter_mut().map(|(path, _)| path)) {
-                *path = paths::whole(&spec, path);
-            }
-        }
-        check_values(&study)?;
+        check_values(&mut study, MOST_CASES)?;
         let mut plan = Plan {
             title: study.title.clone(),
             columns: columns(&study),
@@ -159,12 +151,24 @@ impl Plan {
 
     /// The problem that a case poses: its values of all columns but those that say how it is computed.
     pub fn posed<'a>(&self, case: &'a Case) -> Vec<&'a str> {
-        let how = |path: &str| {
-            path.starts_with("settings.") || ["history.increment", "history.least"].contains(&path)
-        };
         let values = self.columns.iter().zip(&case.values);
-        let posed = values.filter(|(path, _)| !how(path));
+        let posed = values.filter(|(path, _)| !says_how(path));
         posed.map(|(_, value)| value.as_str()).collect()
+    }
+
+    /// All that the results of the cases depend on, by name.
+    pub fn input(&self) -> Vec<(String, String)> {
+        let mut parts: Vec<(String, String)> = Vec::new();
+        let mut posed: Option<&Arc<Posed>> = None;
+        for case in &self.cases {
+            if posed.is_some_and(|posed| Arc::ptr_eq(posed, &case.of)) {
+                continue;
+            }
+            posed = Some(&case.of);
+            parts.push(case.of.input());
+        }
+        parts.extend(set_and_varied(&self.study));
+        parts
     }
 
     /// Increments of all cases together.
@@ -174,60 +178,14 @@ impl Plan {
 
     /// Adds the cases of one scene.
     fn lay_out(&mut self, name: &str) -> Result<(), SceneError> {
-        let base = Base::new(Scene::open(name, &[])?);
-        let scene = base.scene();
+        let layout = Layout::new(&self.study, name)?;
         if self.title.is_empty() {
-            self.title.clone_from(&scene.spec.title);
+            self.title.clone_from(&layout.posed.base.scene().spec.title);
         }
-        let known = paths::list(&scene.spec);
-        let patterns = self.study.set.iter().map(|(path, _)| path);
-        let patterns = patterns.chain(self.study.vary.iter().map(|vary| &vary.path));
-        let mut set: Vec<(String, usize)> = Vec::new();
-        for (k, pattern) in patterns.enumerate() {
-            set.extend(expanded(&known, pattern).into_iter().map(|path| (path, k)));
-        }
-        let own: Vec<String> = scene
-            .model
-            .monitors
-            .iter()
-            .map(|m| m.name.clone())
-            .collect();
-        let places = set.iter().map(|(path, _)| base.find(path)).collect();
-        let posed = Arc::new(Posed {
-            text: scene.text.as_str().into(),
-            meshes: scene.imports().then(|| {
-                let nodes = format!("{:?}", scene.spec.nodes);
-                key(std::iter::once(nodes.as_str()))
-            }),
-            places,
-            paths: set.iter().map(|(path, _)| path.clone()).collect(),
-            base,
-        });
         for settings in product(&self.study.vary) {
-            let mut values = Vec::with_capacity(self.columns.len());
-            if self.study.scenes.len() > 1 {
-                values.push(name.to_owned());
-            }
-            values.extend(settings.into_iter().map(|(_, value)| value));
-            let varied = &values[values.len() - self.study.vary.len()..];
-            let given: Vec<&String> = self
-                .study
-                .set
-                .iter()
-                .map(|(_, v)| v)
-                .chain(varied)
-                .collect();
-            let of_path = |(path, k): &(String, usize)| {
-                multiple(&known, path, given[*k]).unwrap_or_else(|| given[*k].clone())
-            };
-            let set = set.iter().map(of_path).collect();
-            let mut case = Case {
-                values,
-                of: posed.clone(),
-                set,
-                increments: 0,
-            };
-            for name in case.check()?.as_ref().unwrap_or(&own) {
+            let varied = settings.into_iter().map(|(_, value)| value).collect();
+            let (case, names) = layout.case(&self.study, varied)?;
+            for name in names.as_ref().unwrap_or(&layout.own) {
                 if !self.monitors.contains(name) {
                     self.monitors.push(name.clone());
                 }
@@ -259,16 +217,119 @@ impl Plan {
     }
 }
 
-fn columns(study: &Study) -> Vec<String> {
+/// A scene of a study, with what is set and varied in it.
+#[derive(Debug)]
+pub(super) struct Layout {
+    name: String,
+    posed: Arc<Posed>,
+    known: Vec<Listed>,
+    /// Each path that is set, and by which number of all that is set and varied.
+    set: Vec<(String, usize)>,
+    /// Names of the monitors of the scene as it stands.
+    own: Vec<String>,
+}
+
+impl Layout {
+    pub(super) fn new(study: &Study, name: &str) -> Result<Layout, SceneError> {
+        let base = Base::new(Scene::open(name, &[])?);
+        let scene = base.scene();
+        let known = paths::list(&scene.spec);
+        let patterns = study.set.iter().map(|(path, _)| path);
+        let patterns = patterns.chain(study.vary.iter().map(|vary| &vary.path));
+        let mut set: Vec<(String, usize)> = Vec::new();
+        for (k, pattern) in patterns.enumerate() {
+            set.extend(expanded(&known, pattern).into_iter().map(|path| (path, k)));
+        }
+        let monitors = scene.model.monitors.iter();
+        let own = monitors.map(|m| m.name.clone()).collect();
+        let places = set.iter().map(|(path, _)| base.find(path)).collect();
+        let meshes = scene
+            .imports()
+            .then(|| digest(&format!("{:?}", scene.spec.nodes)));
+        let parts = std::iter::once(scene.text.as_str()).chain(meshes.as_deref());
+        let posed = Arc::new(Posed {
+            text: scene.text.as_str().into(),
+            key: Key::of(parts),
+            meshes,
+            places,
+            paths: set.iter().map(|(path, _)| path.clone()).collect(),
+            base,
+        });
+        Ok(Layout {
+            name: name.to_owned(),
+            posed,
+            known,
+            set,
+            own,
+        })
+    }
+
+    /// The case with a value for each path that is varied, and names of its monitors where they are not those of the scene.
+    pub(super) fn case(
+        &self,
+        study: &Study,
+        varied: Vec<String>,
+    ) -> Result<(Case, Option<Vec<String>>), SceneError> {
+        let fixed = study.set.iter().map(|(_, value)| value);
+        let given: Vec<&String> = fixed.chain(&varied).collect();
+        let of_path = |(path, k): &(String, usize)| {
+            multiple(&self.known, path, given[*k]).unwrap_or_else(|| given[*k].clone())
+        };
+        let set = self.set.iter().map(of_path).collect();
+        let scene = (study.scenes.len() > 1).then(|| self.name.clone());
+        let mut case = Case {
+            values: scene.into_iter().chain(varied).collect(),
+            of: self.posed.clone(),
+            set,
+            increments: 0,
+        };
+        let names = case.check()?;
+        Ok((case, names))
+    }
+
+    /// All that the results of its cases depend on but for what is set and varied: what it is called, and its value.
+    pub(super) fn input(&self) -> (String, String) {
+        self.posed.input()
+    }
+}
+
+impl Posed {
+    fn input(&self) -> (String, String) {
+        let meshes = self.meshes.as_deref().unwrap_or_default();
+        let (text, name) = (digest(&self.text), &self.base.scene().name);
+        ("scene".to_owned(), format!("{text}{meshes} ({name})"))
+    }
+}
+
+/// Whether a path says how a problem is computed, and not which one it is.
+pub(super) fn says_how(path: &str) -> bool {
+    path.starts_with("settings.") || ["history.increment", "history.least"].contains(&path)
+}
+
+/// What is set and varied in a study, by name.
+pub(super) fn set_and_varied(study: &Study) -> impl Iterator<Item = (String, String)> {
+    let varied = study.vary.iter();
+    let varied = varied.map(|vary| (format!("{} over", vary.path), vary.values.join(", ")));
+    study.set.iter().cloned().chain(varied)
+}
+
+pub(super) fn columns(study: &Study) -> Vec<String> {
     let scene = (study.scenes.len() > 1).then(|| "scene".to_owned());
     let paths = study.vary.iter().map(|vary| vary.path.clone());
     scene.into_iter().chain(paths).collect()
 }
 
-/// Refuses what would run nothing, the same thing twice, or for ever.
-fn check_values(study: &Study) -> Result<(), SceneError> {
+/// Makes paths whole, and refuses what would run nothing, the same thing twice, or for ever.
+pub(super) fn check_values(study: &mut Study, most: u64) -> Result<(), SceneError> {
+    if let Some(first) = study.scenes.first() {
+        let spec = Scene::open(first, &[])?.spec;
+        let paths = study.vary.iter_mut().map(|vary| &mut vary.path);
+        for path in paths.chain(study.set.iter_mut().map(|(path, _)| path)) {
+            *path = paths::whole(&spec, path);
+        }
+    }
     let wrong = |message: String| Err(SceneError::whole(&study.name, message));
-    let mut cases = study.scenes.len();
+    let mut cases = study.scenes.len() as u64;
     for (k, vary) in study.vary.iter().enumerate() {
         let Vary { path, values } = vary;
         if study.vary[..k].iter().any(|other| other.path == *path) {
@@ -280,11 +341,11 @@ fn check_values(study: &Study) -> Result<(), SceneError> {
         if let Some(value) = (1..values.len()).find(|&j| values[..j].contains(&values[j])) {
             return wrong(format!("{path} has the value {} twice", values[value]));
         }
-        cases = cases.saturating_mul(values.len());
+        cases = cases.saturating_mul(values.len() as u64);
     }
-    if cases > MOST_CASES {
+    if cases > most {
         return wrong(format!(
-            "the product has {cases} runs; at most {MOST_CASES} can be had"
+            "the product has {cases} runs; at most {most} can be had"
         ));
     }
     Ok(())

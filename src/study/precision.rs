@@ -8,26 +8,26 @@
 //! that went to the end, those that no other one beats in both are the **front**; errors at round-off ([`ROUND_OFF`]) are equal there.
 
 use super::chart_file::{Chart, Truth};
+use super::chart_runs::{Planned, Timed, open, timed};
 use super::csv::TableError;
-use super::figure::{label, short_names};
+use super::figure::name;
+use super::merge::{Keeping, Kept};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
-use super::plan::{Case, Plan};
-use super::read::Study;
+use super::plan::Plan;
 use super::reference::{self, Reference};
-use super::result::{CaseEnd, Run};
-use super::run::{Spare, Watch, one};
+use super::result::Run;
+use super::run::{RunError, Watch};
 use crate::format::SceneError;
 use crate::model::Model;
-use rustix::time::{ClockId, clock_gettime};
 use std::collections::HashMap;
 use std::sync::Arc;
 
+/// All series of a chart as plans.
+pub use super::chart_runs::plans;
+
 /// Errors below this are round-off: a few thousand operations with the numbers' own.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
-
-/// Runs that take this long altogether (seconds) are not repeated any more.
-const LONG: f64 = 20.0;
 
 /// A work-precision chart of one scene.
 #[derive(Debug, Clone)]
@@ -158,6 +158,15 @@ pub enum PrecisionError {
     /// There is nothing to compare with.
     #[error("{0}")]
     Reference(String),
+    /// The runs cannot be had.
+    #[error(transparent)]
+    Run(Box<RunError>),
+}
+
+impl From<RunError> for PrecisionError {
+    fn from(error: RunError) -> PrecisionError {
+        PrecisionError::Run(Box::new(error))
+    }
 }
 
 /// A run with what it is compared by.
@@ -166,23 +175,6 @@ struct Measured {
     run: Run,
     kinds: Vec<MonitorKind>,
     path: Vec<f64>,
-}
-
-/// All series of a chart as plans.
-///
-/// # Errors
-/// If a path or a value will not do.
-pub fn plans(chart: &Chart) -> Result<Vec<Plan>, SceneError> {
-    let plan = |series: &super::chart_file::Series| {
-        Plan::new(Study {
-            name: chart.scene.clone(),
-            scenes: vec![chart.scene.clone()],
-            vary: series.vary.clone(),
-            set: [chart.set.clone(), series.set.clone()].concat(),
-            ..Study::default()
-        })
-    };
-    chart.series.iter().map(plan).collect()
 }
 
 /// Runs all of a chart, one run at a time.
@@ -195,23 +187,40 @@ pub fn run(
     measure: Measure,
     watch: &Watch,
 ) -> Result<Precision, PrecisionError> {
+    let planned = Planned::of(chart.clone(), plans.to_vec())?;
+    let charts = std::slice::from_ref(&planned);
+    let kept = open(charts, measure.repeats, &Keeping::Nowhere).map_err(RunError::from)?;
+    run_kept(&planned, measure, &kept, watch)
+}
+
+/// The same with runs that are there already.
+///
+/// # Errors
+/// As [`run`], and if a run cannot be kept.
+pub fn run_kept(
+    planned: &Planned,
+    measure: Measure,
+    kept: &Kept<Timed>,
+    watch: &Watch,
+) -> Result<Precision, PrecisionError> {
+    let (chart, plans) = (&planned.chart, &planned.plans);
     let mut all: Vec<Measured> = Vec::new();
-    let planned = plans.iter().map(|plan| plan.cases.len()).sum();
     for (s, plan) in plans.iter().enumerate() {
-        for case in &plan.cases {
-            let names = short_names(&plan.columns);
-            let name = label(&names, &case.values);
+        for (k, case) in plan.cases.iter().enumerate() {
             let settings = plan
                 .columns
                 .iter()
                 .cloned()
                 .zip(case.values.iter().cloned());
             let settings = [chart.series[s].set.clone(), settings.collect()].concat();
-            let measured = measured(case, s, name, settings, measure.repeats, watch)?;
-            all.extend(measured);
+            let model = Arc::new(case.model()?);
+            if let Some(timed) = timed(case, &model, measure.repeats, kept, watch)? {
+                all.push(measured(timed, &model, s, name(plan, k), settings));
+            }
         }
     }
-    let (reference, own) = truth(chart, &all, watch)?;
+    let wanted_runs = plans.iter().map(|plan| plan.cases.len()).sum();
+    let (reference, own) = truth(planned, &all, kept, watch)?;
     let mut precision = Precision {
         scene: chart.scene.clone(),
         title: chart.title.clone(),
@@ -225,7 +234,7 @@ pub fn run(
         points: Vec::new(),
         cost: measure.cost,
         target: measure.target,
-        planned,
+        planned: wanted_runs,
     };
     if let Some(own) = own {
         all[own].point.reference = true;
@@ -243,36 +252,19 @@ pub fn run(
     Ok(precision)
 }
 
-/// Runs a case some times; `None` if it was stopped from outside.
+/// A run as a point of its series.
 fn measured(
-    case: &Case,
+    timed: Timed,
+    model: &Model,
     series: usize,
     name: String,
     settings: Vec<(String, String)>,
-    repeats: usize,
-    watch: &Watch,
-) -> Result<Option<Measured>, PrecisionError> {
-    let model = Arc::new(case.model()?);
-    let quiet = Watch {
-        stop: watch.stop,
-        done: &|_| {},
-    };
-    let (mut times, mut last) = (Vec::new(), None);
-    while times.len() < repeats.max(1) {
-        let start = thread_seconds();
-        let run = one(case.increments, model.clone(), &Spare::default(), &quiet);
-        times.push(thread_seconds() - start);
-        if matches!(run.end, CaseEnd::Interrupted | CaseEnd::NotRun) {
-            return Ok(None);
-        }
-        last = Some(run);
-        if times.iter().sum::<f64>() > LONG {
-            break;
-        }
-    }
-    (watch.done)(case.increments);
-    let Some(run) = last else { return Ok(None) };
-    times.sort_by(f64::total_cmp);
+) -> Measured {
+    let Timed {
+        seconds,
+        repeats,
+        run,
+    } = timed;
     let failed = run.failed().map(|failed| {
         let load = crate::explain::number::six(failed.load);
         format!("{} at load {load}", failed.verdict)
@@ -281,8 +273,8 @@ fn measured(
         series,
         name,
         settings,
-        seconds: times[times.len() / 2],
-        repeats: times.len(),
+        seconds,
+        repeats,
         factorizations: run.factorizations,
         majors: run.begun,
         minors: run.minors(),
@@ -294,30 +286,26 @@ fn measured(
         reference: false,
         front: false,
     };
-    Ok(Some(Measured {
+    Measured {
         point,
-        kinds: kinds(&model),
+        kinds: kinds(model),
         path: model.path.clone(),
         run,
-    }))
+    }
 }
 
 fn kinds(model: &Model) -> Vec<MonitorKind> {
     model.monitors.iter().map(|m| kind(model, &m.of)).collect()
 }
 
-/// Processor time of this thread, in seconds.
-fn thread_seconds() -> f64 {
-    let time = clock_gettime(ClockId::ThreadCPUTime);
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
-}
-
 /// The reference of a chart; with the number of the run that it is, if it is one of them.
 fn truth(
-    chart: &Chart,
+    planned: &Planned,
     all: &[Measured],
+    kept: &Kept<Timed>,
     watch: &Watch,
 ) -> Result<(Reference, Option<usize>), PrecisionError> {
+    let chart = &planned.chart;
     let path = all.first().map(|m| m.path.clone()).unwrap_or_default();
     let wrong = PrecisionError::Reference;
     match &chart.truth {
@@ -332,34 +320,22 @@ fn truth(
             Ok((known.ok_or_else(none)??, None))
         }
         Truth::Run(settings) => {
-            let plan = Plan::new(Study {
-                set: [chart.set.clone(), settings.clone()].concat(),
-                ..Study::of_scene(&chart.scene)
-            })?;
-            let case = plan
-                .cases
-                .first()
-                .ok_or_else(|| wrong("nothing was run".to_owned()))?;
-            let run = one(
-                case.increments,
-                Arc::new(case.model()?),
-                &Spare::default(),
-                watch,
-            );
+            let case = planned.truth.as_ref().and_then(|plan| plan.cases.first());
+            let case = case.ok_or_else(|| wrong("nothing was run".to_owned()))?;
+            let run = timed(case, &Arc::new(case.model()?), 1, kept, watch)?;
             let names: Vec<String> = settings
                 .iter()
                 .map(|(path, value)| format!("{path}={value}"))
                 .collect();
             let name = format!("a run with {}", names.join(", "));
-            match run.end {
-                CaseEnd::Finished => Ok((Reference::of(&run, name, &path), None)),
-                CaseEnd::Failed(failed) => Err(wrong(format!(
+            let stopped = "it was interrupted before its reference was there";
+            let run = run.ok_or_else(|| wrong(stopped.to_owned()))?.run;
+            match run.failed() {
+                None => Ok((Reference::of(&run, name, &path), None)),
+                Some(failed) => Err(wrong(format!(
                     "the reference, {name}, failed: {}",
                     failed.verdict
                 ))),
-                _ => Err(wrong(
-                    "it was interrupted before its reference was there".to_owned(),
-                )),
             }
         }
         Truth::Finest => {

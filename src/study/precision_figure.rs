@@ -3,9 +3,9 @@
 //! Runs that failed stand on a rail above the plot, at what they cost until then, and are named below it. A run has its
 //! values beside it, or where there is no room a number, which is told below. Errors at round-off stand on one line.
 
+use super::drawn::PlotError;
 use super::log_axis::{LogAxis, written};
 use super::placing::{Patch, Placing};
-use super::plot::PlotError;
 use super::precision::{Point, Precision, ROUND_OFF};
 use super::sheet::{
     Anchor, BLACK, COLOURS, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,

@@ -73,7 +73,9 @@ impl From<&Failure> for Reason {
             Failure::Leapt { .. } => Reason::Jump,
             Failure::DoubledBack | Failure::Unmoved => Reason::OffPath,
             Failure::RoundOff { .. } => Reason::RoundOff,
-            Failure::LadderEnded { .. } | Failure::NotFound(_) => Reason::NotFound,
+            Failure::LadderEnded { .. } | Failure::NotFound(_) | Failure::Reported { .. } => {
+                Reason::NotFound
+            }
         }
     }
 }

@@ -3,9 +3,10 @@
 use super::read::AxisQuantity;
 use super::reason::Reason;
 use super::verdict::RunVerdict;
+use serde::{Deserialize, Serialize};
 
 /// A run, as far as it went.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Names of the scene's monitors.
     pub monitors: Vec<String>,
@@ -22,7 +23,7 @@ pub struct Run {
 }
 
 /// One accepted increment.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// From 1.
     pub increment: u32,
@@ -41,7 +42,7 @@ pub struct Row {
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum CaseEnd {
     /// At the end of the history.
     Finished,
@@ -54,7 +55,7 @@ pub enum CaseEnd {
 }
 
 /// Where and why a run failed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Failed {
     /// Why.
     pub reason: Reason,
@@ -90,6 +91,11 @@ impl Run {
     /// The state that the run got to: its last accepted increment, or the start.
     pub fn last(&self) -> &Row {
         self.rows.last().unwrap_or(&self.start)
+    }
+
+    /// Whether it ended by itself, and not because somebody wanted it to.
+    pub fn is_over(&self) -> bool {
+        matches!(self.end, CaseEnd::Finished | CaseEnd::Failed(_))
     }
 
     /// Where it failed, if it did.

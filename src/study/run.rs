@@ -1,9 +1,12 @@
 //! The cases of a plan, side by side: each on one thread, so that its bits are those of a run alone.
 
 use super::log::LogError;
-use super::plan::Plan;
+use super::merge::{Cells, Keeping, Kept, Reading, same};
+use super::plan::{Case, Plan};
 use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
+use super::room::Room;
+use super::sweep_input::Input;
 use super::verdict::RunVerdict;
 use crate::format::SceneError;
 use crate::model::Model;
@@ -29,18 +32,25 @@ pub struct Watch<'a> {
 
 /// Solvers whose runs have ended. The next run goes on with the workspace of one where its scene is laid out alike.
 #[derive(Default)]
-pub struct Spare(Mutex<Vec<Stepper>>);
+pub struct Spare {
+    steppers: Mutex<Vec<Stepper>>,
+    room: Room,
+}
 
 impl Spare {
     /// A solver at the start of a model's history.
     fn take(&self, model: Arc<Model>) -> Stepper {
-        let spare = self.0.lock().unwrap_or_else(|e| e.into_inner()).pop();
+        let spare = self
+            .steppers
+            .lock()
+            .unwrap_or_else(|e| e.into_inner())
+            .pop();
         let renewed = spare.and_then(|mut stepper| stepper.renew(&model).then_some(stepper));
         renewed.unwrap_or_else(|| Stepper::new(model))
     }
 
     fn give(&self, stepper: Stepper) {
-        self.0
+        self.steppers
             .lock()
             .unwrap_or_else(|e| e.into_inner())
             .push(stepper);
@@ -66,16 +76,65 @@ pub enum RunError {
 /// # Errors
 /// If there are no threads to be had. What fails in a run is its result.
 pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, RunError> {
+    let kept = open(plan, &Keeping::Nowhere)?;
+    let runs = run_kept(plan, &kept, jobs, watch)?;
+    Ok(runs.into_iter().flatten().collect())
+}
+
+/// Most bytes of a run in a file: some 10,000 increments with 100 monitors.
+pub(super) const MOST_LINE: usize = 32 << 20;
+
+/// What there is of the runs of a plan.
+///
+/// # Errors
+/// If a file will not do.
+pub fn open(plan: &Plan, keeping: &Keeping) -> Result<Kept<Run>, LogError> {
+    let cells = Cells {
+        keys: plan.cases.iter().map(Case::key).collect(),
+        unit: "runs",
+        name: &|k| super::figure::name(plan, k),
+    };
+    let reading = Reading {
+        most: MOST_LINE,
+        join: same,
+    };
+    Kept::open(
+        keeping,
+        || Input::new("study", plan.input()),
+        cells,
+        &reading,
+    )
+}
+
+/// Runs those cases of a plan that are to be run here and whose runs are not there; `None` for the others.
+///
+/// # Errors
+/// As [`run`], and if a run cannot be kept.
+pub fn run_kept(
+    plan: &Plan,
+    kept: &Kept<Run>,
+    jobs: NonZeroUsize,
+    watch: &Watch,
+) -> Result<Vec<Option<Run>>, RunError> {
     let pool = pool(jobs, plan.cases.len())?;
     let spare = Spare::default();
-    let runs: Result<Vec<Run>, SceneError> = pool.install(|| {
-        // One by one: cases differ much in what they cost, and the first ones are to be done first.
-        let cases = plan.cases.par_iter().with_max_len(1);
-        cases
-            .map(|case| Ok(one(case.increments, Arc::new(case.model()?), &spare, watch)))
-            .collect()
-    });
-    Ok(runs?)
+    let of = |case: &Case| -> Result<Option<Run>, RunError> {
+        let key = case.key();
+        if let Some(found) = kept.get(key) {
+            (watch.done)(case.increments);
+            return Ok(Some(found.value.clone()));
+        }
+        if !kept.does(key) {
+            return Ok(None);
+        }
+        let run = one(case.increments, Arc::new(case.model()?), &spare, watch);
+        if run.is_over() {
+            kept.keep(key, &run)?;
+        }
+        Ok(Some(run))
+    };
+    // One by one: cases differ much in what they cost, and the first ones are to be done first.
+    pool.install(|| plan.cases.par_iter().with_max_len(1).map(of).collect())
 }
 
 /// Threads for a number of runs.
@@ -91,6 +150,7 @@ pub(super) fn pool(
 
 /// Runs a model to the end of its history, which has so many increments, to its first failure, or to where it is stopped.
 pub fn one(increments: u64, model: Arc<Model>, spare: &Spare, watch: &Watch) -> Run {
+    let _place = spare.room.take(&model);
     let monitors = model.monitors.iter().map(|m| m.name.clone()).collect();
     let mut stepper = spare.take(model);
     let mut run = Run {

@@ -2,16 +2,12 @@
 //!
 //! Lengths are those of an SVG; x to the right, y downwards.
 
-use super::plot::{
-    FONT, PNG_SCALE, PlotError, bitmap, broken, encode, label, load_font, paper, width_of,
-};
+use super::drawn::label;
+use super::pen::font::{broken, width_of};
+use super::pen::sheet;
 use crate::outside::shown;
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Red, green and blue.
-pub type Colour = (u8, u8, u8);
+pub use super::drawn::{Anchor, Colour, PlotError, Shape};
 
 /// Letters and axes.
 pub const BLACK: Colour = (0, 0, 0);
@@ -38,53 +34,6 @@ pub const LABEL: f64 = 15.0;
 pub const SMALL: f64 = 13.0;
 /// Air around everything.
 pub const MARGIN: f64 = 16.0;
-
-/// Where a text stands about its point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
-    /// To the right of it.
-    Left,
-    /// About it.
-    Middle,
-    /// To the left of it.
-    Right,
-}
-
-/// Something drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
-    /// A line of text.
-    Text {
-        /// Its point: to the right and downwards, pixels.
-        at: (f64, f64),
-        /// The text.
-        text: String,
-        /// Size of its letters, pixels.
-        size: f64,
-        /// Its colour.
-        colour: Colour,
-        /// Where it stands about its point.
-        anchor: Anchor,
-        /// Read from below upwards.
-        upright: bool,
-    },
-    /// A line through points.
-    Line {
-        /// The points: to the right and downwards, pixels.
-        points: Vec<(f64, f64)>,
-        /// How wide the line is, pixels.
-        width: f64,
-        /// Its colour.
-        colour: Colour,
-    },
-    /// A filled polygon.
-    Fill {
-        /// Its corners: to the right and downwards, pixels.
-        corners: Vec<(f64, f64)>,
-        /// Its colour.
-        colour: Colour,
-    },
-}
 
 /// A drawing; later shapes lie above earlier ones.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -122,7 +71,6 @@ impl Sheet {
         size: f64,
         colour: Colour,
     ) -> Result<(), PlotError> {
-        load_font()?;
         for line in broken(lines, size, self.width - 2.0 * MARGIN)? {
             let at = (MARGIN, self.height + 0.7 * size);
             self.put(at, line, (size, colour, Anchor::Left));
@@ -266,13 +214,7 @@ impl Sheet {
     /// # Errors
     /// If it cannot be drawn.
     pub fn svg(&self) -> Result<String, PlotError> {
-        load_font()?;
-        let mut text = String::new();
-        let root = SVGBackend::with_string(&mut text, self.size(1.0)).into_drawing_area();
-        self.draw(&root, 1.0)
-            .map_err(|e| PlotError(e.to_string()))?;
-        drop(root);
-        Ok(text)
+        sheet::svg(&self.shapes, self.size())
     }
 
     /// The drawing as PNG, with two pixels for a unit of length.
@@ -280,74 +222,11 @@ impl Sheet {
     /// # Errors
     /// If it cannot be drawn.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        load_font()?;
-        let (width, height) = self.size(PNG_SCALE);
-        let mut pixels = paper(width, height)?;
-        let root = bitmap(&mut pixels, (width, height))?.into_drawing_area();
-        self.draw(&root, PNG_SCALE)
-            .map_err(|e| PlotError(e.to_string()))?;
-        drop(root);
-        encode(&pixels, width, height).map_err(|e| PlotError(e.to_string()))
+        sheet::png(&self.shapes, self.size())
     }
 
-    fn size(&self, scale: f64) -> (u32, u32) {
-        let pixels = |length: f64| (length * scale).ceil() as u32;
-        (pixels(self.width), pixels(self.height + MARGIN))
-    }
-
-    fn draw<DB: DrawingBackend>(
-        &self,
-        root: &DrawingArea<DB, Shift>,
-        scale: f64,
-    ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
-        root.fill(&WHITE)?;
-        let pixel = |at: (f64, f64)| {
-            let round = |x: f64| (x * scale).round() as i32;
-            (round(at.0), round(at.1))
-        };
-        let rgb = |(r, g, b): Colour| RGBColor(r, g, b);
-        for shape in &self.shapes {
-            match shape {
-                Shape::Text {
-                    at,
-                    text,
-                    size,
-                    colour,
-                    anchor,
-                    upright,
-                } => {
-                    let side = match anchor {
-                        Anchor::Left => HPos::Left,
-                        Anchor::Middle => HPos::Center,
-                        Anchor::Right => HPos::Right,
-                    };
-                    let font = (FONT, size * scale).into_font();
-                    let font = match upright {
-                        true => font.transform(FontTransform::Rotate270),
-                        false => font,
-                    };
-                    let colour = rgb(*colour);
-                    let style = TextStyle::from(font)
-                        .color(&colour)
-                        .pos(Pos::new(side, VPos::Center));
-                    root.draw(&Text::new(text.as_str(), pixel(*at), style))?;
-                }
-                Shape::Line {
-                    points,
-                    width,
-                    colour,
-                } => {
-                    let stroke = (width * scale).round().max(1.0) as u32;
-                    let points: Vec<_> = points.iter().map(|p| pixel(*p)).collect();
-                    root.draw(&PathElement::new(points, rgb(*colour).stroke_width(stroke)))?;
-                }
-                Shape::Fill { corners, colour } => {
-                    let corners: Vec<_> = corners.iter().map(|c| pixel(*c)).collect();
-                    root.draw(&Polygon::new(corners, rgb(*colour).filled()))?;
-                }
-            }
-        }
-        root.present()
+    fn size(&self) -> (f64, f64) {
+        (self.width, self.height + MARGIN)
     }
 }
 
@@ -356,7 +235,6 @@ impl Sheet {
 /// # Errors
 /// If the font cannot be read.
 pub fn widest<'a>(texts: impl IntoIterator<Item = &'a str>, size: f64) -> Result<f64, PlotError> {
-    load_font()?;
     let mut widest: f64 = 0.0;
     for text in texts {
         widest = widest.max(1.06 * width_of(&label(text), size)?);

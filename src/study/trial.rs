@@ -85,6 +85,13 @@ pub struct Prepared<'a> {
     method: Option<Method>,
 }
 
+impl Prepared<'_> {
+    /// What the variant is called.
+    pub fn name(&self) -> &str {
+        &self.variant.name
+    }
+}
+
 /// Variants to try on many problems.
 pub fn prepared(variants: &[Variant]) -> Vec<Prepared<'_>> {
     // All problems have this history and these settings; of what else they have nothing is read.

@@ -199,7 +199,7 @@ pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), ProgressError> {
         return Ok(());
     }
     let layout = ron::ser::PrettyConfig::new();
-    let text = notation::options().to_string_pretty(&progress, layout);
+    let text = notation::lines(&progress, layout);
     let text = text.map_err(|e| ProgressError::Damaged {
         file: file.to_owned(),
         line: 1,

@@ -10,10 +10,12 @@ use crate::tui::camera::Camera;
 use crate::tui::chartpage::ChartPage;
 use crate::tui::choosing::{Chooser, Offer, Preview};
 use crate::tui::commandline::{CommandLine, Purpose};
+use crate::tui::hearing::Heard;
 use crate::tui::keys;
 use crate::tui::layout::{Choice, Pane};
 use crate::tui::panes::help::{Help, Listing};
 use crate::tui::panes::manual;
+use crate::tui::panes::solver;
 use crate::tui::theme::{self, Theme};
 use crate::tui::view::{View, context};
 use crossterm::event::KeyEvent;
@@ -61,6 +63,8 @@ pub enum Overlay {
     Chooser(Chooser),
     /// A work-precision chart.
     Chart(Box<ChartPage>),
+    /// What an attached solver says, or lets be set.
+    Solver(solver::Reader),
     /// A line being typed.
     Line(CommandLine),
     /// A letter for the mode of the selected node.
@@ -134,6 +138,10 @@ pub struct App {
     pub count: Option<u32>,
     /// What was said last.
     pub message: Message,
+    /// What an attached solver said of itself, or how it was lost, until the next key.
+    pub notice: Option<String>,
+    /// What of its log was heard.
+    pub heard: Heard,
     /// What the shape shows, and how large.
     pub camera: Camera,
     /// How the table sorts, whether the other way round, and which nodes it shows.
@@ -204,6 +212,8 @@ impl App {
                 text: String::new(),
                 tone: Tone::Plain,
             },
+            notice: None,
+            heard: Heard::default(),
             camera: Camera::ALL,
             sort: Sort::Scene,
             backward: false,
@@ -252,6 +262,7 @@ impl App {
         self.monitor = 0;
         (self.answer, self.branch, self.remedy, self.scroll) = (0, 0, 0, 0);
         self.camera = Camera::ALL;
+        (self.notice, self.heard) = (None, Heard::default());
         self.last = None;
         self.count = None;
         self.lesson = None;
@@ -300,6 +311,7 @@ impl App {
         let name = keys::name(key)?;
         self.note_reading(view);
         self.say("");
+        self.notice = None;
         match &mut self.overlay {
             Overlay::None => self.pane_key(&name, view),
             Overlay::Help(_) => self.help_key(&name, view),
@@ -311,6 +323,7 @@ impl App {
             }
             Overlay::Chooser(_) => self.chooser_key(&name, view),
             Overlay::Chart(_) => self.chart_key(&name, view),
+            Overlay::Solver(_) => self.solver_key(&name, view),
             Overlay::Line(_) => self.line_key(key, &name, view),
             Overlay::Mode => self.mode_key(&name, view),
             Overlay::Answer => self.answer_key(&name, view),
@@ -437,6 +450,10 @@ impl App {
                 return None;
             }
         };
+        if let Err(why) = action.offered(&self.context(view, &[])) {
+            self.complain(why);
+            return None;
+        }
         match (self.permits(&action, view), action) {
             (Ok(_), Action::Session(command)) => self.submit(command, view),
             (Ok(wanted), Action::Ui(ui)) => {
@@ -510,6 +527,10 @@ impl App {
             Ui::Predict(whose) => self.predict(whose, view),
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
+            Ui::Log => self.overlay = Overlay::Solver(solver::Reader::new(solver::Page::Log)),
+            Ui::Parameters => {
+                self.overlay = Overlay::Solver(solver::Reader::new(solver::Page::Parameters));
+            }
             Ui::Help => self.overlay = Overlay::Help(Help::new(Listing::Actions)),
             Ui::Keys => self.overlay = Overlay::Help(Help::new(Listing::Keys)),
             Ui::Copy(what) => return self.copy(what, view),

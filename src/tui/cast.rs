@@ -26,14 +26,15 @@ const LONGEST: f64 = 6.0;
 /// Seconds that the first screen stays.
 const FIRST: f64 = 2.5;
 
-/// The film of a journal, which is replayed for it.
+/// The film of a journal, which is replayed for it in a session at its start.
 ///
 /// # Errors
 /// If the journal's scene is unsound, or it does not lead to the same states again.
-pub fn film(record: &Record) -> Result<String, JournalError> {
+pub fn film(record: &Record, session: Session) -> Result<String, JournalError> {
     let model = record.scene()?.model;
     let mut film = Film::new(&record.header.name);
-    let session = record.replay_seen(&mut |session, entry| film.show(session, &model, entry))?;
+    let see = &mut |session: &Session, entry: Option<&Entry>| film.show(session, &model, entry);
+    let session = record.replay_in(session, see)?;
     film.end(&session);
     Ok(film.text)
 }

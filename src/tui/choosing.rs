@@ -156,6 +156,7 @@ impl Preview {
             background: None,
             aside: String::new(),
             start_gaps: "",
+            guest: None,
             cursor: 0,
             running: false,
             residuals: Vec::new(),

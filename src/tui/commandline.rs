@@ -7,6 +7,7 @@ use crate::tui::theme::Theme;
 use crossterm::event::{Event, KeyEvent};
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
+use std::borrow::Cow;
 use tui_input::{Input, InputRequest, backend::crossterm::EventHandler};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -150,7 +151,9 @@ impl CommandLine {
     /// What the footer says while the line is open: the completions, or what the action takes.
     pub fn hint(&self, context: &Context, width: usize, theme: &Theme) -> Vec<Line<'static>> {
         if let Some((candidates, at)) = &self.completions {
-            let words = candidates.iter().map(|candidate| self.told(candidate));
+            let words = candidates
+                .iter()
+                .map(|candidate| self.told(candidate, context));
             return completions(words, *at, width, theme);
         }
         let name = self.text().split_whitespace().next();
@@ -162,6 +165,15 @@ impl CommandLine {
             (Purpose::Node, _) => {
                 "a name or a part of it; Enter goes to the next, Enter alone to the next of before"
                     .into()
+            }
+            (Purpose::Command, Some(Ok(entry))) if entry.offered(context).is_err() => {
+                let why = entry.offered(context).err().unwrap_or_default();
+                format!("{} {}   not here: {why}", entry.name, entry.arguments)
+            }
+            (Purpose::Command, Some(Ok(entry)))
+                if entry.name == "set" && context.offers.is_some() =>
+            {
+                self.parameter(entry, context)
             }
             (Purpose::Command, Some(Ok(entry))) => {
                 let keys = keys(entry, context);
@@ -177,8 +189,52 @@ impl CommandLine {
         lines.map(line).collect()
     }
 
+    /// What there is to say of the parameter that is being set, or of all of them.
+    fn parameter(&self, entry: &Entry, context: &Context) -> String {
+        let rest = self.text().trim_start().split_once(char::is_whitespace);
+        match rest.and_then(|(_, rest)| action::parameter(rest, context)) {
+            Some((known, _)) => {
+                let now = action::present(known, context);
+                let about = if known.about.is_empty() { "" } else { ": " };
+                format!(
+                    "set {}: {}, now {now}{about}{}",
+                    known.name, known.range, known.about
+                )
+            }
+            None => {
+                let names = context
+                    .offers
+                    .into_iter()
+                    .flat_map(|offers| &offers.parameters);
+                let names: Vec<&str> = names.map(|known| known.name.as_str()).collect();
+                format!(
+                    "{} NAME VALUE   of: {}   (:parameters tells more)",
+                    entry.name,
+                    names.join(", ")
+                )
+            }
+        }
+    }
+
     /// What of a completion is shown: the word that it completes, of a path the last part.
-    fn told<'a>(&self, candidate: &'a str) -> &'a str {
+    fn told<'a>(&self, candidate: &'a str, context: &Context) -> Cow<'a, str> {
+        // Colour alone would not tell what is not offered.
+        let grey = |name: &str| {
+            context
+                .entry(name)
+                .is_ok_and(|entry| entry.offered(context).is_err())
+        };
+        if self.purpose == Purpose::Command
+            && !candidate.trim().contains(' ')
+            && grey(candidate.trim())
+        {
+            return Cow::Owned(format!("({candidate})"));
+        }
+        Cow::Borrowed(self.word(candidate))
+    }
+
+    /// The word that a candidate completes.
+    fn word<'a>(&self, candidate: &'a str) -> &'a str {
         let name = candidate.split_whitespace().next();
         let paths = name.is_some_and(action::takes_path) && self.purpose == Purpose::Command;
         if !paths {
@@ -200,7 +256,7 @@ const COMPLETIONS: usize = 6;
 
 /// Completions beside each other, in several rows where one has no room for them; the one that is shown is among them.
 fn completions<'a>(
-    words: impl Iterator<Item = &'a str>,
+    words: impl Iterator<Item = Cow<'a, str>>,
     at: usize,
     width: usize,
     theme: &Theme,
@@ -208,7 +264,7 @@ fn completions<'a>(
     let mut rows: Vec<Vec<Span>> = vec![Vec::new()];
     let (mut used, mut here) = (0, 0);
     for (index, word) in words.enumerate() {
-        let word = paint::cut(word, width.saturating_sub(1));
+        let word = paint::cut(&word, width.saturating_sub(1));
         let wide = 1 + word.width();
         if used > 0 && used + wide > width {
             rows.push(Vec::new());
@@ -248,7 +304,18 @@ fn keys(entry: &'static Entry, context: &Context) -> String {
 fn choices(text: &str, context: &Context) -> String {
     match action::complete(text.trim_start(), context) {
         found if found.is_empty() => "no action is called so; Esc and ? list them".into(),
-        found => found.join("  "),
+        found => {
+            let grey = |name: &String| {
+                context
+                    .entry(name.trim())
+                    .is_ok_and(|entry| entry.offered(context).is_err())
+            };
+            let told = found.iter().map(|name| match grey(name) {
+                true => format!("({})", name.trim()),
+                false => name.clone(),
+            });
+            told.collect::<Vec<_>>().join("  ")
+        }
     }
 }
 

@@ -121,10 +121,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     canvas.render(buffer);
     for (index, point) in shown.iter().enumerate() {
         let at = |value: f64| (column(index), scale.height(value));
-        for value in [Some(point.limit), point.other_limit].into_iter().flatten() {
+        let limits = [Some(point.limit), point.other_limit].into_iter().flatten();
+        for value in limits.filter(|limit| !limit.is_nan()) {
             limit(buffer, frame, at(value), spread, theme);
         }
-        frame.mark(buffer, at(point.other), "○", theme.faint);
+        if !point.other.is_nan() {
+            frame.mark(buffer, at(point.other), "○", theme.faint);
+        }
         let good = point.main <= point.limit;
         let style = if good { theme.good } else { theme.strong };
         frame.mark(buffer, at(point.main), "●", style);

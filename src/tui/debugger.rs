@@ -278,7 +278,7 @@ impl Debugger {
             let moved = self.advance();
             if self.is_busy() {
                 if let Some(reply) = self.session.as_mut().and_then(Session::wait) {
-                    self.tell(reply);
+                    self.ended(reply);
                 }
                 continue;
             }
@@ -328,10 +328,44 @@ impl Debugger {
         }
     }
 
+    /// Says what a job led to. A solver that was lost is told until a key is pressed, and what was typed ahead of it is forgotten:
+    /// it would start it anew.
+    fn ended(&mut self, reply: Reply) {
+        let lost = self
+            .session
+            .as_ref()
+            .is_some_and(|session| session.lost().is_some());
+        if lost {
+            self.app.ahead.forget();
+            if let Some(tutor) = &mut self.app.lesson {
+                tutor.failed();
+            }
+            self.app.say("");
+            self.app.notice = Some(shown::line(&reply.0).into_owned());
+            return;
+        }
+        self.tell(reply);
+    }
+
+    /// Hears what an attached solver says. Returns whether there was anything.
+    fn hear(&mut self) -> bool {
+        let Some(log) = self.session.as_ref().and_then(Session::log) else {
+            return false;
+        };
+        let (any, told) = self.app.heard.hear(log);
+        if let Some(told) = told
+            && self.app.notice.is_none()
+        {
+            self.app.notice = Some(told);
+        }
+        any
+    }
+
     /// Says what a command led to, unless the status at the top says the same.
     fn tell(&mut self, Reply(text): Reply) {
         let known = self.session.as_ref().and_then(|session| {
             match (session.is_running(), &session.frame().event) {
+                // What the solver does again is told above.
                 (true, _) => Some(text.clone()),
                 (false, Some(event)) => Some(report::outcome(session.model(), event)),
                 (false, None) => None,
@@ -427,7 +461,7 @@ impl Debugger {
     fn open(&mut self, mut session: Session) {
         let resumed = session.journal().is_some();
         // A journal that was opened goes on itself.
-        if self.keeps && !resumed {
+        if self.keeps && !resumed && !session.offers().past {
             session.keep_at_default_place();
         }
         (self.measuring, self.app.measuring) = (None, None);
@@ -453,6 +487,11 @@ impl Debugger {
         self.app.lesson = Some(tutor);
         self.app.reading = Reading::default();
         self.app.say("");
+    }
+
+    /// Whether the solver has done more than was gathered the last time.
+    pub fn is_behind(&self) -> bool {
+        self.session.as_ref().is_some_and(Session::is_behind)
     }
 
     /// Gathers what the solver did and does what waited for that. Returns whether there is something new to draw.
@@ -481,8 +520,9 @@ impl Debugger {
         let reply = session.poll();
         let said = reply.is_some();
         if let Some(reply) = reply {
-            self.tell(reply);
+            self.ended(reply);
         }
+        let heard = self.hear();
         let Some(session) = &self.session else {
             return said;
         };
@@ -498,7 +538,7 @@ impl Debugger {
                 "the solver broke down, please report this: {message}"
             ));
         }
-        measured || seen || said || grown || failed || was_busy != busy
+        measured || heard || seen || said || grown || failed || was_busy != busy
     }
 
     /// Asks for what the panes would tell of the shown iteration and the selected node. Returns whether anything new is

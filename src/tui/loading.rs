@@ -1,6 +1,7 @@
 //! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
 //! while.
 
+use crate::attach::past;
 use crate::format::SceneError;
 use crate::record::journal::{self, Journal, JournalError, Record};
 use crate::scene::Scene;
@@ -20,6 +21,9 @@ pub enum NotLoaded {
     /// The journal is not one, is in use, or leads elsewhere.
     #[error(transparent)]
     Journal(#[from] JournalError),
+    /// The kept exchange is damaged.
+    #[error("{0}")]
+    Kept(String),
     /// The thread that read has ended without an answer.
     #[error("reading it broke down")]
     BrokeDown,
@@ -48,6 +52,10 @@ impl Loading {
             if journal::is_named_so(Path::new(&name)) {
                 let session = resumed(Path::new(&name));
                 return Loaded::Scene(session.map(Box::new).map_err(NotLoaded::from));
+            }
+            if let Some(kept) = past::file(&name) {
+                let session = kept.map(Session::kept).map(Box::new);
+                return Loaded::Scene(session.map_err(|why| NotLoaded::Kept(why.of(&name))));
             }
             let scene = Scene::open(&name, &[]).map_err(NotLoaded::from);
             Loaded::Scene(scene.map(|scene| Box::new(Session::new(scene))))

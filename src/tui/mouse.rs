@@ -90,6 +90,12 @@ impl App {
                 }
                 return None;
             }
+            Overlay::Solver(_) => {
+                for _ in 0..LINES {
+                    self.solver_key(key, view);
+                }
+                return None;
+            }
             Overlay::Manual(reader) => {
                 for _ in 0..LINES {
                     reader.scroll(up);

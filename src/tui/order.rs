@@ -58,7 +58,7 @@ fn margin(slave: usize, view: &View) -> Option<f64> {
             event.before.scale
         }
         Tested::Slip | Tested::Room | Tested::Gap => view.model.length,
-        Tested::Cover | Tested::Change => 1.0,
+        Tested::Cover | Tested::Change | Tested::Own => 1.0,
     };
     tests
         .map(|test| (test.margin / size(test.tested)).abs())

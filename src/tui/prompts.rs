@@ -92,10 +92,23 @@ impl App {
         let body = screen::body(&screen::places(self, view, self.area), view);
         // Without the frame.
         let size = body.inner(Margin::new(1, 1));
+        let open = context(view, self.selected, &[]);
         let Overlay::Help(help) = &mut self.overlay else {
             return None;
         };
-        if !help.key(name, size, &self.keymap) {
+        if !help.key(name, size, &self.keymap, &open) {
+            self.close(view);
+        }
+        None
+    }
+
+    pub(super) fn solver_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+        let body = screen::body(&screen::places(self, view, self.area), view);
+        let size = body.inner(Margin::new(1, 1));
+        let Overlay::Solver(reader) = &mut self.overlay else {
+            return None;
+        };
+        if !reader.key(name, size, view) {
             self.close(view);
         }
         None
@@ -216,10 +229,19 @@ impl App {
     pub fn question(&self, view: Option<&View>) -> Option<String> {
         let view = view?;
         match &self.overlay {
-            Overlay::Mode => Some(format!(
-                "mode of {}:  f free   s sliding   x fixed   (a capital holds it until M releases)",
-                view.slave(self.selected)
-            )),
+            Overlay::Mode => {
+                let held = match view.guest.map(|guest| guest.offers) {
+                    Some(offers) if !offers.hold => "the solver cannot hold it",
+                    Some(offers) if !offers.force => {
+                        "capitals: the solver can only hold it, until M releases"
+                    }
+                    _ => "a capital holds it until M releases",
+                };
+                Some(format!(
+                    "mode of {}:  f free   s sliding   x fixed   ({held})",
+                    view.slave(self.selected)
+                ))
+            }
             Overlay::Answer => Some(self.asked(view)),
             Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
                 "new increment (now {}): ",

@@ -90,7 +90,11 @@ impl App {
         let tutor = self.lesson.as_ref()?;
         let covered = matches!(
             self.overlay,
-            Overlay::Help { .. } | Overlay::Manual(_) | Overlay::Chooser(_) | Overlay::Chart(_)
+            Overlay::Help { .. }
+                | Overlay::Manual(_)
+                | Overlay::Chooser(_)
+                | Overlay::Chart(_)
+                | Overlay::Solver(_)
         );
         if self.area.is_empty() || covered {
             return None;

@@ -13,7 +13,7 @@ use crossterm::event;
 use ratatui::layout::Rect;
 use signal_hook::consts::SIGHUP;
 use std::io::{self, IsTerminal};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Why the debugger could not start, or had to end.
 #[derive(Debug, thiserror::Error)]
@@ -142,6 +142,7 @@ const BUSY: Duration = Duration::from_millis(40);
 
 fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     let mut changed = true;
+    let mut drawn = Instant::now();
     while signals.end().is_none() {
         changed |= debugger.advance();
         while let Some(outside) = debugger.outside.pop_front() {
@@ -150,12 +151,20 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
                 return Ok(());
             }
         }
-        if std::mem::take(&mut changed) {
+        // Keys are looked at between any two slices of a fast run, and the screen follows it at its own pace.
+        let behind = debugger.is_behind();
+        if changed && (!behind || drawn.elapsed() >= BUSY) {
+            changed = false;
             let app = &debugger.app;
             debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
+            drawn = Instant::now();
         }
         let works = debugger.is_busy() || debugger.loading.is_some() || debugger.looking.is_busy();
-        let wait = if works { BUSY } else { IDLE };
+        let wait = match (behind, works) {
+            (true, _) => Duration::ZERO,
+            (false, true) => BUSY,
+            (false, false) => IDLE,
+        };
         let mut ready = event::poll(wait)?;
         while ready {
             changed = true;

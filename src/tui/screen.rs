@@ -19,6 +19,7 @@ use crate::tui::panes::nodes;
 use crate::tui::panes::remedies;
 use crate::tui::panes::residual;
 use crate::tui::panes::shape;
+use crate::tui::panes::solver;
 use crate::tui::panes::status;
 use crate::tui::panes::timeline;
 use crate::tui::panes::workprecision;
@@ -50,8 +51,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     let places = places(app, view, area);
     let body = body(&places, view);
     match (&app.overlay, view) {
-        (Overlay::Help(help), _) => help::draw(buffer, body, help, &app.theme, &app.keymap),
+        (Overlay::Help(help), _) => {
+            let context = app.context(view, &[]);
+            help::draw(buffer, body, help, &app.theme, &app.keymap, &context);
+        }
         (Overlay::Manual(reader), _) => manual::draw(buffer, body, reader, &app.theme),
+        (Overlay::Solver(reader), _) => solver::draw(buffer, body, reader, view, &app.theme),
         (Overlay::Chart(page), _) => workprecision::draw(buffer, body, page, &app.theme),
         (Overlay::Chooser(chooser), _) => {
             let picture = chooser::draw(buffer, body, chooser, app);

@@ -281,8 +281,3 @@ fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
 pub fn obey(signal: i32) -> io::Result<()> {
     low_level::emulate_default_handler(signal)
 }
-
-/// Columns of the terminal that the program runs in; 80 where that cannot be told.
-pub fn width() -> usize {
-    crossterm::terminal::size().map_or(80, |(columns, _)| columns.into())
-}

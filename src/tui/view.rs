@@ -1,9 +1,11 @@
 //! What the panes show: a borrowed, read-only look at a session.
 
 use crate::action::Context;
+use crate::attach::Log;
 use crate::contact::record::{ContactRecord, Forced};
 use crate::explain::examination::Examination;
 use crate::explain::influence::Push;
+use crate::explain::number;
 use crate::explain::round_off::RoundOff;
 use crate::history::frame::Frame;
 use crate::history::strip::Strip;
@@ -15,6 +17,7 @@ use crate::session::Session;
 use crate::session::background::Background;
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervene::Intervention;
+use crate::step::solver::Offers;
 use crate::teach;
 
 /// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
@@ -36,6 +39,8 @@ pub struct View<'a> {
     pub background: Option<&'a Background>,
     /// The start gaps in words; empty where there are none.
     pub start_gaps: &'a str,
+    /// The solver, where it is an attached one.
+    pub guest: Option<Guest<'a>>,
     /// Which of them is shown.
     pub cursor: usize,
     /// Whether the solver is at work.
@@ -44,6 +49,19 @@ pub struct View<'a> {
     pub residuals: Vec<(u32, Norms)>,
     /// The branch, if there are several, and the watches with their values, in a line; empty where there is neither.
     pub aside: String,
+}
+
+/// An attached solver.
+#[derive(Debug, Clone, Copy)]
+pub struct Guest<'a> {
+    /// What it offers.
+    pub offers: &'a Offers,
+    /// What it says besides.
+    pub log: &'a Log,
+    /// Whether it is gone; the next step starts it anew.
+    pub lost: bool,
+    /// What it does again in the running job, before it goes on.
+    pub again: &'a str,
 }
 
 impl<'a> View<'a> {
@@ -58,6 +76,12 @@ impl<'a> View<'a> {
             tree: Some(session.tree()),
             background: Some(session.background()),
             start_gaps: session.start_gaps(),
+            guest: session.log().map(|log| Guest {
+                offers: session.offers(),
+                log,
+                lost: session.lost().is_some(),
+                again: session.again(),
+            }),
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.residual_history(),
@@ -182,6 +206,37 @@ impl<'a> View<'a> {
         slides && !settled && (record.t_max - record.t_max_used).abs() > least
     }
 
+    /// Whether a number is one that an attached solver does not tell.
+    pub fn is_untold(&self, value: f64) -> bool {
+        self.guest.is_some() && value.is_nan()
+    }
+
+    /// A number as a cell of a table ([`number::cell`]); a dash where an attached solver does not tell it.
+    pub fn cell(&self, value: f64, width: usize) -> String {
+        match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
+            true => format!(
+                " {:<width$}",
+                number::UNTOLD,
+                width = width.saturating_sub(1)
+            ),
+            false => number::cell(value, width),
+        }
+    }
+
+    /// The same with ten digits ([`number::long`]).
+    pub fn long(&self, value: f64) -> String {
+        match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
+            true => number::UNTOLD.into(),
+            false => number::long(value),
+        }
+    }
+
+    /// Whether an attached solver decided otherwise on a node than the rules that it names want on the same numbers.
+    pub fn differs(&self, slave: usize) -> bool {
+        let record = self.record(slave).filter(|_| self.guest.is_some());
+        record.is_some_and(|record| record.differs())
+    }
+
     /// Where a node is: its place in the reference shape, displaced.
     pub fn place(&self, node: usize) -> [f64; 2] {
         self.model.place(&self.frame().state.u, node)
@@ -199,6 +254,8 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         scene,
         tree: view.and_then(|view| view.tree),
         selected,
+        offers: view.and_then(|view| view.guest).map(|guest| guest.offers),
+        state: view.map(|view| &view.frame().state),
         scenes,
         lessons: teach::list(),
         keymap: None,

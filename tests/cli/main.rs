@@ -11,6 +11,8 @@ mod study;
 mod map;
 // What is known from elsewhere is found.
 mod benchmarks;
+// Shards put together are the whole.
+mod shards;
 // Work-precision charts draw what they measured, failures too.
 mod chart;
 // One thread or two, one job or two: the same bytes.
@@ -19,5 +21,7 @@ mod threads;
 mod export;
 // Files for ParaView and for other solvers.
 mod vtu;
+// Shells complete command lines, and man shows the pages.
+mod shells;
 // Wrong kinds of files, mistyped words, readers that have seen enough.
 mod manners;

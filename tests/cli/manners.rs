@@ -121,10 +121,12 @@ fn the_help_has_the_subcommands_in_groups() {
     let wanted = [
         "Solve:",
         "Debug:",
+        "Attach:",
         "Record:",
         "Sweep:",
         "Learn:",
         "Files:",
+        "Install:",
         "Arguments:",
         "Options:",
     ];

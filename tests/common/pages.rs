@@ -56,6 +56,7 @@ fn made(marker: &str) -> Option<String> {
         "screen" => Some(screen(what)),
         "lesson" => Some(lesson(what)),
         "past" => Some(past(what)),
+        "python" => Some(python(what)),
         "keys" => list(stickslip::action::markdown()),
         "commands" => list(stickslip::cli::commands()),
         "reference" => list(markdown::types().unwrap()),
@@ -118,6 +119,15 @@ fn past(what: &str) -> String {
     fenced(&stickslip::tui::past::picture(run, keys, width, height))
 }
 
+/// A program of this repository as it stands.
+fn python(file: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    format!(
+        "```python\n{}```\n",
+        fs::read_to_string(root.join(file)).unwrap()
+    )
+}
+
 fn fenced(picture: &str) -> String {
     let lines: Vec<&str> = picture.lines().map(str::trim_end).collect();
     format!("```text\n{}\n```\n", lines.join("\n").trim_end())
@@ -157,7 +167,9 @@ pub fn arguments(line: &str) -> Option<Vec<&str>> {
         let rest = line.strip_prefix("stickslip")?;
         (rest.is_empty() || rest.starts_with(' ')).then_some(rest)
     })?;
-    let mut words: Vec<&str> = rest.split_whitespace().collect();
+    let words = rest.split_whitespace();
+    // What stands behind is the shell's.
+    let mut words: Vec<&str> = words.take_while(|word| *word != ">").collect();
     // A subcommand that is only named need not have what it takes.
     if let [_] | [_, "--csv"] = words[..] {
         words.truncate(1);

@@ -37,5 +37,7 @@ mod licences;
 mod versions;
 // The pages of the manual show what the program shows, and are found.
 mod manual;
+// Every message that the manual shows of the protocol is one.
+mod protocol;
 // The README shows what the program shows.
 mod readme;

@@ -1,6 +1,9 @@
 //! The examples of the library run, and write what they promise.
 
 #[allow(dead_code, reason = "the test calls what main calls")]
+#[path = "../examples/attach.rs"]
+mod attach;
+#[allow(dead_code, reason = "the test calls what main calls")]
 #[path = "../examples/force_a_mode.rs"]
 mod force_a_mode;
 #[allow(dead_code, reason = "the test calls what main calls")]
@@ -84,5 +87,29 @@ fn a_study_runs_a_scene_with_several_frictions() {
         "20 degrees: u_x = -0.014700 at P = 0.250, Finished\n\
          30 degrees: u_x = -0.012701 at P = 0.250, Finished\n\
          40 degrees: u_x = -0.010887 at P = 0.250, Finished\n"
+    );
+}
+
+#[test]
+fn a_solver_of_ones_own_is_stepped_forced_and_gone_back_with() {
+    let out = written!(attach);
+    // K u = f + p with the first three nodes on the floor: f_1 = 100 · 0.01 + 5, and the fourth hangs at (5 + 3) / 200.
+    assert!(
+        out.contains("1.3 SSSO F_n = 6.000 5.000 1.000 0.000, accepted\n"),
+        "{out}"
+    );
+    // With the third held away its springs pull at the second: 300 u_3 = 100 (u_2 + u_4) − 5, 200 u_4 = 100 u_3 − 5.
+    let u_3 = (-1.0 - 2.5 - 5.0) / 250.0;
+    let f_2 = 5.0 - 3.0 - 100.0 * u_3;
+    assert!(
+        out.contains(&format!(
+            "1.3 SSOO F_n = 6.000 {f_2:.3} 0.000 0.000, accepted\n"
+        )),
+        "{out}"
+    );
+    // The way without it is there as before, and goes on.
+    assert!(
+        out.ends_with("2.1 SSSO F_n = 11.000 10.000 8.500 0.000, accepted\nin b1: start, step 4\n"),
+        "{out}"
     );
 }

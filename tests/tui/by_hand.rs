@@ -166,6 +166,7 @@ pub fn event(position: (u32, u32, u32), nodes: Vec<ContactRecord>, outcome: Outc
         drag: 0.0,
         nodes,
         before: Norms::default(),
+        words: Arc::default(),
         outcome,
     }
 }
@@ -235,6 +236,7 @@ pub fn view<'a>(model: &'a Model, frames: &'a [Frame]) -> View<'a> {
         tree: None,
         background: None,
         start_gaps: "",
+        guest: None,
         cursor: frames.len() - 1,
         running: false,
         residuals: residuals(),

@@ -3,6 +3,7 @@
 use crate::terminal::cells;
 use std::path::Path;
 use stickslip::record::journal::Record;
+use stickslip::session::Session;
 use stickslip::tui::app::App;
 use stickslip::tui::cast::{SIZE, film};
 use stickslip::tui::screen;
@@ -34,8 +35,13 @@ fn the_last_screen_of_a_film_is_that_of_the_session() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/journals");
     for name in ["forced-and-turned.journal", "up-the-ladder.journal"] {
         let record = Record::read(&folder.join(name)).unwrap();
-        let made = film(&record).unwrap();
-        assert_eq!(made, film(&record).unwrap(), "not the same bytes");
+        let session = || Session::new(record.scene().unwrap());
+        let made = film(&record, session()).unwrap();
+        assert_eq!(
+            made,
+            film(&record, session()).unwrap(),
+            "not the same bytes"
+        );
         let mut terminal = vt100::Parser::new(cells(SIZE.1), cells(SIZE.0), 0);
         for line in made.lines().skip(1) {
             let (_, rest) = line.trim_end_matches(']').split_once(", ").unwrap();

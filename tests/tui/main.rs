@@ -33,3 +33,7 @@ mod session_files;
 mod past;
 // A journal as a film shows the session's screens.
 mod film;
+// A solver of another's, attached; and an exchange with one that was kept.
+mod attached;
+// The report of a version asks the terminal.
+mod report;

@@ -2,7 +2,7 @@
 
 use crate::contact::corner::{Side, split};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::table2::Decision;
+use crate::contact::table2::{Decision, Rule};
 use crate::model::{Friction, Mode};
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +53,14 @@ pub struct SideForce {
 }
 
 impl ContactRecord {
+    /// Whether an attached solver takes another mode next than the rules by which it says that it decides want on the same numbers,
+    /// and nobody forces it.
+    pub fn differs(&self) -> bool {
+        let decision = &self.decision;
+        let own = !matches!(decision.rule, Rule::Held | Rule::Waits);
+        own && self.forced == Forced::No && decision.wanted != decision.next
+    }
+
     /// What each of the two sides that hold the node gives, in the order of the walk; `friction` is that of one side. With
     /// friction the split is not unique: it is the one of least norm ([`split`]). `None` where one side alone holds the node, and
     /// where both together cannot give the force.

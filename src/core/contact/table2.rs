@@ -57,6 +57,8 @@ pub enum Rule {
     Sweeps,
     /// The state that was found consistent, by pivoting, by sweeps, or by the census.
     Found,
+    /// An attached solver decided by rules of its own.
+    Theirs,
 }
 
 /// What an inequality of Table 2 compares.
@@ -80,6 +82,8 @@ pub enum Tested {
     Cover,
     /// The change of the forces in the last sweep of Gauss-Seidel against 0 (relative).
     Change,
+    /// What an attached solver compares by rules of its own, as far as it tells that (its unit).
+    Own,
 }
 
 /// One inequality of Table 2 with its numbers.

@@ -490,6 +490,7 @@ impl Source for Bodies {
                 pressure(&self.model.contacts, at.contacts, slaves, *shear)
             }
             Watched::Arc => at.arc,
+            Watched::Told { .. } => f64::NAN,
             // The load is that of the displacements at hand, not the one that is aimed at next.
             Watched::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);

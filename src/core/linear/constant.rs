@@ -421,6 +421,7 @@ impl Source for ConstantSource {
             // Its contacts have no areas.
             Watched::Pressure { .. } => 0.0,
             Watched::Arc => at.arc,
+            Watched::Told { .. } => f64::NAN,
             // Nothing is supported here.
             Watched::Reaction { .. } => 0.0,
         }

@@ -57,6 +57,20 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// A node that starts free, with friction, and may touch these surfaces.
+    pub fn new(node: usize, surfaces: Vec<usize>, friction: Friction) -> Self {
+        Contact {
+            node,
+            surfaces,
+            friction,
+            start: Mode::Free,
+            state: InitialState::default(),
+            overlap: 0.0,
+            bond: Bond::Hard,
+            area: None,
+        }
+    }
+
     /// Contact pressure and shear (force by undeformed area) of these forces along n and t. `None` without an area.
     pub fn pressure(&self, f_n: f64, f_t: f64) -> Option<[f64; 2]> {
         let area = self.area.filter(|area| *area > 0.0)?;

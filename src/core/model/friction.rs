@@ -32,7 +32,27 @@ documented! {
     }
 }
 
+/// Angles that are looked at on either side of arctan μ, one bit apart: that, its change to degrees, and tan with its own change
+/// back round off by less.
+const NEAR: u64 = 8;
+
 impl Friction {
+    /// With a coefficient of friction. Of the angles that give it back to the last bit, it is the one that is shortest to write.
+    pub fn from_coefficient(mu: f64, cohesion: f64) -> Friction {
+        let near = mu.atan().to_degrees();
+        let of = |angle| Friction { angle, cohesion };
+        let beside = (0..=NEAR).flat_map(|k| {
+            let bits = near.to_bits();
+            [bits.saturating_sub(k), bits.saturating_add(k)].map(f64::from_bits)
+        });
+        let exact = beside
+            .map(of)
+            .filter(|friction| friction.coefficient() == mu);
+        exact
+            .min_by_key(|friction| friction.angle.to_string().len())
+            .unwrap_or(of(near))
+    }
+
     /// Coefficient of friction, tan φ.
     pub fn coefficient(&self) -> f64 {
         self.angle.to_radians().tan()
@@ -60,5 +80,25 @@ documented! {
         pub slip: f64,
         /// Ratio of tangential to normal travel of a node that has just touched.
         pub ratio: f64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coefficient_comes_back_to_the_last_bit_and_a_round_angle_too() {
+        for tenth in 0..899 {
+            let angle = f64::from(tenth) / 10.0;
+            let friction = Friction {
+                angle,
+                cohesion: 2.0,
+            };
+            let mu = friction.coefficient();
+            let back = Friction::from_coefficient(mu, 2.0);
+            assert_eq!(back.coefficient().to_bits(), mu.to_bits(), "{angle}");
+            assert_eq!(back, friction);
+        }
     }
 }

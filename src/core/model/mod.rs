@@ -138,11 +138,86 @@ pub enum Watched {
         /// Whether it is the shear.
         shear: bool,
     },
+    /// A number that an attached solver tells.
+    Told {
+        /// Its place among those that it tells.
+        number: usize,
+        /// What kind of number it is.
+        kind: ToldKind,
+    },
     /// Arc along the path of equilibrium from the start of the history, in what [`ArcLength::along`] measures.
     Arc,
 }
 
+/// What kind of number an attached solver tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ToldKind {
+    /// A length.
+    Length,
+    /// A force.
+    Force,
+    /// A force by area.
+    Pressure,
+    /// A count.
+    Count,
+    /// It does not say.
+    #[default]
+    Other,
+}
+
 impl Model {
+    /// A scene of which another solver knows what deforms: nodes, masters and contacts, load factors from 0 to 1 in one
+    /// increment, and no unknowns. What else is known is changed in it.
+    pub fn of_contacts(
+        title: &str,
+        nodes: Vec<Node>,
+        surfaces: Vec<Surface>,
+        contacts: Vec<Contact>,
+    ) -> Model {
+        let count = nodes.len();
+        let along = |axis: usize| {
+            let at = nodes.iter().map(|node| node.at[axis]);
+            let (low, high) = at.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+            high - low
+        };
+        let length = match along(0).hypot(along(1)) {
+            length if length > 0.0 => length,
+            // One node has no size, and its motions are compared with something all the same.
+            _ => 1.0,
+        };
+        Model {
+            title: title.to_owned(),
+            about: String::new(),
+            nodes,
+            bodies: Vec::new(),
+            surfaces,
+            contacts,
+            dofs: Dofs {
+                first: (0..count).map(|node| 2 * node).collect(),
+                count: vec![2; count],
+                equation: vec![None; 2 * count],
+                equations: 0,
+                inner: 0,
+            },
+            loads: Vec::new(),
+            pressures: Vec::new(),
+            prescribed: Vec::new(),
+            path: vec![0.0, 1.0],
+            increment: 1.0,
+            increments: Vec::new(),
+            least: None,
+            jumps: Jumps::default(),
+            control: Control::default(),
+            arc: ArcLength::default(),
+            settings: Settings::default(),
+            monitors: Vec::new(),
+            budget: f64::INFINITY,
+            length,
+        }
+    }
+
     /// Size of the increments on a leg of the path, as the scene has them.
     pub fn on_leg(&self, leg: usize) -> f64 {
         on_leg(&self.increments, self.increment, leg)

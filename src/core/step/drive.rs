@@ -1,7 +1,9 @@
-//! Driving a stepper: the one loop over minor iterations, and how it ended.
+//! Driving a solver: the one loop over minor iterations, and how it ended.
 
 use crate::step::event::{Failure, Outcome};
+use crate::step::solver::{Lost, Solver};
 use crate::step::stepper::Stepper;
+use std::convert::Infallible;
 use std::ops::ControlFlow;
 
 /// How far a drive goes at most. It always ends with the history, and unless told otherwise at the first failure.
@@ -62,31 +64,54 @@ pub enum RunEnd<S> {
     Stopped(S),
 }
 
+/// Steps until the end, with the observer looking (and, if it wants, intervening) after every minor iteration.
+///
+/// # Errors
+/// [`Lost`] where the solver cannot go on.
+pub fn drive<T: Solver + ?Sized, S>(
+    solver: &mut T,
+    until: Until<'_>,
+    observe: impl FnMut(&mut T) -> ControlFlow<S>,
+) -> Result<RunEnd<S>, Lost> {
+    drive_by(solver, T::step, until, observe)
+}
+
+fn drive_by<T: Solver + ?Sized, S, E>(
+    solver: &mut T,
+    step: impl Fn(&mut T) -> Result<bool, E>,
+    until: Until<'_>,
+    mut observe: impl FnMut(&mut T) -> ControlFlow<S>,
+) -> Result<RunEnd<S>, E> {
+    for _ in 0..until.minors {
+        if (until.interrupted)() {
+            return Ok(RunEnd::Interrupted);
+        }
+        if !step(solver)? {
+            return Ok(RunEnd::Finished);
+        }
+        let failed = match &solver.event().outcome {
+            Outcome::Failed(failure) if !until.past_failures => Some(failure.clone()),
+            _ => None,
+        };
+        if let ControlFlow::Break(why) = observe(solver) {
+            return Ok(RunEnd::Stopped(why));
+        }
+        if let Some(failure) = failed {
+            return Ok(RunEnd::Failed(failure));
+        }
+    }
+    Ok(RunEnd::Spent)
+}
+
 impl Stepper {
     /// Steps until the end, with the observer looking (and, if it wants, intervening) after every minor iteration.
     pub fn drive<S>(
         &mut self,
         until: Until<'_>,
-        mut observe: impl FnMut(&mut Stepper) -> ControlFlow<S>,
+        observe: impl FnMut(&mut Stepper) -> ControlFlow<S>,
     ) -> RunEnd<S> {
-        for _ in 0..until.minors {
-            if (until.interrupted)() {
-                return RunEnd::Interrupted;
-            }
-            if self.step().is_none() {
-                return RunEnd::Finished;
-            }
-            let failed = match &self.event.outcome {
-                Outcome::Failed(failure) if !until.past_failures => Some(failure.clone()),
-                _ => None,
-            };
-            if let ControlFlow::Break(why) = observe(self) {
-                return RunEnd::Stopped(why);
-            }
-            if let Some(failure) = failed {
-                return RunEnd::Failed(failure);
-            }
-        }
-        RunEnd::Spent
+        let step = |stepper: &mut Stepper| Ok::<bool, Infallible>(stepper.step().is_some());
+        let Ok(end) = drive_by(self, step, until, observe);
+        end
     }
 }

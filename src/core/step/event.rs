@@ -6,7 +6,7 @@ use crate::interface::method::NotFound;
 use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::Strategy;
+use crate::model::{Model, Strategy};
 use crate::step::detour::Detour;
 use crate::step::major_history::MajorCycle;
 use crate::step::motion::Motion;
@@ -45,8 +45,27 @@ pub struct Event {
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, about which the minor iterations are linearised.
     pub before: Norms,
+    /// Why each contact takes its next mode, in the words of an attached solver; empty where it has none, and for a solver of
+    /// our own.
+    pub words: Arc<Vec<String>>,
     /// What follows from it.
     pub outcome: Outcome,
+}
+
+impl Event {
+    /// The event before the first one.
+    pub fn nothing_yet(model: &Model) -> Event {
+        Event {
+            position: Position::default(),
+            load_factor: 0.0,
+            arc: None,
+            drag: 0.0,
+            nodes: Vec::with_capacity(model.contacts.len()),
+            before: Norms::default(),
+            words: Arc::default(),
+            outcome: Outcome::Minor,
+        }
+    }
 }
 
 /// What follows.
@@ -143,6 +162,18 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// An increment that is accepted, and what is left in it.
+    pub fn accepted(after: Norms, last: bool) -> Outcome {
+        Outcome::Increment {
+            after,
+            unsettled: 0,
+            marked: None,
+            jumped: false,
+            motion: None,
+            last,
+        }
+    }
+
     /// Whether a major iteration ends here, settled or not.
     pub fn ends_major(&self) -> bool {
         !matches!(
@@ -272,5 +303,13 @@ pub enum Failure {
         slave: usize,
         /// Gap that stays (length).
         gap: f64,
+    },
+    /// An attached solver said so.
+    Reported {
+        /// Its words; may be empty.
+        reason: String,
+        /// Residual at the end, relative to the forces, where it said that.
+        #[serde(default)]
+        relative: Option<f64>,
     },
 }

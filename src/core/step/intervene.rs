@@ -3,94 +3,15 @@
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
-use crate::linear::estimate::{Estimate, TooLarge};
+use crate::linear::estimate::Estimate;
 use crate::model::{Friction, Settings, Touch, least};
 use crate::model::{Mode, Model};
 use crate::step::brake::Brake;
 use crate::step::state::{Progress, State, Status};
 use crate::step::sub_increment::SubIncrement;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A change from outside; recorded in snapshots and replayed from them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Intervention {
-    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
-    Force {
-        /// Slave number.
-        slave: usize,
-        /// The mode.
-        mode: Mode,
-        /// Whether it is held until released.
-        hold: bool,
-    },
-    /// Start several slave nodes at once from a state that is known: each in a mode, for the next minor iteration.
-    Assume(Vec<Start>),
-    /// Give a slave node back to Table 2.
-    Release {
-        /// Slave number.
-        slave: usize,
-    },
-    /// Change the increment size and start the present increment again. Where the scene lists increments of each leg of the
-    /// path, the next leg begins with its own.
-    Increment(f64),
-    /// Replace the friction of every slave node.
-    Friction(Friction),
-    /// Replace the friction of each slave node by its own, in the order of the scene.
-    Frictions(Vec<Friction>),
-    /// Replace the settings.
-    Settings(Settings),
-}
-
-/// Why an intervention is refused; the state stays as it was.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Refusal {
-    /// There is nothing left to change.
-    #[error("the history is done; step back first")]
-    Done,
-    /// No contact has this number.
-    #[error("there are {count} slave nodes, numbered from 0; {slave} is none")]
-    NoContact {
-        /// The number that was asked for.
-        slave: usize,
-        /// How many there are.
-        count: usize,
-    },
-    /// A contact without a surface can only be free.
-    #[error("the node is past the end of its surface: it has nothing to touch")]
-    OffSurface,
-    /// A tied contact is fixed for ever.
-    #[error("the node is tied to its surface: it is always fixed")]
-    Tied,
-    /// A friction out of bounds.
-    #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
-    Friction,
-    /// Gaps of the start are long past.
-    #[error(
-        "initial_gaps and adjust_gap are settled when a scene is opened: set them in its file, or with --set"
-    )]
-    StartGaps,
-    /// A limit of no iterations.
-    #[error("limits of iterations are at least 1")]
-    Limits,
-    /// An increment that is no positive number.
-    #[error("an increment is a positive number, not {0}")]
-    Increment(f64),
-    /// The solver that was asked for does not fit the memory.
-    #[error(transparent)]
-    TooLarge(TooLarge),
-}
-
-/// Where a slave node is to start from in the next minor iteration, known from elsewhere.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Start {
-    /// Slave number.
-    pub slave: usize,
-    /// Mode of the next minor iteration.
-    pub mode: Mode,
-    /// T_max, signed (force).
-    pub t_max: f64,
-}
+pub use crate::step::intervention::{Intervention, Refusal, Start, Value};
 
 impl State {
     /// Applies an intervention. The position stays, except that a new increment size starts the present increment
@@ -99,7 +20,8 @@ impl State {
     /// # Errors
     /// A message for values that make no sense, and when the history is done.
     pub fn intervene(&mut self, model: &Model, intervention: &Intervention) -> Result<(), Refusal> {
-        if self.status == Status::Finished {
+        // An attached solver may go on from its end; ours has nothing left to solve.
+        if self.status == Status::Finished && self.outside.is_none() {
             return Err(Refusal::Done);
         }
         let tied = |slave: &usize| model.contacts.get(*slave).is_some_and(|c| c.bond.is_tied());
@@ -124,6 +46,13 @@ impl State {
             }
             Intervention::Frictions(all) => self.set_friction(all)?,
             Intervention::Settings(settings) => self.set(model, settings)?,
+            Intervention::Parameter { name, value } => self.set_parameter(name, value)?,
+        }
+        if let Some(outside) = &mut self.outside {
+            if self.status == Status::Finished {
+                self.status = Status::Running;
+            }
+            outside.asked.push(intervention.clone());
         }
         self.search = Progress::default();
         self.forget_minors();
@@ -231,6 +160,14 @@ impl State {
             return Err(Refusal::TooLarge(why));
         }
         Arc::make_mut(&mut self.controls).settings = *settings;
+        Ok(())
+    }
+
+    fn set_parameter(&mut self, name: &str, value: &Value) -> Result<(), Refusal> {
+        let outside = self.outside.as_mut();
+        let outside = outside.ok_or_else(|| Refusal::NoParameter(name.to_owned()))?;
+        outside.set.retain(|(known, _)| known != name);
+        outside.set.push((name.to_owned(), value.clone()));
         Ok(())
     }
 

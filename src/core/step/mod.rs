@@ -10,7 +10,9 @@
 //!   `turn`: corners of the path, where contacts change their modes.
 //! - `damped`: damped motion past a limit point; [`motion`]: what it carries along.
 //! - [`major_history`]: cycles of major iterations; [`round`]: what makes a cycle of any sequence.
-//! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between.
+//! - [`solver`]: the seam above the stepper, for whatever else can be stepped; `outside`: states of such a solver;
+//!   [`places`]: the tree of those that it has had.
+//! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between, which is an [`intervention`].
 
 mod arc;
 pub mod brake;
@@ -21,14 +23,18 @@ pub mod event;
 mod hold;
 mod increment;
 pub mod intervene;
+pub mod intervention;
 mod jump;
 mod major;
 pub mod major_history;
 mod minor;
 pub mod motion;
+mod outside;
 pub mod pace;
+pub mod places;
 pub mod round;
 mod search;
+pub mod solver;
 pub mod state;
 pub mod stepper;
 pub mod sub_increment;
@@ -41,5 +47,6 @@ mod tests;
 
 pub use drive::{RunEnd, Until};
 pub use event::{Event, Failure, Outcome};
+pub use solver::Solver;
 pub use state::{State, Status};
 pub use stepper::Stepper;

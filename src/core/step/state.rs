@@ -14,6 +14,7 @@ use crate::model::{Control, Friction, Model, Settings, SlipCount};
 use crate::step::brake::Brake;
 use crate::step::detour::Route;
 use crate::step::event::{Failure, Position};
+use crate::step::intervention::{Intervention, Value};
 use crate::step::major_history::MajorHistory;
 use crate::step::motion::Motion;
 use crate::step::pace::Pace;
@@ -84,8 +85,22 @@ pub struct State {
     /// The way round that is tried, where the halves of the increment have failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detour: Option<Route>,
+    /// Where an attached solver is, which keeps what it goes on from itself. `None` for a solver of our own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<Box<Outside>>,
     /// Whether and how it can go on.
     pub status: Status,
+}
+
+/// Where an attached solver is, and what it is to be told before its next iteration.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Outside {
+    /// The number under which the state that it goes on from is known; 0 is the start.
+    pub place: u64,
+    /// What was changed since, in order.
+    pub asked: Vec<Intervention>,
+    /// What its parameters were set to up to here, by name, where that is not what it began with.
+    pub set: Vec<(String, Value)>,
 }
 
 /// Whether the solver can go on.
@@ -216,6 +231,7 @@ impl State {
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             motion: None,
             detour: None,
+            outside: None,
             status: Status::Running,
         };
         state.set_out();

@@ -23,7 +23,7 @@ use crate::linear::singular::Singular;
 use crate::linear::source::{Solved, Source, Work};
 use crate::linear::stability::Stability;
 use crate::model::Model;
-use crate::step::event::{Event, Failure, Outcome, Position};
+use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::{Intervention, Refusal};
 use crate::step::state::{IncrementStart, State, Status};
 use std::any::Any;
@@ -77,7 +77,7 @@ impl Stepper {
         let mut stepper = Stepper {
             state: State::at_start(&model, source.start(), source.history()),
             source,
-            event: nothing_yet(&model),
+            event: Event::nothing_yet(&model),
             linearised: false,
             measured: false,
             norms: Norms::default(),
@@ -99,7 +99,7 @@ impl Stepper {
             return false;
         }
         self.state = State::at_start(model, self.source.start(), self.source.history());
-        self.event = nothing_yet(model);
+        self.event = Event::nothing_yet(model);
         self.norms = Norms::default();
         self.before.clear();
         self.borrowed = None;
@@ -366,18 +366,5 @@ impl Stepper {
     /// What the last minor iteration found at a contact.
     pub(super) fn record(&self, contact: usize) -> &ContactRecord {
         &self.event.nodes[contact]
-    }
-}
-
-/// The event before the first one.
-fn nothing_yet(model: &Model) -> Event {
-    Event {
-        position: Position::default(),
-        load_factor: 0.0,
-        arc: None,
-        drag: 0.0,
-        nodes: Vec::with_capacity(model.contacts.len()),
-        before: Norms::default(),
-        outcome: Outcome::Minor,
     }
 }

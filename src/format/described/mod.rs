@@ -159,6 +159,15 @@ impl Scalar<'_> {
         }
     }
 
+    /// The words that it can be; none where it is no word.
+    pub(crate) fn words(&self) -> &'static [&'static str] {
+        match self {
+            Scalar::Choice(choice) => choice.names(),
+            Scalar::Flag(_) => &["true", "false"],
+            _ => &[],
+        }
+    }
+
     pub(crate) fn set(self, text: &str) -> Result<(), NotSet> {
         let mut own = self;
         own.take(text).ok_or_else(|| NotSet::NoValue {

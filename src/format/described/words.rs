@@ -1,6 +1,6 @@
 //! The words of an enum without fields, as serde reads and writes them.
 
-use crate::format::notation::options;
+use crate::format::notation::line;
 use serde::de::value::Error as Unread;
 use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor};
 use serde::{Serialize, forward_to_deserialize_any};
@@ -35,7 +35,7 @@ pub(super) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
 
 /// The word that serde writes for a value of an enum without fields.
 pub(super) fn word<T: Serialize + DeserializeOwned>(value: &T) -> &'static str {
-    let written = options().to_string(value).unwrap_or_default();
+    let written = line(value).unwrap_or_default();
     let found = words::<T>().iter().find(|word| **word == written);
     found.copied().unwrap_or_default()
 }

@@ -142,7 +142,8 @@ impl Origin {
         }
     }
 
-    fn words(&self) -> String {
+    /// In a sentence.
+    pub fn words(&self) -> String {
         let with = match self.changes.as_slice() {
             [] => String::new(),
             changes => format!(" with {}", changes.join(", ")),
@@ -320,17 +321,39 @@ fn text(
 /// # Errors
 /// Why there is none: that form knows a compliance only, and no cohesion.
 pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, NoExport> {
+    let Total { slaves, w, q } = total(model, problem)?;
+    let of = |slave: &usize| problem.nodes.iter().find(|node| node.slave == *slave);
+    let nodes = || slaves.iter().filter_map(of);
+    if let Some(node) = nodes().find(|node| node.friction.cohesion != 0.0) {
+        let name = names::slave(model, node.slave).to_owned();
+        return Err(NoExport::Cohesive(name));
+    }
+    let mu = nodes().map(|node| node.friction.coefficient()).collect();
+    Ok(Friction2d { w, q, mu })
+}
+
+/// A problem in the total forces of its nodes: (gap, u) = W f + q, n and t of each after the other, with the slave's motion u
+/// along t against its master since the increment began.
+pub struct Total {
+    /// Slave numbers of the nodes.
+    pub slaves: Vec<usize>,
+    /// W, row by row (length by force).
+    pub w: Vec<Vec<f64>>,
+    /// Gaps and motions without any force (length).
+    pub q: Vec<f64>,
+}
+
+/// A problem in total forces.
+///
+/// # Errors
+/// Why there is none: some motion is resisted by nothing, or a support carries what acts on a node.
+pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<Total, NoExport> {
     let here = writable(problem);
     if here.is_empty() {
         return Err(NoExport::NoInterface);
     }
     let problem = problem.reduced(&here).ok_or(NoExport::Singular)?;
     unsupported(model, &problem)?;
-    let cohesive = problem.nodes.iter().find(|n| n.friction.cohesion != 0.0);
-    if let Some(node) = cohesive {
-        let name = names::slave(model, node.slave).to_owned();
-        return Err(NoExport::Cohesive(name));
-    }
     let none = || NoExport::NoMatrix("some motion is resisted by nothing".to_owned());
     let (matrix, mut q, _) = compliance(&problem).ok_or_else(none)?;
     let Matrix::Compliance(w) = matrix else {
@@ -341,12 +364,8 @@ pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, 
         // Slip is that of the master against the slave; u is the slave's.
         pair[1] -= node.state.slipped(&problem.settings);
     }
-    let mu = problem.nodes.iter().map(|n| n.friction.coefficient());
-    Ok(Friction2d {
-        w,
-        q,
-        mu: mu.collect(),
-    })
+    let slaves = problem.nodes.iter().map(|node| node.slave).collect();
+    Ok(Total { slaves, w, q })
 }
 
 /// Refuses nodes whose forces a support carries.

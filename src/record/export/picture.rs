@@ -19,9 +19,9 @@ use crate::model::{BodyKind, Mode, Model, SolidElement};
 use crate::step::event::Outcome;
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
+use crate::study::drawn::PlotError;
 use crate::study::origin;
 use crate::study::placing::{Patch, Placing};
-use crate::study::plot::PlotError;
 use crate::study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest};
 
 /// The whole picture's width, and the height of the shape.

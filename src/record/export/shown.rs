@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::step::event::Event;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
-use crate::study::plot::PlotError;
+use crate::study::drawn::PlotError;
 
 /// Minor iterations that a picture's timeline shows.
 pub const COLUMNS: usize = 60;

@@ -5,7 +5,7 @@ use crate::explain::names;
 use crate::explain::number::plain;
 use crate::history::strip::{PointKind, Strip};
 use crate::model::{Mode, Model};
-use crate::study::plot::PlotError;
+use crate::study::drawn::PlotError;
 use crate::study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 
 /// Size of a cell.

@@ -72,9 +72,7 @@ pub fn scene(scene: &Scene) -> Result<String, NotMade> {
     }
     let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(3);
     let unwritable = |why: String| NotMade::Unwritable(why);
-    let text = notation::options()
-        .to_string_pretty(&scene.spec, layout)
-        .map_err(|e| unwritable(e.to_string()))?;
+    let text = notation::lines(&scene.spec, layout).map_err(|e| unwritable(e.to_string()))?;
     let set: Vec<String> = scene.overrides().map(|(p, v)| format!("{p}={v}")).collect();
     let mut head = format!("// From {}", scene.name.replace('\n', " "));
     if !set.is_empty() {

@@ -16,6 +16,7 @@ mod renewed;
 mod tractions;
 mod volumes;
 
+use super::attached;
 use super::gaps;
 use super::geometry;
 use super::limits;
@@ -31,6 +32,9 @@ pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
+    if let Some(text) = &spec.attached {
+        return attached::compile(spec, text);
+    }
     history::memory(&spec.settings)?;
     check_texts(spec)?;
     check_lengths(spec)?;

@@ -194,6 +194,7 @@ fn bare(friction: FrictionSpec, history: History, settings: Settings) -> Spec {
         history,
         settings,
         monitors: Vec::new(),
+        attached: None,
     }
 }
 

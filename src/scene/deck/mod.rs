@@ -284,6 +284,7 @@ impl<'d> Made<'d> {
                 },
                 settings: Settings::default(),
                 monitors: Vec::new(),
+                attached: None,
             },
             origin: Origin {
                 files: deck.files.iter().map(|file| shown(name, file)).collect(),

@@ -98,6 +98,20 @@ impl EntryKind {
     }
 }
 
+impl Names {
+    /// Single nodes, each by its own name.
+    pub(crate) fn single(nodes: &[Node]) -> Names {
+        let entry =
+            |(k, node): (usize, &Node)| Entry::new(k, &node.name, vec![k], EntryKind::Single);
+        let named = |(k, node): (usize, &Node)| (node.name.clone(), k);
+        Names {
+            nodes: nodes.to_vec(),
+            entries: nodes.iter().enumerate().map(entry).collect(),
+            index: nodes.iter().enumerate().map(named).collect(),
+        }
+    }
+}
+
 impl Entry {
     fn new(at: usize, id: &str, nodes: Vec<usize>, kind: EntryKind) -> Entry {
         Entry {

@@ -7,7 +7,7 @@ use crate::explain::influence::Push;
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::number::{self, four, long};
 use crate::explain::report;
-use crate::explain::round_off::{NOTE, RoundOff};
+use crate::explain::round_off::NOTE;
 use crate::model::Mode;
 use crate::model::Ties;
 use crate::tui::app::App;
@@ -43,12 +43,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let decision = record.map(|record| record.decision);
     let hidden = app.hides(view, slave);
     let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
-        tests(
-            &record.decision,
-            &view.round_off(),
-            inner.width as usize,
-            theme,
-        )
+        tests(&record.decision, view, inner.width as usize, theme)
     });
     let tests: Vec<Line> = match record.filter(|_| !hidden) {
         Some(record) => tests
@@ -61,6 +56,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let words = match (hidden, &app.lesson) {
         (false, _) => words(record, slave, view),
         (true, Some(_)) => "The numbers are in the table above. What does Table 2 say?".into(),
+        (true, None) if view.guest.is_some() => {
+            "What does the solver do next? Predict it: a, then f, s or x.".into()
+        }
         (true, None) => "What does Table 2 say? Predict it: a, then f, s or x.".into(),
     };
 
@@ -80,7 +78,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let crowded = (inner.width as usize) < LABEL + 6 + 3 * CELL || inner.height < 9;
     let mut all = match decision {
         Some(decision) if decision.rule == Rule::Tied => Vec::new(),
-        Some(decision) if crowded && !hidden => vec![fired(&decision, theme)],
+        Some(decision) if (crowded || table(&decision).is_none()) && !hidden => {
+            vec![fired(&decision, view.differs(slave), theme)]
+        }
         Some(decision) if (inner.height as usize) < GRID => choices(decision.before, theme),
         _ => grid(
             decision.as_ref(),
@@ -133,12 +133,15 @@ fn pushes(
         return Vec::new();
     };
     let Some(found) = found else {
-        return vec![heading("Who pushed it cannot be told here")];
+        return vec![heading(match view.guest {
+            Some(_) => "Who pushed it is known to the solver alone",
+            None => "Who pushed it cannot be told here",
+        })];
     };
     let tested = tested(&record.decision);
     let of = |push: &Push| match tested {
         Tested::Gap => push.influence.gap,
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change => {
+        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
             push.influence.f_n
         }
         Tested::ShearForce | Tested::Drag => push.influence.f_t,
@@ -146,7 +149,9 @@ fn pushes(
     };
     let symbol = match tested {
         Tested::Gap => "Δg",
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change => "ΔF_n",
+        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
+            "ΔF_n"
+        }
         Tested::ShearForce | Tested::Drag => "ΔF_t",
         Tested::Slip | Tested::Room => "Δslip",
     };
@@ -209,6 +214,7 @@ fn measured(
     theme: &Theme,
 ) -> Vec<Line<'static>> {
     let round_off = view.round_off();
+    let long = |value| view.long(value);
     let signed = |value: f64| {
         if value < 0.0 {
             long(value)
@@ -219,6 +225,12 @@ fn measured(
     let pair = |[x, y]: [f64; 2]| format!(" ({}, {})", long(x), long(y));
     let place = match record.spot {
         None => " past the ends of every surface".into(),
+        // Where on it, the solver alone knows.
+        Some(_) if view.guest.is_some() => {
+            let own = view.model.contacts[slave].surfaces.first();
+            let surface = own.and_then(|own| view.model.surfaces.get(*own));
+            surface.map_or(" -".into(), |surface| format!(" {}", surface.name))
+        }
         Some(spot) => {
             let surface = view
                 .model
@@ -260,7 +272,10 @@ fn measured(
         ),
         (
             "|F_t|/T_max",
-            format!(" {}", round_off.ratio(record.f_t, record.t_max)),
+            match view.is_untold(record.f_t / record.t_max) {
+                true => format!(" {}", number::UNTOLD),
+                false => format!(" {}", round_off.ratio(record.f_t, record.t_max)),
+            },
             "how much of the friction is used",
         ),
         (
@@ -311,7 +326,7 @@ fn grid(
     ruled: bool,
     theme: &Theme,
 ) -> Vec<Line<'static>> {
-    let table = decision.map_or(TABLE_2, |decision| names::table(decision.rule));
+    let table = decision.and_then(table).unwrap_or(TABLE_2);
     let cell = width.saturating_sub(LABEL + 6) / 3;
     let bar = Span::styled("│ ", theme.faint);
     let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
@@ -387,16 +402,45 @@ fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
     MODES.iter().enumerate().map(cell).collect()
 }
 
-/// The cell that fired, alone, where there is no room for the table.
-fn fired(decision: &Decision, theme: &Theme) -> Line<'static> {
+/// The table by which was decided; `None` where that is not known.
+fn table(decision: &Decision) -> Option<[[[&'static str; 2]; 3]; 3]> {
+    match (decision.rule, rules(decision)) {
+        (Rule::Theirs, Some(NEWTON)) => Some(names::table(Rule::NewtonOpens)),
+        (Rule::Theirs, Some(_)) => Some(TABLE_2),
+        (Rule::Theirs, None) => None,
+        (rule, _) => Some(names::table(rule)),
+    }
+}
+
+const NEWTON: &str = "Newton";
+
+/// What the rules are called that were held against an attached solver's numbers, by what they compared.
+fn rules(decision: &Decision) -> Option<&'static str> {
+    match decision.tests[0]?.tested {
+        Tested::Pressure | Tested::Drag => Some(NEWTON),
+        Tested::Own => None,
+        _ => Some("Table 2"),
+    }
+}
+
+/// The cell that fired, alone, where there is no room for the table; and what the rules want that the solver names.
+fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
     let [first, second] = names::table(decision.rule)[place(decision.before)][place(decision.next)];
     let cell = match decision.rule {
-        Rule::OffSurface | Rule::Held | Rule::Waits | Rule::Pivots | Rule::Sweeps | Rule::Found => {
-            String::new()
-        }
+        Rule::OffSurface
+        | Rule::Held
+        | Rule::Waits
+        | Rule::Pivots
+        | Rule::Sweeps
+        | Rule::Found
+        | Rule::Theirs => String::new(),
         _ if second.is_empty() => format!(" {first} "),
         _ => format!(" {first}, {second} "),
+    };
+    let wanted = match (differs, rules(decision)) {
+        (true, Some(rules)) => format!("≠ {rules}: {}", theme::word(decision.wanted)),
+        _ => String::new(),
     };
     Line::from(vec![
         Span::styled(
@@ -408,6 +452,7 @@ fn fired(decision: &Decision, theme: &Theme) -> Line<'static> {
             theme.heading,
         ),
         Span::styled(cell, theme.lit(decision.next)),
+        Span::styled(wanted, theme.warning),
     ])
 }
 
@@ -428,21 +473,18 @@ fn cell_look(
         }
         Rule::Held | Rule::Waits => (" ", theme.text),
         _ if decision.next == next => ("◀", theme.lit(next)),
+        // An attached solver did not take it.
+        _ if decision.wanted == next => ("◁", theme.text.add_modifier(Modifier::UNDERLINED)),
         _ => (" ", theme.text),
     }
 }
 
 /// The inequalities with their numbers: one line each where there is room, else two.
-fn tests(
-    decision: &Decision,
-    round_off: &RoundOff,
-    width: usize,
-    theme: &Theme,
-) -> Vec<Line<'static>> {
+fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for test in decision.tests.iter().flatten() {
-        let inequality = inequality(test);
-        let (margin, style) = margin(test, round_off, theme);
+        let inequality = inequality(test, view);
+        let (margin, style) = margin(test, view, theme);
         let style_left = if test.margin < 0.0 && !test.tie {
             theme.strong
         } else {
@@ -491,7 +533,8 @@ fn bond(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec
 }
 
 /// An inequality as it stands, with ten digits on both sides.
-fn inequality(test: &Test) -> String {
+fn inequality(test: &Test, view: &View) -> String {
+    let long = |value| view.long(value);
     let sign = match test.value.partial_cmp(&test.bound) {
         _ if test.tie && test.value != test.bound => "≈",
         Some(std::cmp::Ordering::Less) => "<",
@@ -509,16 +552,20 @@ fn inequality(test: &Test) -> String {
         Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
         Tested::Cover => ("z", "0".into()),
         Tested::Change => ("change", "0".into()),
+        Tested::Own => ("its own", "0".into()),
     };
     format!(" {name} {} {sign} {bound}", long(test.value))
 }
 
 /// How far the inequality is from switching, and its unit.
-fn margin(test: &Test, round_off: &RoundOff, theme: &Theme) -> (String, Style) {
+fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
+    let long = |value| view.long(value);
+    let round_off = view.round_off();
     let unit = match test.tested {
         Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => "force",
         Tested::Slip | Tested::Room | Tested::Gap => "length",
         Tested::Cover | Tested::Change => "(relative)",
+        Tested::Own => "",
     };
     match test.tie {
         true => (
@@ -538,6 +585,34 @@ fn margin(test: &Test, round_off: &RoundOff, theme: &Theme) -> (String, Style) {
     }
 }
 
+/// What an attached solver says of its decision, and what the rules that it names want instead.
+fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
+    let decision = &record.decision;
+    let said = view
+        .event()?
+        .words
+        .get(slave)
+        .filter(|words| !words.trim().is_empty());
+    let differs = view.differs(slave);
+    if view.guest.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
+        return None;
+    }
+    let next = theme::word(decision.next);
+    let own = match (said, decision.rule) {
+        (Some(words), _) => format!("The solver takes {next}: “{words}”."),
+        (None, Rule::Theirs) => format!("The solver takes {next}, and does not say why."),
+        (None, _) => report::reason(decision, record.t_max != 0.0),
+    };
+    let rules = rules(decision).unwrap_or("its rule");
+    Some(match differs {
+        true => format!(
+            "{own} ≠ {rules} (◁), which wants {} on the same numbers.",
+            theme::word(decision.wanted)
+        ),
+        false => own,
+    })
+}
+
 /// The verdict in words.
 fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     if view.model.contacts.is_empty() {
@@ -551,7 +626,10 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
         );
     };
     let decision = &record.decision;
-    let mut text = report::reason(decision, record.t_max != 0.0);
+    let mut text = match theirs(record, slave, view) {
+        Some(text) => text,
+        None => report::reason(decision, record.t_max != 0.0),
+    };
     let frictionless =
         matches!(decision.rule, Rule::SlidingStays | Rule::SlidingPasses) && record.t_max == 0.0;
     if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {

@@ -61,6 +61,17 @@ fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec
     if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.lesson) {
         return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
     }
+    let mut lines = said(app, view, width);
+    if let Some(notice) = &app.notice {
+        lines.retain(|line| line.width() > 1);
+        lines.splice(0..0, wrapped(notice, width, theme.bad));
+    }
+    lines
+}
+
+/// What was said last, and the watches.
+fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
+    let theme = &app.theme;
     let aside = view.map_or("", |view| view.aside.as_str());
     let text = app.message.text.as_str();
     match app.message.tone {
@@ -87,7 +98,7 @@ fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
 fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
     let room = places.footer.width as usize;
     let line = match &app.overlay {
-        Overlay::None => table_keys(app, places, room),
+        Overlay::None => table_keys(app, view, places, room),
         Overlay::Manual(reader) => match reader.typed() {
             Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
             None => listed(
@@ -133,10 +144,29 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
             keys.extend(leave);
             listed(&keys, app)
         }
-        Overlay::Mode => listed(
-            &[("f s x", "once"), ("F S X", "hold"), ("Esc", "leave it")],
-            app,
-        ),
+        Overlay::Mode => {
+            let offers = view.and_then(|view| view.guest).map(|guest| guest.offers);
+            let may = |may: bool, word, not| if may { word } else { not };
+            let once = may(offers.is_none_or(|offers| offers.force), "once", "(once)");
+            let hold = may(offers.is_none_or(|offers| offers.hold), "hold", "(hold)");
+            listed(
+                &[("f s x", once), ("F S X", hold), ("Esc", "leave it")],
+                app,
+            )
+        }
+        Overlay::Solver(reader) => match reader.search.typed() {
+            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
+            None => listed(
+                &[
+                    ("↑↓ ←→", "scroll"),
+                    ("End", "follow"),
+                    ("/", "search"),
+                    ("n N", "again"),
+                    ("Esc", "back"),
+                ],
+                app,
+            ),
+        },
         Overlay::Answer => listed(&[("Esc", "look again first")], app),
         Overlay::Line(line) => {
             let scenes = app.scenes();
@@ -153,23 +183,42 @@ fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {
     Line::from(spans.collect::<Vec<_>>())
 }
 
+/// Whether a label is that of something that is not offered, which stands in parentheses, since colour alone tells nothing.
+fn is_grey(label: &str) -> bool {
+    label.starts_with('(')
+}
+
 /// A key and what it does.
 fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
     [
-        Span::styled(format!(" {key}"), theme.key),
+        Span::styled(
+            format!(" {key}"),
+            if is_grey(label) {
+                theme.faint
+            } else {
+                theme.key
+            },
+        ),
         Span::styled(format!(" {label} "), theme.faint),
     ]
 }
 
 /// As many of the table's labelled actions as fit, in its order; those that must be there are counted first.
-fn table_keys(app: &App, places: &Places, room: usize) -> Line<'static> {
+fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> Line<'static> {
     let teaches = app.lesson.is_some() || app.guess.is_some();
     // What has no key any more is left to its name.
     let key = |entry: &'static Entry| app.keymap.keys(entry).next().map(str::to_owned);
+    let context = app.context(view, &[]);
     let labelled: Vec<(&Entry, String, String)> = ACTIONS
         .iter()
         .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
-        .filter_map(|entry| Some((entry, key(entry)?, label(entry, app, places))))
+        .filter_map(|entry| {
+            let label = match entry.offered(&context) {
+                Ok(()) => label(entry, app, places),
+                Err(_) => format!("({})", entry.label),
+            };
+            Some((entry, key(entry)?, label))
+        })
         .collect();
     let needed = |entry: &Entry| is_always(entry) || entry.group == Group::Learn;
     let hints = labelled

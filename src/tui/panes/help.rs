@@ -2,7 +2,7 @@
 //! file has them that changes them.
 
 use crate::action::config;
-use crate::action::{ACTIONS, Group, Keymap};
+use crate::action::{ACTIONS, Context, Group, Keymap};
 use crate::manual::search::Search;
 use crate::tui::paint;
 use crate::tui::theme::Theme;
@@ -26,6 +26,10 @@ const MARKS: &[(&str, &str)] = &[
     (
         "margin",
         "distance of the tested inequality from switching; negative has switched",
+    ),
+    (
+        "≠",
+        "an attached solver decides otherwise than Table 2, or Newton, on the same numbers",
     ),
     ("a tie", "closer to switching than the tolerance"),
 ];
@@ -64,8 +68,8 @@ impl Help {
     }
 
     /// What a key does in a page of this size; false if it leaves it.
-    pub fn key(&mut self, name: &str, size: Rect, keymap: &Keymap) -> bool {
-        let lines = self.lines(size.width as usize, &Theme::mono(), keymap);
+    pub fn key(&mut self, name: &str, size: Rect, keymap: &Keymap, context: &Context) -> bool {
+        let lines = self.lines(size.width as usize, &Theme::mono(), keymap, context);
         let last = lines.len().saturating_sub(size.height as usize);
         // A line near the end stands at the foot of the page.
         let top = self.top.min(last);
@@ -88,16 +92,29 @@ impl Help {
         true
     }
 
-    fn lines(&self, width: usize, theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
+    fn lines(
+        &self,
+        width: usize,
+        theme: &Theme,
+        keymap: &Keymap,
+        context: &Context,
+    ) -> Vec<Line<'static>> {
         match self.listing {
-            Listing::Actions => page(width, theme, keymap),
+            Listing::Actions => page(width, theme, keymap, context),
             Listing::Keys => keys(theme, keymap),
         }
     }
 }
 
 /// Draws the page.
-pub fn draw(buffer: &mut Buffer, area: Rect, help: &Help, theme: &Theme, keymap: &Keymap) {
+pub fn draw(
+    buffer: &mut Buffer,
+    area: Rect,
+    help: &Help,
+    theme: &Theme,
+    keymap: &Keymap,
+    context: &Context,
+) {
     let title = help.search.title().unwrap_or_else(|| {
         match help.listing {
             Listing::Actions => "Help",
@@ -106,7 +123,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, help: &Help, theme: &Theme, keymap:
         .into()
     });
     let inner = paint::frame(buffer, area, &title, true, theme);
-    let mut lines = help.lines(inner.width as usize, theme, keymap);
+    let mut lines = help.lines(inner.width as usize, theme, keymap, context);
     for line in &mut lines {
         if help.search.holds(&line.to_string()) {
             *line = Line::styled(line.to_string(), theme.selected);
@@ -122,15 +139,23 @@ pub fn draw(buffer: &mut Buffer, area: Rect, help: &Help, theme: &Theme, keymap:
 const KEYS: usize = 14;
 const NAMES: usize = 23;
 
-/// The whole page. On a narrow screen the help goes on in further lines.
-pub fn page(width: usize, theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
+/// The whole page. On a narrow screen the help goes on in further lines. What the solver that is open does not offer is grey, with
+/// the reason.
+pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for group in Group::ALL {
         lines.push(Line::styled(format!(" {}", group.title()), theme.heading));
         for entry in ACTIONS.iter().filter(|entry| entry.group == group) {
             let name = format!("{} {}", entry.name, entry.arguments);
             let room = width.saturating_sub(3 + KEYS + NAMES + 1).max(20);
-            for (index, help) in paint::wrap(entry.help, room).into_iter().enumerate() {
+            let (help, [key_style, style]) = match entry.offered(context) {
+                Ok(()) => (entry.help.to_owned(), [theme.key, theme.text]),
+                Err(why) => (
+                    format!("({}) Not here: {why}.", entry.help),
+                    [theme.faint; 2],
+                ),
+            };
+            for (index, help) in paint::wrap(&help, room).into_iter().enumerate() {
                 let (keys, name) = if index == 0 {
                     let keys: Vec<&str> = keymap.keys(entry).collect();
                     (keys.join(" "), name.as_str())
@@ -138,9 +163,9 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> 
                     Default::default()
                 };
                 lines.push(Line::from(vec![
-                    Span::styled(format!("   {keys:<KEYS$}"), theme.key),
-                    Span::raw(format!("{name:<NAMES$}")),
-                    Span::styled(help, theme.text),
+                    Span::styled(format!("   {keys:<KEYS$}"), key_style),
+                    Span::styled(format!("{name:<NAMES$}"), style),
+                    Span::styled(help, style),
                 ]));
             }
         }

@@ -14,6 +14,7 @@ pub mod nodes;
 pub mod remedies;
 pub mod residual;
 pub mod shape;
+pub mod solver;
 pub mod status;
 pub mod timeline;
 pub mod workprecision;

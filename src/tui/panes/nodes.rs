@@ -233,6 +233,7 @@ fn row<'a>(
     let record = view.record(slave);
     let hidden = app.hides(view, slave);
     let changed = !hidden && view.mode_before(slave) != view.mode(slave);
+    let differs = !hidden && view.differs(slave);
     let name_style = match (selected, changed) {
         (true, _) => theme.selected,
         (_, true) => theme.strong,
@@ -241,7 +242,7 @@ fn row<'a>(
     let mut spans = vec![
         Span::styled(if selected { "▸" } else { " " }, theme.focus),
         Span::styled(
-            change_mark(changed, !hidden && view.t_max_moves(slave)),
+            change_mark(differs, changed, !hidden && view.t_max_moves(slave)),
             theme.strong,
         ),
         Span::styled(forced_mark(view.forced(slave)), theme.warning),
@@ -251,12 +252,12 @@ fn row<'a>(
     spans.extend(modes(slave, changed, columns, app, view));
     spans.push(Span::raw(" "));
     if let Some(record) = record {
-        spans.extend(numbers(record, round_off, columns, app));
+        spans.extend(numbers(record, round_off, columns, app, view));
         if columns.pressures {
             let forces = [record.f_n, record.f_t].map(|force| round_off.force(force));
             let found = view.model.contacts[slave].pressure(forces[0], forces[1]);
             let told = found.map_or([String::new(), String::new()], |both| {
-                both.map(|value| number::cell(value, columns.number))
+                both.map(|value| view.cell(value, columns.number))
             });
             let text = format!(" {:<width$}{}", told[0], told[1], width = columns.number);
             spans.push(Span::styled(text, theme.text));
@@ -265,11 +266,13 @@ fn row<'a>(
     Line::from(spans)
 }
 
-/// `*` where the mode changes, `~` where T_max has not settled.
-fn change_mark(changed: bool, t_max_moves: bool) -> &'static str {
-    match (changed, t_max_moves) {
-        (true, _) => "*",
-        (_, true) => "~",
+/// `≠` where an attached solver and the rules that it names decide otherwise, `*` where the mode changes, `~` where T_max has not
+/// settled.
+fn change_mark(differs: bool, changed: bool, t_max_moves: bool) -> &'static str {
+    match (differs, changed, t_max_moves) {
+        (true, ..) => "≠",
+        (_, true, _) => "*",
+        (.., true) => "~",
         _ => " ",
     }
 }
@@ -328,13 +331,14 @@ fn numbers(
     round_off: &RoundOff,
     columns: &Columns,
     app: &App,
+    view: &View,
 ) -> Vec<Span<'static>> {
     // What changed the mode is shown as it is, however small.
     let decided = |tested: Tested| {
         let mut tests = record.decision.tests.iter().flatten();
         record.decision.changes() && tests.any(|test| test.tested == tested)
     };
-    let cell = |value| number::cell(value, columns.number);
+    let cell = |value| view.cell(value, columns.number);
     let force = |value: f64, tested: Tested| match decided(tested) {
         true => cell(value),
         false => cell(round_off.force(value)),
@@ -344,6 +348,7 @@ fn numbers(
         false => cell(round_off.length(value)),
     };
     let ratio = match decided(Tested::ShearForce) {
+        _ if view.is_untold(record.f_t / record.t_max) => number::UNTOLD.into(),
         true => number::ratio(record.f_t, record.t_max),
         false => round_off.ratio(record.f_t, record.t_max),
     };

@@ -1,7 +1,7 @@
 //! The residual over the major iterations of the shown increment, on a log scale, with the limit it must get under.
 
 use crate::explain::names;
-use crate::explain::number::short;
+use crate::explain::number;
 use crate::linear::norms::Norms;
 use crate::tui::app::App;
 use crate::tui::convergence::{self, Point};
@@ -36,11 +36,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let caption = Line::from(vec![
         Span::styled(" ● relative ", theme.faint),
-        Span::styled(short(last.relative), theme.strong),
+        Span::styled(short(last.relative, view), theme.strong),
         Span::styled("  ○ interface ", theme.faint),
-        Span::raw(short(last.interface)),
+        Span::raw(short(last.interface, view)),
         Span::styled("  ┄ limit ", theme.faint),
-        Span::raw(short(last.limit)),
+        Span::raw(short(last.limit, view)),
     ]);
     let mut above = vec![caption];
     above.extend(judged(view, theme).filter(|_| inner.height >= ROOM_FOR_JUDGE));
@@ -53,8 +53,21 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         ..inner
     };
     if convergence::fits(plot) {
-        let points: Vec<Point> = view.residuals.iter().map(point).collect();
+        // Those that an attached solver does not tell have no place.
+        let told = view
+            .residuals
+            .iter()
+            .filter(|(_, norms)| !view.is_untold(norms.relative));
+        let points: Vec<Point> = told.map(point).collect();
         convergence::draw(buffer, plot, &points, theme);
+    }
+}
+
+/// A number of a caption; a dash where an attached solver does not tell it.
+fn short(value: f64, view: &View) -> String {
+    match view.is_untold(value) {
+        true => number::UNTOLD.into(),
+        false => number::short(value),
     }
 }
 
@@ -83,7 +96,11 @@ fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
     Some(Line::from(vec![
         Span::styled(" judge ", theme.faint),
         Span::styled(sign, style),
-        Span::raw(format!(" {} {}", worst.law.name(), short(worst.amount))),
+        Span::raw(format!(
+            " {} {}",
+            worst.law.name(),
+            number::short(worst.amount)
+        )),
         Span::styled(
             format!("{place}, allowed {:.0e}", worst.allowed),
             theme.faint,

@@ -1,5 +1,6 @@
 //! The top of the screen: which scene, where the solver is, and what the last minor iteration led to.
 
+use crate::action::by_name;
 use crate::contact::record::Forced;
 use crate::explain::names;
 use crate::explain::number;
@@ -7,11 +8,12 @@ use crate::explain::report;
 use crate::model::Model;
 use crate::model::Strategy;
 use crate::step::event::{Event, Outcome};
+use crate::step::solver::GoesBack;
 use crate::step::state::Status;
 use crate::tui::app::{App, Overlay};
 use crate::tui::layout::Places;
 use crate::tui::paint;
-use crate::tui::view::View;
+use crate::tui::view::{Guest, View};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -47,7 +49,59 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
 /// Most lines that the last iteration's outcome takes.
 const OUTCOME: usize = 3;
 
+/// Who is attached, how it goes back, and what it said.
+fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
+    let theme = &app.theme;
+    let offers = guest.offers;
+    let name = format!("{} {}", offers.name, offers.version);
+    let (state, style) = match (guest.lost, offers.past, offers.goes_back) {
+        (true, ..) => ("✗ lost; the next step starts it anew", theme.bad),
+        (_, true, _) => ("kept exchange, read-only", theme.warning),
+        (.., GoesBack::ToAny) => ("attached; back to any state", theme.faint),
+        (.., GoesBack::ToIncrements) => (
+            "attached; back to increments, from there again",
+            theme.faint,
+        ),
+        (.., GoesBack::Again) => ("attached; back by starting anew", theme.faint),
+    };
+    let key = by_name("log")
+        .ok()
+        .and_then(|entry| app.keymap.keys(entry).next());
+    let counted = match app.heard.counted() {
+        none if none.is_empty() => none,
+        counted => format!("{counted} ({})", key.unwrap_or(":log")),
+    };
+    let parts = [
+        (" stickslip ", theme.faint),
+        (name.trim(), theme.heading),
+        ("   ", theme.faint),
+        (state, style),
+        ("   ", theme.faint),
+        (counted.as_str(), theme.warning),
+        ("   ", theme.faint),
+        (view.model.title.as_str(), theme.faint),
+    ];
+    // What it is called gives way to what it does.
+    let fixed = state.width() + counted.width() + 17;
+    let mut room = width;
+    let mut spans = Vec::new();
+    for (at, (text, style)) in parts.into_iter().enumerate() {
+        let most = if at == 1 {
+            width.saturating_sub(fixed).max(8)
+        } else {
+            room
+        };
+        let text = paint::cut(text, most.min(room));
+        room -= text.width();
+        spans.push(Span::styled(text, style));
+    }
+    Line::from(spans)
+}
+
 fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
+    if let Some(attached) = &view.guest {
+        return guest(app, view, attached, width);
+    }
     const PROGRAM: &str = " stickslip ";
     let name = paint::cut(view.name, width.saturating_sub(PROGRAM.width()));
     let room = width.saturating_sub(PROGRAM.width() + name.width());
@@ -76,6 +130,11 @@ fn position(app: &App, view: &View, width: usize) -> Line<'static> {
         if line.width() + chart.width() <= width {
             line.push_span(chart);
         }
+    }
+    if view.guest.is_some_and(|guest| guest.lost) {
+        const WORDS: &str = "  ✗ lost";
+        while line.width() + WORDS.width() > width && line.spans.pop().is_some() {}
+        line.push_span(Span::styled(WORDS, app.theme.bad));
     }
     if app.unkept {
         // Whoever goes on without it must not forget that.
@@ -144,7 +203,13 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             at.minor,
             view.frames.len() - 1
         );
-        return vec![Line::styled(text, theme.warning)];
+        let again = view.guest.map_or("", |guest| guest.again);
+        let first = (!again.is_empty()).then(|| format!("   {again} first"));
+        return [Some(text), first]
+            .into_iter()
+            .flatten()
+            .map(|text| Line::styled(text, theme.warning))
+            .collect();
     }
     let (text, style) = match (view.intervention(), view.event()) {
         (Some(intervention), _) => (

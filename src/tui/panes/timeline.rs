@@ -78,6 +78,10 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             let (letter, style) = cell(strip, slave, app);
             buffer.set_string(column.x, nodes + row as u16, letter, reversed(style));
         }
+        // No such solver tells of cycles, whose brackets stand there.
+        if (0..count).any(|slave| strip.differs(slave)) {
+            buffer.set_string(column.x, below + 1, "≠", theme.warning);
+        }
         let (end, style) = end(strip.kind, app);
         buffer.set_string(column.x, below, end, style);
     }
@@ -187,6 +191,9 @@ fn cell(strip: &Strip, slave: usize, app: &App) -> (&'static str, Style) {
         (Mode::Fixed, true) => "x",
     };
     let mut style = app.theme.mode(mode);
+    if strip.differs(slave) {
+        style = style.patch(app.theme.warning);
+    }
     if strip.changes(slave) {
         style = style.add_modifier(Modifier::BOLD);
     }

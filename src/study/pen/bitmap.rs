@@ -24,7 +24,7 @@ impl<'a> Bitmap<'a> {
     pub fn new(pixels: &'a mut [u8], size: (u32, u32)) -> Option<Bitmap<'a>> {
         Some(Bitmap {
             below: BitMapBackend::with_buffer(pixels, size),
-            font: FontRef::try_from_slice(dejavu::sans::regular()).ok()?,
+            font: FontRef::try_from_slice(super::font::font()?).ok()?,
         })
     }
 }

@@ -1,0 +1,501 @@
+//! An attached solver: a child process behind the seam of all solvers.
+//!
+//! The solver keeps what it goes on from itself. Here stands the tree of all states that it has had: a place for each, with the
+//! place that it came from, what was changed there, and the token by which it can be gone back to, where the solver gave one. To
+//! go to a place is to restore the nearest state before it that can be had (the start, by starting the solver anew, always can), and
+//! to do again what led from there; what is done again must come to the same modes.
+
+use super::fault::Fault;
+use super::link::{Link, Start, name};
+use super::log::Log;
+use super::meeting::{self, Met, meet};
+use super::orders::requests;
+use super::posed::posed;
+use super::told::Frame;
+use crate::explain::names;
+use crate::model::Model;
+use crate::scene::Scene;
+use crate::scene::attached::mode;
+use crate::step::Status;
+use crate::step::event::{Event, Position};
+use crate::step::intervene::{Intervention, Refusal};
+use crate::step::places::Places;
+use crate::step::solver::{Lost, Offers, Posed, Solver};
+use crate::step::state::State;
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Mode, Restore};
+use stickslip_exchange::attach::{Answer, Request};
+
+/// A solver that is a program of its own.
+pub struct Attached {
+    start: Start,
+    model: Arc<Model>,
+    told: message::Scene,
+    ids: Vec<Id>,
+    hello: Hello,
+    offers: Offers,
+    link: Option<Link>,
+    log: Log,
+    asks: Arc<AtomicUsize>,
+    places: Places<Kept>,
+    /// The place at which the running solver is, with nothing changed there; `None` where that is not known.
+    at: Option<u64>,
+    state: State,
+    event: Event,
+    monitors: Vec<f64>,
+    /// Iterations that were done again to come to the present place.
+    again: usize,
+    /// Whether it was started anew for that.
+    anew: bool,
+}
+
+/// What is kept of a state that the solver has had: how to find it again, and how to know it.
+#[derive(Default)]
+struct Kept {
+    /// By which the solver goes back to it.
+    token: Option<serde_json::Value>,
+    /// Where the iteration was that led here, what ended with it, and the modes that it found; none at the start.
+    led: Option<(Position, Ended, Vec<Mode>)>,
+}
+
+impl Kept {
+    fn of(told: &message::State, position: Position) -> Kept {
+        let next = told.contacts.iter().map(|found| found.next);
+        Kept {
+            token: None,
+            led: Some((position, told.ended, next.collect())),
+        }
+    }
+
+    /// Whether an increment begins here.
+    fn begins(&self) -> bool {
+        self.led
+            .as_ref()
+            .is_none_or(|(_, ended, _)| matches!(ended, Ended::Increment | Ended::Done))
+    }
+}
+
+impl Attached {
+    /// Starts a solver, and asks who it is and what it solves. The scene is what all else knows of it.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn attach(start: Start, log: Log) -> Result<(Scene, Attached), Fault> {
+        let asks = Arc::new(AtomicUsize::new(0));
+        let Met {
+            link,
+            hello,
+            scene: told,
+            offers,
+        } = meet(&start, &log, &asks)?;
+        let scene = Scene::told(&offers.name, &told, offers.begins_with()).map_err(|error| {
+            Fault::Unfit {
+                message: "scene",
+                why: error.message,
+            }
+        })?;
+        let model = Arc::new(scene.model.clone());
+        let contacts = told.contacts.iter();
+        let mut attached = Attached {
+            ids: contacts.map(|contact| contact.id.clone()).collect(),
+            state: State::outside_start(&model),
+            event: Event::nothing_yet(&model),
+            start,
+            model,
+            told,
+            hello,
+            offers,
+            link: Some(link),
+            log,
+            asks,
+            places: Places::new(Kept::default()),
+            at: Some(0),
+            monitors: Vec::new(),
+            again: 0,
+            anew: false,
+        };
+        attached.save(0)?;
+        Ok((scene, attached))
+    }
+
+    /// What it said of itself.
+    pub fn hello(&self) -> &Hello {
+        &self.hello
+    }
+
+    /// What it said besides.
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// How it was started.
+    pub fn start(&self) -> &Start {
+        &self.start
+    }
+
+    /// Asks the solver. A fault is its end.
+    fn ask(&mut self, request: &Request) -> Result<Answer, Fault> {
+        let Some(link) = &mut self.link else {
+            return Err(Fault::Died {
+                how: "before".into(),
+                asked: name(request),
+            });
+        };
+        let answer = link.ask(request, self.start.answer);
+        if answer.is_err() {
+            self.end();
+        }
+        answer
+    }
+
+    /// Asks for something that is answered by `ok`.
+    fn order(&mut self, request: &Request) -> Result<(), Fault> {
+        match self.ask(request)? {
+            Answer::Ok => Ok(()),
+            Answer::Refused { reason } => {
+                // Part of what was to be changed may be.
+                self.at = None;
+                Err(Fault::Refused {
+                    asked: name(request),
+                    why: reason,
+                })
+            }
+            other => Err(self.other(request, other, "ok")),
+        }
+    }
+
+    /// Another answer than one that would be right.
+    fn other(&mut self, request: &Request, answer: Answer, expected: &'static str) -> Fault {
+        match answer {
+            Answer::Refused { .. } => {}
+            _ => self.end(),
+        }
+        meeting::other(request, answer, expected)
+    }
+
+    /// Ends the child process.
+    fn end(&mut self) {
+        self.link = None;
+        self.at = None;
+        self.places.iter_mut().for_each(|kept| kept.token = None);
+    }
+
+    /// Brings the solver to the place of the present state.
+    fn go(&mut self) -> Result<(), Fault> {
+        let target = self.place()?;
+        if self.link.is_some() && self.at == Some(target) {
+            return Ok(());
+        }
+        let reach = |place: &u64| {
+            let here = self.at == Some(*place);
+            let token = self
+                .places
+                .get(*place)
+                .is_some_and(|kept| kept.token.is_some());
+            self.link.is_some() && (here || token)
+        };
+        // What is done again, the last first, and from where.
+        let again: Vec<u64> = self
+            .places
+            .back(target)
+            .take_while(|place| !reach(place))
+            .collect();
+        let from = match again.last() {
+            None => target,
+            Some(&first) => match self.places.from(first) {
+                Some((from, _)) => from,
+                None => 0,
+            },
+        };
+        if self.at != Some(from) || self.link.is_none() {
+            match self.take_up(from) {
+                // It has forgotten that one; there is another before it, at last the start.
+                Err(Fault::Refused { .. }) if self.forget(from) => return self.go(),
+                other => other?,
+            }
+        }
+        let again = again.into_iter().filter(|&place| place != 0).rev();
+        for place in again {
+            self.do_again(place)?;
+            self.again += 1;
+        }
+        Ok(())
+    }
+
+    /// Goes to a place that can be had without doing anything again.
+    fn take_up(&mut self, place: u64) -> Result<(), Fault> {
+        let token = self.places.get(place).and_then(|kept| kept.token.clone());
+        match token {
+            Some(token) if self.link.is_some() => self.order(&Request::Restore { token })?,
+            _ => {
+                self.end();
+                let met = meet(&self.start, &self.log, &self.asks)?;
+                if let Some(what) = another(&self.told, &self.hello, &met) {
+                    return Err(Fault::OtherScene { what });
+                }
+                self.link = Some(met.link);
+                self.anew = true;
+                self.at = Some(0);
+                self.save(0)?;
+            }
+        }
+        self.at = Some(place);
+        Ok(())
+    }
+
+    /// Gives up a token; whether there was one.
+    fn forget(&mut self, place: u64) -> bool {
+        let kept = self.places.get_mut(place);
+        let token = kept.and_then(|kept| kept.token.take());
+        if token.is_some() {
+            self.log
+                .noted("restore is refused; what led there is done again");
+        }
+        token.is_some()
+    }
+
+    /// Does again what led to a place, from the one before it.
+    fn do_again(&mut self, place: u64) -> Result<(), Fault> {
+        let asked = match self.places.from(place) {
+            Some((_, asked)) => asked.to_vec(),
+            None => return Err(Fault::Unknown),
+        };
+        self.change(&asked)?;
+        let told = self.step_there()?;
+        let position = self.frame().check(&told)?;
+        self.same(place, &Kept::of(&told, position))?;
+        self.at = Some(place);
+        self.save(place)
+    }
+
+    /// Whether an iteration that was done again led to where it did the first time.
+    fn same(&self, place: u64, now: &Kept) -> Result<(), Fault> {
+        let then = self.places.get(place).ok_or(Fault::Unknown)?;
+        match differs(then, now, &self.model) {
+            None => Ok(()),
+            Some(why) => Err(Fault::Changed {
+                iteration: self.places.depth(place),
+                why,
+            }),
+        }
+    }
+
+    /// Tells the solver what was changed.
+    fn change(&mut self, asked: &[Intervention]) -> Result<(), Fault> {
+        let requests = asked
+            .iter()
+            .flat_map(|one| requests(one, &self.ids, &self.offers));
+        for request in requests.collect::<Vec<_>>() {
+            self.order(&request)?;
+        }
+        Ok(())
+    }
+
+    /// One iteration of the solver where it is.
+    fn step_there(&mut self) -> Result<message::State, Fault> {
+        // Until it is known where it led to.
+        self.at = None;
+        match self.ask(&Request::Step)? {
+            Answer::State(told) => Ok(*told),
+            other => Err(self.other(&Request::Step, other, "state")),
+        }
+    }
+
+    /// Keeps the state of a place, where the solver offers that there.
+    fn save(&mut self, place: u64) -> Result<(), Fault> {
+        let kept = self.places.get(place).ok_or(Fault::Unknown)?;
+        let wanted = match self.hello.abilities.restore {
+            Restore::Any => true,
+            Restore::Increment => kept.begins(),
+            Restore::None => false,
+        };
+        if !wanted || kept.token.is_some() {
+            return Ok(());
+        }
+        match self.ask(&Request::Save)? {
+            Answer::Saved { token } => {
+                if let Some(kept) = self.places.get_mut(place) {
+                    kept.token = Some(token);
+                }
+                Ok(())
+            }
+            // It may have no room for more; the way from an earlier one is longer.
+            Answer::Refused { reason } => {
+                self.log.noted(&format!("save is refused: {reason}"));
+                Ok(())
+            }
+            other => Err(self.other(&Request::Save, other, "saved")),
+        }
+    }
+
+    /// The place of the present state.
+    fn place(&self) -> Result<u64, Fault> {
+        let known = |place: &u64| self.places.get(*place).is_some();
+        self.state.place().filter(known).ok_or(Fault::Unknown)
+    }
+
+    fn frame(&self) -> Frame<'_> {
+        Frame {
+            model: &self.model,
+            ids: &self.ids,
+            decides: self.hello.decides,
+        }
+    }
+
+    /// One iteration from the present state.
+    fn iterate(&mut self) -> Result<(), Fault> {
+        self.go()?;
+        let (from, asked) = (self.place()?, self.state.asked().to_vec());
+        self.change(&asked)?;
+        let told = self.step_there()?;
+        let mut led = self.frame().led(&self.state, &told)?;
+        let kept = Kept::of(&told, led.event.position);
+        let place = match self.places.follows(from, &asked) {
+            Some(place) => {
+                self.same(place, &kept)?;
+                place
+            }
+            None => self.places.add(from, asked, kept),
+        };
+        led.state_at(place);
+        self.at = Some(place);
+        // A failing save is a failing solver, but this iteration is done.
+        if let Err(fault) = self.save(place) {
+            self.log.noted(&fault.to_string());
+        }
+        (self.state, self.event, self.monitors) = (led.state, led.event, led.monitors);
+        Ok(())
+    }
+
+    /// Asks for the frozen interface problem of the present state.
+    fn ask_problem(&mut self) -> Result<Posed, Fault> {
+        self.go()?;
+        let asked = self.state.asked().to_vec();
+        if !asked.is_empty() {
+            // What was changed belongs to the problem, but not to this place.
+            self.change(&asked)?;
+            self.at = None;
+        }
+        match self.ask(&Request::Problem)? {
+            Answer::Problem(problem) => posed(&problem, &self.ids),
+            other => Err(self.other(&Request::Problem, other, "problem")),
+        }
+    }
+}
+
+impl Solver for Attached {
+    fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn event(&self) -> &Event {
+        &self.event
+    }
+
+    fn step(&mut self) -> Result<bool, Lost> {
+        if self.state.status == Status::Finished {
+            return Ok(false);
+        }
+        self.iterate().map(|()| true).map_err(|fault| {
+            let lost = fault.to_string();
+            self.log.noted(&lost);
+            Lost::new(lost)
+        })
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+        self.state.clone_from(state);
+        match self.place() {
+            Ok(_) => Ok(()),
+            Err(fault) => Err(Lost::new(fault.to_string())),
+        }
+    }
+
+    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+        self.offers.check(intervention)?;
+        self.state.intervene(&self.model, intervention)
+    }
+
+    fn monitors(&mut self, out: &mut Vec<f64>) {
+        out.extend_from_slice(&self.monitors);
+    }
+
+    fn offers(&self) -> Offers {
+        self.offers.clone()
+    }
+
+    fn posed(&mut self, state: &State) -> Result<Posed, Lost> {
+        if !self.hello.abilities.problem {
+            return Err(Lost::new(self.offers.lacks("its interface problem")));
+        }
+        self.restore(state)?;
+        self.ask_problem()
+            .map_err(|fault| Lost::new(fault.to_string()))
+    }
+
+    fn heed(&mut self, asks: Arc<AtomicUsize>) {
+        if let Some(link) = &mut self.link {
+            link.heed(asks.clone());
+        }
+        self.asks = asks;
+    }
+
+    fn remark(&mut self) -> Option<String> {
+        let again = std::mem::take(&mut self.again);
+        let lost = self.log.lost();
+        let anew = std::mem::take(&mut self.anew);
+        let s = if again == 1 { "" } else { "s" };
+        let told = match (anew, again) {
+            (true, 0) => Some("the solver was started anew".to_owned()),
+            (true, _) => Some(format!(
+                "the solver was started anew, and did {again} iteration{s} again"
+            )),
+            (false, 0) => None,
+            (false, _) => Some(format!("the solver did {again} iteration{s} again")),
+        };
+        let parts: Vec<String> = told.into_iter().chain(lost).collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+}
+
+/// What a solver tells otherwise than when it was started first.
+fn another(told: &message::Scene, hello: &Hello, met: &Met) -> Option<&'static str> {
+    let scene = &met.scene;
+    let parts = [
+        (hello.abilities == met.hello.abilities, "list of abilities"),
+        (hello.decides == met.hello.decides, "way to decide"),
+        (
+            hello.parameters == met.hello.parameters,
+            "list of parameters, or other values of them",
+        ),
+        (told.contacts == scene.contacts, "list of contacts"),
+        (told.nodes == scene.nodes, "list of nodes"),
+        (told == scene, "scene"),
+    ];
+    parts.iter().find(|(same, _)| !same).map(|(_, what)| *what)
+}
+
+/// How an iteration that was done again differs from the first time; `None` where place and modes are the same.
+fn differs(then: &Kept, now: &Kept, model: &Model) -> Option<String> {
+    let ((was, ended, modes), (is, ends, now)) = then.led.as_ref().zip(now.led.as_ref())?;
+    if was != is {
+        let (is, was) = (names::position(*is), names::position(*was));
+        return Some(format!("it is {is}, and was {was}"));
+    }
+    let other = modes.iter().zip(now).position(|(then, now)| then != now);
+    if let Some(k) = other {
+        let word = |told| names::mode(mode(told));
+        return Some(format!(
+            "{} goes on {}, and went on {}",
+            names::slave(model, k),
+            word(now[k]),
+            word(modes[k])
+        ));
+    }
+    (ended != ends || modes.len() != now.len()).then(|| "it ends otherwise".to_owned())
+}

@@ -1,0 +1,213 @@
+//! A solver that is tried, from its start.
+
+use super::super::fault::Fault;
+use super::super::link::{Link, Start};
+use super::super::log::Log;
+use super::super::meeting::{Met, meet, other};
+use serde_json::Value;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+use stickslip_exchange::attach::message::{Ended, Found, Hello, Id, Mode, Scene, State};
+use stickslip_exchange::attach::{Answer, Request};
+
+/// How long a single check goes on with more of the same.
+const BUDGET: Duration = Duration::from_secs(20);
+
+/// A solver at its start.
+pub struct Trial {
+    pub link: Link,
+    pub hello: Hello,
+    pub scene: Scene,
+    /// How long its start took.
+    pub began: Duration,
+    start: Start,
+    asks: Arc<AtomicUsize>,
+    until: Instant,
+}
+
+impl Trial {
+    /// Starts it.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn begin(start: &Start) -> Result<Trial, Fault> {
+        let began = Instant::now();
+        let asks = Arc::new(AtomicUsize::new(0));
+        let Met {
+            link, hello, scene, ..
+        } = meet(start, &Log::default(), &asks)?;
+        Ok(Trial {
+            link,
+            hello,
+            scene,
+            began: began.elapsed(),
+            start: start.clone(),
+            asks,
+            until: Instant::now() + BUDGET,
+        })
+    }
+
+    /// Starts it again; the time that the check has goes on.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn again(&mut self) -> Result<(), Fault> {
+        let until = self.until;
+        *self = Trial::begin(&self.start)?;
+        self.until = until;
+        Ok(())
+    }
+
+    /// Whether the check has taken its time.
+    pub fn is_late(&self) -> bool {
+        Instant::now() > self.until
+    }
+
+    /// Asks.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn ask(&mut self, request: &Request) -> Result<Answer, Fault> {
+        self.link.ask(request, self.start.answer)
+    }
+
+    /// Asks for something that is answered by ok; why it is refused, where it is.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn order(&mut self, request: &Request) -> Result<Result<(), String>, Fault> {
+        match self.ask(request)? {
+            Answer::Ok => Ok(Ok(())),
+            Answer::Refused { reason } => Ok(Err(reason)),
+            answer => Err(other(request, answer, "ok")),
+        }
+    }
+
+    /// One iteration; `None` where it is refused.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn step(&mut self) -> Result<Option<State>, Fault> {
+        match self.ask(&Request::Step)? {
+            Answer::State(state) => Ok(Some(*state)),
+            Answer::Refused { .. } => Ok(None),
+            answer => Err(other(&Request::Step, answer, "state")),
+        }
+    }
+
+    /// So many iterations, as far as they go.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn steps(&mut self, count: usize) -> Result<Vec<State>, Fault> {
+        let mut states = Vec::new();
+        for _ in 0..count {
+            match self.step()? {
+                Some(state) => states.push(state),
+                None => break,
+            }
+            if states.last().is_some_and(is_last) {
+                break;
+            }
+        }
+        Ok(states)
+    }
+
+    /// One iteration during which it is asked to end soon.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn interrupted_step(&mut self) -> Result<Option<State>, Fault> {
+        self.asks.store(1, Ordering::Relaxed);
+        let state = self.step();
+        self.asks.store(0, Ordering::Relaxed);
+        state
+    }
+
+    /// Keeps the present state: its token, or why it is refused.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn save(&mut self) -> Result<Result<Value, String>, Fault> {
+        match self.ask(&Request::Save)? {
+            Answer::Saved { token } => Ok(Ok(token)),
+            Answer::Refused { reason } => Ok(Err(reason)),
+            answer => Err(other(&Request::Save, answer, "saved")),
+        }
+    }
+
+    /// Goes to a kept state; why it is refused, where it is.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn restore(&mut self, token: &Value) -> Result<Result<(), String>, Fault> {
+        let token = token.clone();
+        self.order(&Request::Restore { token })
+    }
+
+    /// Forces a contact; why it is refused, where it is.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn force(
+        &mut self,
+        contact: &Id,
+        mode: Mode,
+        hold: bool,
+    ) -> Result<Result<(), String>, Fault> {
+        let contact = contact.clone();
+        self.order(&Request::Force {
+            contact,
+            mode,
+            hold,
+        })
+    }
+
+    /// Sets a parameter; why it is refused, where it is.
+    ///
+    /// # Errors
+    /// The fault by which it ends.
+    pub fn set(
+        &mut self,
+        name: &str,
+        value: impl Into<Value>,
+    ) -> Result<Result<(), String>, Fault> {
+        self.order(&Request::Set {
+            name: name.to_owned(),
+            value: value.into(),
+        })
+    }
+
+    /// The contacts, or so many of them from all over the scene.
+    pub fn some_contacts(&self, most: usize) -> Vec<Id> {
+        let all = &self.scene.contacts;
+        let count = all.len().min(most);
+        let place = |k: usize| k * all.len() / count.max(1);
+        (0..count).map(|k| all[place(k)].id.clone()).collect()
+    }
+}
+
+/// Whether nothing follows a state that would belong to it.
+pub fn is_last(state: &State) -> bool {
+    matches!(state.ended, Ended::Done | Ended::Failure)
+}
+
+/// What a state says of a contact.
+pub fn at<'a>(state: &'a State, contact: &Id) -> Option<&'a Found> {
+    state.contacts.iter().find(|found| found.id == *contact)
+}
+
+/// A mode's word.
+pub fn word(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Free => "free",
+        Mode::Sliding => "sliding",
+        Mode::Fixed => "fixed",
+    }
+}
+
+/// Milliseconds.
+pub fn millis(time: Duration) -> f64 {
+    1e3 * time.as_secs_f64()
+}

@@ -1,0 +1,147 @@
+//! How a solver is met: it is started, and asked who it is and what it solves.
+
+use super::fault::Fault;
+use super::link::{Link, Start, name};
+use super::log::Log;
+use super::orders::{COHESION, FRICTION, INCREMENT};
+use crate::outside::shown;
+use crate::step::intervene::Value;
+use crate::step::solver::{GoesBack, Offers, Parameter, Range};
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+use stickslip_exchange::attach::message::{self, Hello, ParameterKind, Restore, Scene};
+use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
+
+/// A solver at its start.
+pub struct Met {
+    /// The child process.
+    pub link: Link,
+    /// Who it is.
+    pub hello: Hello,
+    /// What it solves.
+    pub scene: Scene,
+    /// What it offers.
+    pub offers: Offers,
+}
+
+/// Starts a solver, and asks who it is and what it solves.
+///
+/// # Errors
+/// The fault by which it ends.
+pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Met, Fault> {
+    let mut link = Link::start(start, log, asks.clone())?;
+    let request = Request::Hello {
+        protocol: PROTOCOL,
+        name: env!("CARGO_PKG_NAME").into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+    };
+    let hello = match link.ask(&request, start.start)? {
+        Answer::Hello(hello) => *hello,
+        answer => return Err(other(&request, answer, "hello")),
+    };
+    if hello.protocol != PROTOCOL {
+        return Err(Fault::Version(hello.protocol));
+    }
+    let offers = offers(&hello)?;
+    link.set_interrupts(hello.abilities.interrupt);
+    let scene = match link.ask(&Request::Scene, start.start)? {
+        Answer::Scene(scene) => *scene,
+        answer => return Err(other(&Request::Scene, answer, "scene")),
+    };
+    Ok(Met {
+        link,
+        hello,
+        scene,
+        offers,
+    })
+}
+
+/// Another answer than the one that would be right.
+pub fn other(request: &Request, answer: Answer, expected: &'static str) -> Fault {
+    match answer {
+        Answer::Refused { reason } => Fault::Refused {
+            asked: name(request),
+            why: reason,
+        },
+        answer => Fault::OtherAnswer {
+            asked: name(request),
+            answer: answer.kind().to_owned(),
+            expected,
+        },
+    }
+}
+
+/// What a solver offers, in the words of the debugger.
+fn offers(hello: &Hello) -> Result<Offers, Fault> {
+    let mut parameters: Vec<Parameter> = Vec::with_capacity(hello.parameters.len());
+    for told in &hello.parameters {
+        let parameter = parameter(told)?;
+        if parameters.iter().any(|known| known.name == parameter.name) {
+            return unfit(told, "there are two of this name");
+        }
+        parameters.push(parameter);
+    }
+    let has = |name: &str| parameters.iter().any(|known| known.name == name);
+    let abilities = hello.abilities;
+    Ok(Offers {
+        name: shown::line(&hello.name).into_owned(),
+        version: shown::line(&hello.version).into_owned(),
+        past: false,
+        force: abilities.force,
+        hold: abilities.hold,
+        increment: has(INCREMENT),
+        friction: has(FRICTION),
+        cohesion: has(COHESION),
+        settings: false,
+        goes_back: match abilities.restore {
+            Restore::None => GoesBack::Again,
+            Restore::Increment => GoesBack::ToIncrements,
+            Restore::Any => GoesBack::ToAny,
+        },
+        problem: abilities.problem,
+        parameters,
+    })
+}
+
+fn unfit<T>(told: &message::Parameter, why: &str) -> Result<T, Fault> {
+    Err(Fault::Unfit {
+        message: "hello",
+        why: format!("the parameter {:?}: {why}", told.name),
+    })
+}
+
+fn parameter(told: &message::Parameter) -> Result<Parameter, Fault> {
+    if told.name.is_empty()
+        || told
+            .name
+            .contains(|c: char| c.is_whitespace() || shown::is_order(c))
+    {
+        return unfit(told, "a name is one word");
+    }
+    let numbers = |whole: bool| Range::Numbers {
+        least: told.least.unwrap_or(f64::NEG_INFINITY),
+        most: told.most.unwrap_or(f64::INFINITY),
+        whole,
+    };
+    let parameter = Parameter {
+        name: told.name.clone(),
+        value: match &told.value {
+            serde_json::Value::Bool(flag) => Value::Flag(*flag),
+            serde_json::Value::String(text) => Value::Text(text.clone()),
+            serde_json::Value::Number(number) => Value::Number(number.as_f64().unwrap_or(f64::NAN)),
+            _ => return unfit(told, "its value is a number, a flag or a text"),
+        },
+        range: match told.kind {
+            ParameterKind::Number => numbers(false),
+            ParameterKind::Integer => numbers(true),
+            ParameterKind::Flag => Range::Flag,
+            ParameterKind::Choice => Range::Choice(told.choices.clone()),
+            ParameterKind::Text => Range::Text,
+        },
+        about: shown::line(&told.about).into_owned(),
+    };
+    match parameter.check(&parameter.value) {
+        Ok(()) => Ok(parameter),
+        Err(why) => unfit(told, &format!("its own value is none that it takes: {why}")),
+    }
+}

@@ -1,0 +1,371 @@
+//! An exchange that was kept in a file: everything that an attached solver did, to be looked at without it.
+//!
+//! The file is gone through once; what it tells is a tree of states, as the session had it. Stepping goes along the tree and nowhere
+//! else: there is no solver that could.
+
+use super::fault::Fault;
+use super::log::Log;
+use super::orders;
+use super::told::{Frame, Led};
+use crate::model::Model;
+use crate::outside::input::{self, Unreadable};
+use crate::scene::Scene;
+use crate::step::event::Event;
+use crate::step::intervene::{Intervention, Refusal};
+use crate::step::places::Places;
+use crate::step::solver::{GoesBack, Lost, Offers, Solver};
+use crate::step::state::{State, Status};
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+use stickslip_exchange::attach::conversation::{HEAD, STARTED};
+use stickslip_exchange::attach::message::{Hello, Id};
+use stickslip_exchange::attach::{Answer, Kept, Request, Side};
+use stickslip_exchange::broken::Broken;
+
+/// Steps from the start: each an iteration (`None`), or something that was changed.
+pub type Line = Vec<Option<Intervention>>;
+
+/// A solver that is no more.
+pub struct Past {
+    start: State,
+    model: Arc<Model>,
+    places: Places<Option<Led>>,
+    offers: Offers,
+    state: State,
+    event: Event,
+    monitors: Vec<f64>,
+}
+
+/// What is wrong with a kept exchange.
+#[derive(Debug, thiserror::Error)]
+pub enum NoPast {
+    /// It is none, or a line is no message.
+    #[error("{}{broken}", place(broken))]
+    Broken {
+        /// What is wrong, and where.
+        broken: Broken,
+    },
+    /// It ends before there is a scene.
+    #[error("it ends before the solver has told what it solves")]
+    NoScene,
+    /// It cannot be read.
+    #[error(transparent)]
+    Unread(#[from] Unreadable),
+    /// What it tells does not fit together.
+    #[error(transparent)]
+    Unfit(#[from] Fault),
+}
+
+fn place(broken: &Broken) -> String {
+    broken
+        .at
+        .map_or_else(String::new, |(line, column)| format!("{line}:{column}: "))
+}
+
+/// An exchange that was read.
+pub struct Opened {
+    /// What was solved.
+    pub scene: Scene,
+    /// The solver that is no more.
+    pub past: Past,
+    /// All ways that were gone to their ends, in the order in which these were reached.
+    pub lines: Vec<Line>,
+    /// What the solver said besides.
+    pub log: Log,
+}
+
+impl NoPast {
+    /// The message about a file.
+    pub fn of(&self, file: &str) -> String {
+        match self {
+            NoPast::Unread(why) => why.of(file),
+            NoPast::Broken { broken } if broken.at.is_some() => format!("{file}:{self}"),
+            _ => format!("{file}: {self}"),
+        }
+    }
+}
+
+/// Most bytes of a kept exchange.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Reads the file of a kept exchange; `None` where it is the name of something else.
+pub fn file(name: &str) -> Option<Result<Opened, NoPast>> {
+    let path = Path::new(name);
+    let head = input::start(path, HEAD.len() as u64).ok()?;
+    (head == HEAD.as_bytes()).then(|| {
+        let mut bytes = input::bytes(
+            path,
+            MOST_BYTES,
+            "no exchange that was kept whole is so large",
+        )?;
+        // Who wrote it may have been ended in the middle of a letter; such a line is left out in any case.
+        bytes.truncate(
+            bytes
+                .iter()
+                .rposition(|byte| *byte == b'\n')
+                .map_or(0, |end| end + 1),
+        );
+        open(name, &input::utf8(bytes)?)
+    })
+}
+
+/// Reads a kept exchange; `name` is the file's.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn open(name: &str, text: &str) -> Result<Opened, NoPast> {
+    let kept = Kept::read(text).map_err(|broken| NoPast::Broken { broken })?;
+    let log = Log::default();
+    let mut reader = Reader::new();
+    for (number, line) in kept.iter().enumerate() {
+        let broken = |broken: Broken| {
+            let column = broken.at.map_or(1, |(_, column)| column + 2);
+            NoPast::Broken {
+                broken: Broken::at(number + 2, column, broken.message),
+            }
+        };
+        match line.side {
+            Side::Noted => {
+                if line.text.starts_with(STARTED) {
+                    reader.begin();
+                }
+                log.noted(&line.text);
+            }
+            Side::Logged => log.printed(&line.text),
+            Side::Asked => reader.asked(Request::read(&line.text).map_err(broken)?),
+            // A solver may have written what is no message: that was its end.
+            Side::Answered => match Answer::read(&line.text) {
+                Ok(Answer::Message { level, text }) => log.told(level, &text),
+                Ok(answer) => reader.answered(name, answer)?,
+                Err(_) => log.noted(&format!("no message: {}", line.text)),
+            },
+        }
+    }
+    let Reader {
+        met: Some(met),
+        places,
+        ..
+    } = reader
+    else {
+        return Err(NoPast::NoScene);
+    };
+    let past = Past {
+        offers: Offers {
+            name: met.hello.name,
+            version: met.hello.version,
+            past: true,
+            goes_back: GoesBack::ToAny,
+            ..Offers::default()
+        },
+        state: met.start.clone(),
+        start: met.start,
+        event: Event::nothing_yet(&met.model),
+        model: met.model,
+        places,
+        monitors: Vec::new(),
+    };
+    Ok(Opened {
+        lines: past
+            .places
+            .ends()
+            .map(|end| past.places.steps(end))
+            .collect(),
+        scene: met.scene,
+        past,
+        log,
+    })
+}
+
+/// A file as far as it is read.
+struct Reader {
+    hello: Option<Hello>,
+    met: Option<Met>,
+    places: Places<Option<Led>>,
+    /// Where the solver is, and what was changed there.
+    at: u64,
+    changed: Vec<Intervention>,
+    tokens: HashMap<String, u64>,
+    /// What was asked and is not yet answered.
+    pending: Option<Request>,
+}
+
+/// Who it is and what it solves.
+struct Met {
+    scene: Scene,
+    model: Arc<Model>,
+    hello: Hello,
+    ids: Vec<Id>,
+    start: State,
+}
+
+impl Reader {
+    fn new() -> Reader {
+        Reader {
+            hello: None,
+            met: None,
+            places: Places::new(None),
+            at: 0,
+            changed: Vec::new(),
+            tokens: HashMap::new(),
+            pending: None,
+        }
+    }
+
+    /// A solver is started.
+    fn begin(&mut self) {
+        self.at = 0;
+        self.changed.clear();
+        self.tokens.clear();
+        self.pending = None;
+    }
+
+    fn asked(&mut self, request: Request) {
+        if !matches!(request, Request::Interrupt | Request::Bye) {
+            self.pending = Some(request);
+        }
+    }
+
+    fn answered(&mut self, name: &str, answer: Answer) -> Result<(), NoPast> {
+        let pending = self.pending.take();
+        match (answer, pending) {
+            (Answer::Hello(hello), _) => self.hello = Some(*hello),
+            (Answer::Scene(told), _) if self.met.is_none() => {
+                let hello = self.hello.clone().ok_or(NoPast::NoScene)?;
+                self.met = Some(meet(name, hello, &told)?);
+            }
+            (Answer::State(told), _) => self.led(&told)?,
+            (Answer::Saved { token }, _) => {
+                self.tokens.insert(token.to_string(), self.at);
+            }
+            (Answer::Ok, Some(Request::Restore { token })) => {
+                self.at = self.tokens.get(&token.to_string()).copied().unwrap_or(0);
+                self.changed.clear();
+            }
+            (Answer::Ok, Some(request)) => {
+                let met = self.met.as_ref().ok_or(NoPast::NoScene)?;
+                let friction = self.state(met).controls.friction.first();
+                let now = friction.copied().unwrap_or_default();
+                orders::add(&mut self.changed, &request, &met.ids, now);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The state at which the solver is, without what was changed there.
+    fn state<'a>(&'a self, met: &'a Met) -> &'a State {
+        let led = self.places.get(self.at).and_then(Option::as_ref);
+        led.map_or(&met.start, |led| &led.state)
+    }
+
+    fn led(&mut self, told: &stickslip_exchange::attach::message::State) -> Result<(), NoPast> {
+        let met = self.met.as_ref().ok_or(NoPast::NoScene)?;
+        let asked = std::mem::take(&mut self.changed);
+        if let Some(place) = self.places.follows(self.at, &asked) {
+            self.at = place;
+            return Ok(());
+        }
+        let mut from = self.state(met).clone();
+        for intervention in &asked {
+            // It was taken then.
+            let _ = from.intervene(&met.model, intervention);
+        }
+        let frame = Frame {
+            model: &met.model,
+            ids: &met.ids,
+            decides: met.hello.decides,
+        };
+        let led = frame.led(&from, told)?;
+        self.at = self.places.add(self.at, asked, Some(led));
+        if let Some(Some(led)) = self.places.get_mut(self.at) {
+            led.state_at(self.at);
+        }
+        Ok(())
+    }
+}
+
+fn meet(
+    name: &str,
+    hello: Hello,
+    told: &stickslip_exchange::attach::message::Scene,
+) -> Result<Met, NoPast> {
+    let scene = Scene::told(name, told, None).map_err(|error| {
+        NoPast::Unfit(Fault::Unfit {
+            message: "scene",
+            why: error.message,
+        })
+    })?;
+    let model = Arc::new(scene.model.clone());
+    let ids: Vec<Id> = told
+        .contacts
+        .iter()
+        .map(|contact| contact.id.clone())
+        .collect();
+    let start = State::outside_start(&model);
+    Ok(Met {
+        scene,
+        model,
+        hello,
+        ids,
+        start,
+    })
+}
+
+impl Past {
+    /// Goes back to the start.
+    pub fn rewind(&mut self) {
+        self.state.clone_from(&self.start);
+        self.event = Event::nothing_yet(&self.model);
+    }
+
+    /// The place to which the present state leads.
+    fn next(&self) -> Option<&Led> {
+        let place = self
+            .places
+            .follows(self.state.place()?, self.state.asked())?;
+        self.places.get(place)?.as_ref()
+    }
+}
+
+impl Solver for Past {
+    fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn event(&self) -> &Event {
+        &self.event
+    }
+
+    fn step(&mut self) -> Result<bool, Lost> {
+        if self.state.status == Status::Finished {
+            return Ok(false);
+        }
+        let Some(led) = self.next().cloned() else {
+            return Err(Lost::new(Fault::Past.to_string()));
+        };
+        (self.state, self.event, self.monitors) = (led.state, led.event, led.monitors);
+        Ok(true)
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+        self.state.clone_from(state);
+        Ok(())
+    }
+
+    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+        self.state.intervene(&self.model, intervention)
+    }
+
+    fn monitors(&mut self, out: &mut Vec<f64>) {
+        out.extend_from_slice(&self.monitors);
+    }
+
+    fn offers(&self) -> Offers {
+        self.offers.clone()
+    }
+}

@@ -1,0 +1,275 @@
+//! Our own solver on the other side of the protocol: `stickslip serve SCENE`.
+//!
+//! A debugger that attaches to it sees what it would see of the scene itself, to the last bit.
+
+use super::wire;
+use crate::format::paths;
+use crate::model::Friction;
+use crate::record::export::frozen;
+use crate::scene::Scene;
+use crate::scene::solver::solver;
+use crate::step::intervene::Intervention;
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use serde_json::Value;
+use std::io::{self, BufRead, Write};
+use std::sync::Arc;
+use stickslip_exchange::attach::message::{
+    Abilities, Hello, Id, Matrix, MatrixKind, Parameter, ParameterKind, Problem, Restore,
+};
+use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, PROTOCOL, Request};
+
+/// Answers what comes in, line by line, until it ends.
+///
+/// # Errors
+/// If the streams cannot be read or written.
+pub fn serve(scene: &Scene, from: impl BufRead, mut to: impl Write) -> io::Result<()> {
+    let mut server = Server::new(scene);
+    let mut lines = Lines::new(from, MOST_BYTES);
+    loop {
+        let request = match lines.next_line()? {
+            Line::Text(text) => Request::read(&text).map_err(|broken| broken.to_string()),
+            Line::NoText(_) => Err("it is not UTF-8".to_owned()),
+            Line::TooLong(_) | Line::Torn(_) | Line::End => return Ok(()),
+        };
+        let answer = match request {
+            Ok(Request::Bye) => return Ok(()),
+            Ok(Request::Interrupt) => continue,
+            Ok(request) => server.answer(&request),
+            Err(why) => refused(format!("this is no request: {why}")),
+        };
+        to.write_all(answer.line().as_bytes())?;
+        to.flush()?;
+    }
+}
+
+fn refused(reason: impl Into<String>) -> Answer {
+    let reason = reason.into();
+    Answer::Refused { reason }
+}
+
+struct Server<'a> {
+    scene: &'a Scene,
+    stepper: Stepper,
+    saved: Vec<State>,
+}
+
+impl<'a> Server<'a> {
+    fn new(scene: &'a Scene) -> Self {
+        Server {
+            scene,
+            stepper: solver(Arc::new(scene.model.clone())),
+            saved: Vec::new(),
+        }
+    }
+
+    fn answer(&mut self, request: &Request) -> Answer {
+        match request {
+            Request::Hello { .. } => Answer::Hello(Box::new(self.hello())),
+            Request::Scene => Answer::Scene(Box::new(wire::scene(&self.scene.model))),
+            Request::Step => self.step(),
+            Request::Force {
+                contact,
+                mode,
+                hold,
+            } => self.on_contact(contact, |slave| Intervention::Force {
+                slave,
+                mode: crate::scene::attached::mode(*mode),
+                hold: *hold,
+            }),
+            Request::Release { contact } => {
+                self.on_contact(contact, |slave| Intervention::Release { slave })
+            }
+            Request::Set { name, value } => match self.setting(name, value) {
+                Ok(intervention) => self.intervene(&intervention),
+                Err(why) => refused(why),
+            },
+            Request::Save => {
+                self.saved.push(self.stepper.state().clone());
+                Answer::Saved {
+                    token: Value::from(self.saved.len() - 1),
+                }
+            }
+            Request::Restore { token } => {
+                let place = token.as_u64().and_then(|place| usize::try_from(place).ok());
+                match place.and_then(|place| self.saved.get(place)) {
+                    Some(state) => {
+                        self.stepper.restore(state);
+                        Answer::Ok
+                    }
+                    None => refused(format!("no state was saved as {token}")),
+                }
+            }
+            Request::Problem => self.problem(),
+            Request::Interrupt | Request::Bye => Answer::Ok,
+        }
+    }
+
+    fn hello(&self) -> Hello {
+        Hello {
+            protocol: PROTOCOL,
+            name: format!("stickslip {}", self.scene.name),
+            version: env!("CARGO_PKG_VERSION").into(),
+            abilities: Abilities {
+                force: true,
+                hold: true,
+                restore: Restore::Any,
+                problem: true,
+                interrupt: false,
+            },
+            decides: None,
+            parameters: parameters(self.scene),
+        }
+    }
+
+    fn step(&mut self) -> Answer {
+        if self.stepper.step().is_none() {
+            return refused("the history is done");
+        }
+        let mut monitors = Vec::new();
+        let event = self.stepper.event();
+        let accepted = matches!(event.outcome, crate::step::event::Outcome::Increment { .. });
+        if accepted {
+            self.stepper.monitors(&mut monitors);
+        }
+        let (state, event) = (self.stepper.state(), self.stepper.event());
+        let told = wire::state(self.stepper.model(), state, event, &monitors);
+        Answer::State(Box::new(told))
+    }
+
+    fn on_contact(&mut self, id: &Id, what: impl FnOnce(usize) -> Intervention) -> Answer {
+        match wire::contact(id, self.stepper.model()) {
+            Some(slave) => self.intervene(&what(slave)),
+            None => refused(format!("there is no contact {id}")),
+        }
+    }
+
+    fn intervene(&mut self, intervention: &Intervention) -> Answer {
+        match self.stepper.intervene(intervention) {
+            Ok(()) => Answer::Ok,
+            Err(why) => refused(why.to_string()),
+        }
+    }
+
+    /// What a parameter's new value means.
+    fn setting(&self, name: &str, value: &Value) -> Result<Intervention, String> {
+        let controls = &self.stepper.state().controls;
+        let number = || {
+            let number = value.as_f64();
+            number.ok_or_else(|| format!("{name} takes a number, and {value} is none"))
+        };
+        let now = controls.friction.first().copied().unwrap_or_default();
+        match name {
+            "increment" => number().map(Intervention::Increment),
+            "friction" => Ok(Intervention::Friction(Friction::from_coefficient(
+                number()?,
+                now.cohesion,
+            ))),
+            "cohesion" => Ok(Intervention::Friction(Friction {
+                cohesion: number()?,
+                ..now
+            })),
+            path if path.starts_with("settings.") => {
+                let mut spec = self.scene.spec.clone();
+                spec.settings = controls.settings;
+                let word = match (value, value.as_f64()) {
+                    (Value::String(text), _) => text.clone(),
+                    // A whole number reads as one.
+                    (_, Some(number)) => number.to_string(),
+                    (other, None) => other.to_string(),
+                };
+                paths::set(&mut spec, path, &word).map_err(|why| why.to_string())?;
+                Ok(Intervention::Settings(spec.settings))
+            }
+            _ => Err(format!("there is no parameter {name}")),
+        }
+    }
+
+    fn problem(&mut self) -> Answer {
+        let Some(problem) = self.stepper.interface_problem() else {
+            return refused("the bodies cannot be condensed to the interface here");
+        };
+        match frozen::total(self.stepper.model(), &problem) {
+            Ok(total) => {
+                let friction = &self.stepper.state().controls.friction;
+                let of = |&slave: &usize| friction[slave];
+                Answer::Problem(Box::new(Problem {
+                    contacts: total.slaves.iter().map(|&slave| wire::id(slave)).collect(),
+                    kind: MatrixKind::Compliance,
+                    matrix: Matrix::Rows(total.w),
+                    q: total.q,
+                    load: Vec::new(),
+                    mu: total
+                        .slaves
+                        .iter()
+                        .map(|slave| of(slave).coefficient())
+                        .collect(),
+                    cohesion: total
+                        .slaves
+                        .iter()
+                        .map(|slave| of(slave).cohesion)
+                        .collect(),
+                }))
+            }
+            Err(why) => refused(why.to_string()),
+        }
+    }
+}
+
+/// What can be changed during a run.
+fn parameters(scene: &Scene) -> Vec<Parameter> {
+    let friction = scene.spec.friction.of_node(None);
+    let number = |name: &str, value: f64, about: &str| Parameter {
+        name: name.into(),
+        kind: ParameterKind::Number,
+        value: Value::from(value),
+        least: Some(0.0),
+        most: None,
+        choices: Vec::new(),
+        about: about.into(),
+    };
+    let mut all = vec![
+        number(
+            "increment",
+            scene.model.on_leg(0),
+            "Increment of the load factor; the present one starts again",
+        ),
+        number(
+            "friction",
+            friction.coefficient(),
+            "Friction coefficient of all contacts",
+        ),
+        number("cohesion", friction.cohesion, "Cohesion of all contacts"),
+    ];
+    let words = paths::of_settings();
+    let settings = paths::list(&scene.spec).into_iter();
+    let settings = settings.filter(|listed| listed.path.starts_with("settings."));
+    all.extend(settings.map(|listed| {
+        let choices = words.iter().find(|(path, _)| *path == listed.path);
+        let choices: Vec<String> = choices.map_or_else(Vec::new, |(_, words)| {
+            words.iter().map(|word| (*word).to_owned()).collect()
+        });
+        let (kind, value) = match listed.value.parse::<f64>() {
+            _ if !choices.is_empty() => (ParameterKind::Choice, Value::from(listed.value)),
+            Ok(_) if listed.kind.contains("whole") => {
+                let whole: Option<i64> = listed.value.parse().ok();
+                (ParameterKind::Integer, Value::from(whole))
+            }
+            Ok(number) => (ParameterKind::Number, Value::from(number)),
+            Err(_) => match listed.value.parse::<bool>() {
+                Ok(flag) => (ParameterKind::Flag, Value::from(flag)),
+                Err(_) => (ParameterKind::Text, Value::from(listed.value)),
+            },
+        };
+        Parameter {
+            name: listed.path,
+            kind,
+            value,
+            least: None,
+            most: None,
+            choices,
+            about: listed.kind,
+        }
+    }));
+    all
+}

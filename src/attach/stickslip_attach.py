@@ -1,0 +1,440 @@
+"""Attach a solver to stickslip, the debugger for contact iterations.
+
+A solver is a class with two to five methods: `scene` and `step`, and, where it can, `force`, `restore` and `problem`.
+What is not written is not offered::
+
+    from stickslip_attach import Solver, attach
+
+    class Mine(Solver):
+        name, version = "Mine", "1.0"
+
+        def scene(self):                  # what there is: nodes, surfaces, contacts
+            ...
+
+        def step(self):                   # one iteration: what was found at each contact
+            ...
+
+    attach(Mine)
+
+`stickslip attach -- python mine.py` then steps it. Messages are dictionaries with the keys that the manual's page
+`protocol` gives them (`stickslip help protocol`); arrays of numpy may stand where lists do. Infinity is sent as null, and a
+message with NaN in it is refused, with the place where it stands. Standard output carries messages and nothing else:
+what the solver prints, from Python, C or Fortran, goes to standard error.
+
+Python 3.9 or newer; only its standard library. A part of stickslip, MIT or Apache-2.0.
+"""
+
+import copy
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+import traceback
+from dataclasses import asdict, dataclass, field
+from typing import Any, Callable, ClassVar, Optional, Union
+
+__all__ = ["Parameter", "Refused", "Solver", "attach"]
+
+Message = dict[str, Any]
+Id = Union[int, str]
+
+PROTOCOL = 1
+MOST_BYTES = 64 << 20
+MODES = ("free", "sliding", "fixed")
+ENDS = ("iteration", "equilibrium", "increment", "cut", "failure", "done")
+# The ability that a request needs, named as the method that gives it.
+NEEDS = {"force": "force", "release": "force", "save": "restore", "restore": "restore", "problem": "problem"}
+
+
+class Refused(Exception):
+    """Raise it where a request cannot be granted: the debugger shows its text, and asks on."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """What the user may change during a run: the attribute of the solver that has this name.
+
+    A value is checked, then assigned; a property with a setter is the place for what follows from it. Three names have
+    a meaning: `increment` (its size; the present increment starts again), `friction` (mu of all contacts), `cohesion`.
+    """
+
+    name: str
+    about: str = ""
+    kind: str = "number"  # or "integer", "flag", "choice", "text"
+    least: Optional[float] = None
+    most: Optional[float] = None
+    choices: tuple[str, ...] = ()
+
+    def checked(self, value: Any) -> Any:
+        """The value as its kind has it; refused if it is of another kind or out of range."""
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        wanted, fits = {
+            "number": ("a number", number),
+            "integer": ("a whole number", number and float(value).is_integer()),
+            "flag": ("true or false", isinstance(value, bool)),
+            "choice": ("one of " + ", ".join(self.choices), value in self.choices),
+            "text": ("a text", isinstance(value, str)),
+        }[self.kind]
+        if not fits:
+            raise Refused(f"{self.name} is {wanted}, not {value!r}")
+        if number and self.least is not None and value < self.least:
+            raise Refused(f"{self.name} is at least {self.least}, not {value}")
+        if number and self.most is not None and value > self.most:
+            raise Refused(f"{self.name} is at most {self.most}, not {value}")
+        return {"number": float, "integer": int}.get(self.kind, lambda as_it_is: as_it_is)(value)
+
+
+class Solver:
+    """What stickslip steps. Write `scene` and `step`, and those of the others that your solver can do."""
+
+    name: ClassVar[str] = "solver"
+    version: ClassVar[str] = ""
+    #: "table2" or "newton", if it chooses its modes so and the debugger is to check each choice.
+    decides: ClassVar[Optional[str]] = None
+    #: What the user may change.
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
+    #: Where `restore` can go back to: "any" state, or the start and those in which an "increment" has just ended.
+    restores: ClassVar[str] = "any"
+    #: Whether `step` looks at `interrupted`.
+    interrupts: ClassVar[bool] = False
+    #: The modes that the user holds, by contact. `force` is called for each of them before every step; a solver need
+    #: look here only to tell whether its modes have settled.
+    held: dict[Id, str]
+
+    def __new__(cls, *_: Any, **__: Any) -> "Solver":
+        solver = super().__new__(cls)
+        solver.held = {}
+        return solver
+
+    def scene(self) -> Message:
+        """What is solved: `title`, `nodes`, `lines`, `surfaces`, `contacts`. Called once."""
+        raise NotImplementedError("a solver needs a method `scene`")
+
+    def step(self) -> Message:
+        """Make one iteration, and say what it found: `ended`, `contacts`, `residual`, `load`, `displacements`.
+
+        `contacts` is a list of dictionaries in the order of the scene, or a dictionary of columns: `mode` (of this
+        solve), `next`, `gap`, `f_n`, `f_t`, `limit`, `slip`. `id` may be left out, and `at` too, which is then counted
+        by what `ended`. After "done" there is another step only if something was forced or set since.
+        """
+        raise NotImplementedError("a solver needs a method `step`")
+
+    def force(self, contact: Id, mode: str) -> None:
+        """Let the next iteration be made with this mode at this contact; all others follow the solver's own rules."""
+
+    def restore(self, saved: Any) -> None:
+        """Go back to where `save` gave this; all that follows has the same bits. `vars(self).update(saved)` may do."""
+
+    def problem(self) -> Message:
+        """The interface problem that the next iteration would solve: `matrix`, `q`, `mu`; `kind`, if it is no compliance."""
+        raise NotImplementedError
+
+    def save(self) -> Any:
+        """What `restore` needs, of which a deep copy is kept: all attributes, unless you leave out what never changes."""
+        return vars(self)
+
+    def interrupted(self) -> bool:
+        """Whether the user wants this step to end soon; a long one may look now and then, and raise `Refused`."""
+        return _line is not None and _line.interrupted.is_set()
+
+    def message(self, text: str, level: str = "info") -> None:
+        """Tell the user something; `level` is "info", "warning" or "error"."""
+        if _line is not None:
+            _line.say(_text({"type": "message", "level": level, "text": text}))
+
+
+def attach(make: Callable[[], Solver]) -> None:
+    """Make the solver, and answer the debugger until it leaves.
+
+    `make` is the class, or a function without arguments. It is called when standard output is guarded: a package that
+    prints while it is imported is best imported in there.
+    """
+    global _line
+    if os.isatty(0):
+        print("This speaks with a debugger: stickslip attach -- COMMAND", file=sys.stderr)
+    _line = _Line()
+    try:
+        session = _Session(make())
+    except Exception as error:
+        traceback.print_exc()
+        _line.say(_text({"type": "bye", "reason": _told(error)}))
+        sys.exit(1)
+    signal.signal(signal.SIGINT, _line.stop)
+    threading.Thread(target=_line.listen, daemon=True).start()
+    try:
+        while (ask := _line.requests.get()) is not None:
+            _line.say(session.answer(ask))
+    except BrokenPipeError:
+        pass  # The debugger is gone.
+
+
+class _Line:
+    """Both ends of the line to the debugger, out of reach of everything else in this process."""
+
+    def __init__(self) -> None:
+        self.interrupted = threading.Event()
+        self.requests: queue.SimpleQueue[Optional[Message]] = queue.SimpleQueue()
+        self.lock = threading.Lock()
+        self.busy = False
+        self.source, self.sink = os.dup(0), os.dup(1)
+        nothing = os.open(os.devnull, os.O_RDONLY)
+        os.dup2(nothing, 0)
+        os.close(nothing)
+        os.dup2(2, 1)
+        sys.stdout.flush()
+        sys.stdout = sys.stderr
+
+    def listen(self) -> None:
+        """Take lines as they come, so that an interrupt is heard while a step is made; to the end, or until a bye."""
+        rest, bye = b"", False
+        while not bye and (part := os.read(self.source, 1 << 16)):
+            *lines, rest = (rest + part).split(b"\n")
+            for line in lines:
+                ask = _request(line)
+                bye = bye or ask.get("type") == "bye"
+                if ask.get("type") == "interrupt":
+                    self.interrupted.set()
+                elif not bye:
+                    self.interrupted.clear()  # What came before this request was not meant for it.
+                    self.requests.put(ask)
+        self.interrupted.set()
+        self.requests.put(None)
+
+    def stop(self, *_: Any) -> None:
+        """A signal ends the request at hand. One that comes while nothing is done is late, and is passed over."""
+        if self.busy:
+            self.busy = False
+            raise KeyboardInterrupt
+
+    def say(self, text: bytes) -> None:
+        with self.lock:
+            while text:
+                text = text[os.write(self.sink, text):]
+
+
+# A process has one standard input and output.
+_line: Optional[_Line] = None
+
+
+@dataclass
+class _Course:
+    """What is known of a run besides what the solver keeps."""
+
+    chosen: dict[Id, str]  # By the solver, for the next iteration.
+    held: dict[Id, str]
+    at: dict[str, int] = field(default_factory=lambda: {"increment": 1, "attempt": 1, "major": 1, "minor": 0})
+    ended: Optional[str] = None  # With the last iteration.
+    over: bool = False  # Done, and nothing was forced or set since.
+    once: dict[Id, str] = field(default_factory=dict)  # Forced for the next iteration.
+
+    def next_place(self) -> dict[str, int]:
+        at = dict(self.at)
+        if self.ended == "increment":
+            return {"increment": at["increment"] + 1, "attempt": 1, "major": 1, "minor": 1}
+        if self.ended == "cut":
+            return {**at, "attempt": at["attempt"] + 1, "major": 1, "minor": 1}
+        if self.ended == "equilibrium":
+            return {**at, "major": at["major"] + 1, "minor": 1}
+        return {**at, "minor": at["minor"] + 1}
+
+
+class _Session:
+    """Answers requests, and keeps what was forced, saved and counted."""
+
+    def __init__(self, solver: Solver) -> None:
+        self.solver = solver
+        self.scene = {"type": "scene", **solver.scene()}
+        self.scene["contacts"] = _rows(self.scene["contacts"])
+        self.ids: list[Id] = [each["id"] for each in self.scene["contacts"]]
+        modes = {each["id"]: each.get("mode", "free") for each in self.scene["contacts"]}
+        self.course = _Course(chosen=modes, held=solver.held)
+        self.kept: list[tuple[Any, Any, _Course]] = []
+        self.requests: dict[str, Callable[[Message], Message]] = {
+            "hello": self.hello, "scene": lambda ask: self.scene, "step": self.step, "force": self.force, "save": self.save,
+            "release": self.release, "set": self.set, "restore": self.restore, "problem": self.problem}
+
+    def answer(self, ask: Message) -> bytes:
+        """The one answer to a request, whatever happens in the solver."""
+        try:
+            kind = str(ask.get("type"))
+            if kind not in self.requests:
+                raise Refused(f"there is no request {kind}")
+            if kind in NEEDS and not self.offers(NEEDS[kind]):
+                raise Refused(f"{self.solver.name} does not offer {NEEDS[kind]}")
+            return _text(self.carried_out(self.requests[kind], ask))
+        except Refused as refused:
+            return _text({"type": "refused", "reason": str(refused)})
+        except KeyboardInterrupt:
+            return _text({"type": "refused", "reason": "interrupted"})
+        except Exception as error:
+            traceback.print_exc()
+            return _text({"type": "refused", "reason": _told(error)})
+
+    def carried_out(self, request: Callable[[Message], Message], ask: Message) -> Message:
+        """What a request gives; a signal may break it off."""
+        assert _line is not None
+        _line.busy = True
+        try:
+            return request(ask)
+        finally:
+            _line.busy = False
+
+    def offers(self, method: str) -> bool:
+        return getattr(type(self.solver), method) is not getattr(Solver, method)
+
+    def hello(self, ask: Message) -> Message:
+        if ask.get("protocol") != PROTOCOL:
+            raise Refused(f"version {PROTOCOL} of the protocol is spoken here, not {ask.get('protocol')}")
+        solver, forces = self.solver, self.offers("force")
+        abilities = {"force": forces, "hold": forces, "problem": self.offers("problem"), "interrupt": solver.interrupts,
+                     "restore": solver.restores if self.offers("restore") else "none"}
+        parameters = [{**asdict(each), "value": getattr(solver, each.name)} for each in solver.parameters]
+        return {"type": "hello", "protocol": PROTOCOL, "name": solver.name, "version": solver.version,
+                "abilities": abilities, "decides": solver.decides, "parameters": parameters}
+
+    def step(self, ask: Message) -> Message:
+        ids, course = self.ids, self.course
+        if course.over:
+            raise Refused("the history is over")
+        for contact, mode in course.held.items():
+            self.solver.force(contact, mode)
+        state = {"type": "state", "at": course.next_place(), **self.solver.step()}
+        state["at"] = {"attempt": 1, "major": 1, "minor": 1, **state["at"]}
+        rows = state["contacts"] = _rows(state.get("contacts", []))
+        if state.get("ended") not in ENDS:
+            raise Refused(f"a state has ended one of {', '.join(ENDS)}, not {state.get('ended')!r}")
+        if len(rows) != len(ids) and (rows or state["ended"] != "failure"):
+            raise Refused(f"a state of {len(ids)} contacts has {len(rows)}")
+        for contact, row in zip(ids, rows):
+            row.setdefault("id", contact)
+            course.chosen[contact] = row["next"]
+            if contact in course.held:
+                row.update(forced="held", wanted=row["next"], next=course.held[contact])
+            elif contact in course.once:
+                row.update(forced="once")
+        course.at, course.ended, course.over = dict(state["at"]), state["ended"], state["ended"] == "done"
+        course.once.clear()
+        return state
+
+    def force(self, ask: Message) -> Message:
+        contact, mode = self.contact(ask), ask.get("mode")
+        if mode not in MODES:
+            raise Refused(f"a mode is one of {', '.join(MODES)}, not {mode!r}")
+        self.solver.force(contact, mode)
+        self.forget(contact)
+        (self.course.held if ask.get("hold") else self.course.once)[contact] = mode
+        self.course.over = False
+        return {"type": "ok"}
+
+    def release(self, ask: Message) -> Message:
+        contact = self.contact(ask)
+        self.solver.force(contact, self.course.chosen[contact])
+        self.forget(contact)
+        self.course.over = False
+        return {"type": "ok"}
+
+    def forget(self, contact: Id) -> None:
+        self.course.held.pop(contact, None)
+        self.course.once.pop(contact, None)
+
+    def contact(self, ask: Message) -> Id:
+        contact: Id = ask.get("contact", "")
+        if contact not in self.ids:
+            raise Refused(f"there is no contact {contact!r}")
+        return contact
+
+    def set(self, ask: Message) -> Message:
+        name = ask.get("name")
+        known = {each.name: each for each in self.solver.parameters}
+        if name not in known:
+            raise Refused(f"there is no parameter {name!r}" + (f", only {', '.join(known)}" if known else ""))
+        setattr(self.solver, name, known[name].checked(ask.get("value")))
+        if name == "increment" and self.course.ended not in (None, "increment", "done"):
+            self.course.ended = "cut"
+        self.course.over = False
+        return {"type": "ok"}
+
+    def save(self, ask: Message) -> Message:
+        if self.solver.restores == "increment" and self.course.ended not in (None, "increment", "done"):
+            raise Refused("only a state in which an increment has just ended can be saved")
+        values = {each.name: getattr(self.solver, each.name) for each in self.solver.parameters}
+        self.kept.append(copy.deepcopy((self.solver.save(), values, self.course)))
+        return {"type": "saved", "token": len(self.kept) - 1}
+
+    def restore(self, ask: Message) -> Message:
+        token: Any = ask.get("token")
+        if token not in range(len(self.kept)):
+            raise Refused(f"nothing was saved as {token!r}")
+        saved, values, self.course = copy.deepcopy(self.kept[token])
+        for name, value in values.items():
+            setattr(self.solver, name, value)
+        self.solver.restore(saved)  # After the values: a setter may do more than the state that it was saved in.
+        self.solver.held = self.course.held
+        return {"type": "ok"}
+
+    def problem(self, ask: Message) -> Message:
+        return {"type": "problem", "contacts": self.ids, "kind": "compliance", **self.solver.problem()}
+
+
+def _request(line: bytes) -> Message:
+    """What a line asks; one that is no request is refused when its turn comes."""
+    try:
+        ask = json.loads(line)
+    except ValueError:
+        ask = None
+    return ask if isinstance(ask, dict) else {"type": None}
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}".rstrip(": ")
+
+
+def _rows(contacts: Any) -> list[Message]:
+    """Contacts as dictionaries, where they may be columns."""
+    if not isinstance(contacts, dict):
+        return [dict(row) for row in contacts]
+    columns = {name: column if isinstance(column, list) else _plain(column) for name, column in contacts.items()}
+    if len(set(map(len, columns.values()))) > 1:
+        raise Refused("the columns of contacts are not equally long: " + ", ".join(f"{n} {len(c)}" for n, c in columns.items()))
+    return [dict(zip(columns, values)) for values in zip(*columns.values())]
+
+
+def _text(message: Message) -> bytes:
+    """The line; floats as they read back to the same bits."""
+    try:
+        text = json.dumps(message, allow_nan=False, default=_plain)
+    except ValueError:
+        text = json.dumps(_finite(message), allow_nan=False)
+    if len(text) >= MOST_BYTES:
+        raise Refused(f"the {message['type']} takes {len(text)} bytes, and a line has at most {MOST_BYTES}")
+    return text.encode() + b"\n"
+
+
+def _plain(value: Any) -> Any:
+    """What numpy and others have as lists and numbers of Python."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if hasattr(value, "item"):
+        return value.item()
+    if hasattr(value, "__iter__"):
+        return list(value)
+    raise Refused(f"{value!r} is neither number, text, list nor dictionary")
+
+
+def _finite(value: Any, *place: Any) -> Any:
+    """The same with null for infinities; NaN is refused with its place."""
+    if isinstance(value, float):
+        if value != value:
+            where = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in place)
+            raise Refused(f"{where.lstrip('.')} is not a number (NaN)")
+        return float(value) if value - value == 0.0 else None
+    # Most of a message is finite numbers, for which a call each would be slow.
+    if isinstance(value, dict):
+        return {key: each if each.__class__ is float and each - each == 0.0 else _finite(each, *place, key)
+                for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [each if each.__class__ is float and each - each == 0.0 else _finite(each, *place, at)
+                for at, each in enumerate(value)]
+    return value if value is None or isinstance(value, (str, int)) else _finite(_plain(value), *place)

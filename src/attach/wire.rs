@@ -1,0 +1,270 @@
+//! What our own solver says to a debugger: from models, states and events of the core to messages of the protocol.
+//!
+//! Nothing is rounded on the way, so that a trace that is made on the other side has the same bits.
+
+use super::told::TESTED;
+use crate::contact::record::{self, ContactRecord};
+use crate::contact::table2::{Test, Tested};
+use crate::explain::names;
+use crate::explain::report;
+use crate::linear::norms::Norms;
+use crate::model::{Axis, Bond, Control, Jumps, Mode, Model, Watched};
+use crate::step::event::{Event, Failure, Outcome};
+use crate::step::state::State;
+use stickslip_exchange::attach::message::{
+    self, At, Contact, Ended, Forced, Found, Friction, Id, Monitor, MonitorKind, Node, Scene,
+    Surface, number,
+};
+
+/// The number of a contact in messages, from 1.
+pub fn id(contact: usize) -> Id {
+    Id::Number(i64::try_from(contact + 1).unwrap_or(i64::MAX))
+}
+
+/// The contact of a number.
+pub fn contact(id: &Id, model: &Model) -> Option<usize> {
+    let Id::Number(number) = id else {
+        return None;
+    };
+    let contact = usize::try_from(*number).ok()?.checked_sub(1)?;
+    (contact < model.contacts.len()).then_some(contact)
+}
+
+/// A mode's word.
+pub fn mode(mode: Mode) -> message::Mode {
+    match mode {
+        Mode::Free => message::Mode::Free,
+        Mode::Sliding => message::Mode::Sliding,
+        Mode::Fixed => message::Mode::Fixed,
+    }
+}
+
+/// A scene. Of a surface whose elements have more than two nodes the chain of all nodes is told, and of one in several pieces
+/// the first.
+pub fn scene(model: &Model) -> Scene {
+    let node = |node: &crate::model::Node| Node {
+        name: node.name.clone(),
+        at: node.at,
+    };
+    let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
+    Scene {
+        title: model.title.clone(),
+        about: model.about.clone(),
+        nodes: model.nodes.iter().map(node).collect(),
+        lines: lines.cloned().collect(),
+        surfaces: model.surfaces.iter().map(surface).collect(),
+        contacts: (0..model.contacts.len())
+            .map(|k| of_contact(model, k))
+            .collect(),
+        load: match model.path.as_slice() {
+            [from, .., to] if from != to => Some([*from, *to]),
+            _ => None,
+        },
+        monitors: model.monitors.iter().map(monitor).collect(),
+        arc: model.control == Control::Arc,
+        drag: model.jumps == Jumps::Dynamic,
+    }
+}
+
+fn surface(surface: &crate::model::Surface) -> Surface {
+    let mut nodes: Vec<usize> = Vec::new();
+    for element in &surface.elements {
+        match nodes.last() {
+            Some(last) if Some(last) == element.first() => nodes.extend(&element[1..]),
+            Some(_) => break,
+            None => nodes.extend(element),
+        }
+    }
+    Surface {
+        name: surface.name.clone(),
+        nodes,
+        rigid: surface.rigid,
+    }
+}
+
+fn of_contact(model: &Model, k: usize) -> Contact {
+    let contact = &model.contacts[k];
+    let friction = contact.friction;
+    Contact {
+        id: id(k),
+        name: names::slave(model, k).to_owned(),
+        node: contact.node,
+        surface: contact
+            .surfaces
+            .first()
+            .map(|&surface| model.surfaces[surface].name.clone()),
+        friction: Friction {
+            mu: None,
+            angle: Some(friction.angle),
+            cohesion: friction.cohesion,
+        },
+        mode: mode(contact.start),
+        area: contact.area,
+        gives: match contact.bond {
+            Bond::Giving(give) => Some(give),
+            Bond::Hard | Bond::Tied { .. } => None,
+        },
+        tied: contact.bond.is_tied(),
+    }
+}
+
+fn monitor(monitor: &crate::model::Monitor) -> Monitor {
+    let kind = match &monitor.of {
+        Watched::Contact {
+            axis: Axis::X | Axis::Y,
+            ..
+        }
+        | Watched::Reaction { .. } => MonitorKind::Force,
+        Watched::Pressure { .. } => MonitorKind::Pressure,
+        Watched::Modes { .. } => MonitorKind::Count,
+        Watched::Displacement { .. } | Watched::Drift { .. } => MonitorKind::Length,
+        Watched::Arc | Watched::Told { .. } => MonitorKind::Other,
+    };
+    Monitor::Kind {
+        name: monitor.name.clone(),
+        kind,
+    }
+}
+
+/// What a minor iteration did; `monitors` where it ended an increment.
+pub fn state(model: &Model, state: &State, event: &Event, monitors: &[f64]) -> message::State {
+    let at = event.position;
+    let (ended, after, size) = ended(event);
+    let found = event.nodes.iter().enumerate();
+    message::State {
+        at: At {
+            increment: at.increment,
+            attempt: at.attempt,
+            major: at.major,
+            minor: at.minor,
+        },
+        load: Some(event.load_factor),
+        ended,
+        reason: reason(model, event),
+        size,
+        contacts: found.map(|(k, record)| of_record(k, record)).collect(),
+        residual: norms(&event.before),
+        after,
+        displacements: Some(displacements(model, state)),
+        spring: None,
+        monitors: monitors.iter().copied().map(number).collect(),
+        arc: event.arc.and_then(number),
+        drag: (event.drag != 0.0).then_some(event.drag),
+    }
+}
+
+/// Displacements of all nodes: where they are, less where they were.
+fn displacements(model: &Model, state: &State) -> Vec<[f64; 2]> {
+    let moved = |node: usize| {
+        let dof = |axis: usize| match model.dofs.count.get(node) {
+            Some(2..) => state.u.get(model.dofs.first[node] + axis).copied(),
+            _ => None,
+        };
+        [dof(0).unwrap_or(0.0), dof(1).unwrap_or(0.0)]
+    };
+    (0..model.nodes.len()).map(moved).collect()
+}
+
+fn ended(event: &Event) -> (Ended, Option<message::Norms>, Option<f64>) {
+    match &event.outcome {
+        Outcome::Minor
+        | Outcome::Damped { .. }
+        | Outcome::Climbed { .. }
+        | Outcome::HeldBack { .. } => (Ended::Iteration, None, None),
+        Outcome::Cut { size, .. } | Outcome::Leaps { size, .. } | Outcome::Detour { size, .. } => {
+            (Ended::Cut, None, number(*size))
+        }
+        Outcome::Turns { .. } | Outcome::Moves(_) => (Ended::Cut, None, None),
+        Outcome::Major { after, .. } | Outcome::Refused { after, .. } => {
+            (Ended::Equilibrium, Some(norms(after)), None)
+        }
+        Outcome::Increment { after, last, .. } => {
+            let ended = if *last { Ended::Done } else { Ended::Increment };
+            (ended, Some(norms(after)), None)
+        }
+        Outcome::Failed(failure) => {
+            let relative = match failure {
+                Failure::MajorLimit { relative, .. } | Failure::Diverged { relative } => {
+                    Some(*relative)
+                }
+                _ => None,
+            };
+            let after = relative.map(|relative| message::Norms {
+                relative: number(relative),
+                ..message::Norms::default()
+            });
+            (Ended::Failure, after, None)
+        }
+    }
+}
+
+fn reason(model: &Model, event: &Event) -> String {
+    match &event.outcome {
+        Outcome::Failed(why)
+        | Outcome::Cut { why, .. }
+        | Outcome::Leaps { why, .. }
+        | Outcome::Detour { why, .. }
+        | Outcome::Turns { why, .. } => report::describe_failure(model, why),
+        _ => String::new(),
+    }
+}
+
+fn of_record(k: usize, record: &ContactRecord) -> Found {
+    let decision = &record.decision;
+    Found {
+        id: id(k),
+        mode: mode(decision.before),
+        next: mode(decision.next),
+        gap: number(record.gap),
+        f_n: number(record.f_n),
+        f_t: number(record.f_t),
+        limit: number(record.t_max),
+        slip: number(record.slip),
+        rule: names::rule(decision.rule).to_owned(),
+        margin: None,
+        tests: decision.tests.iter().flatten().map(test).collect(),
+        wanted: (decision.wanted != decision.next).then(|| mode(decision.wanted)),
+        limit_used: number(record.t_max_used),
+        drift: number(record.drift),
+        normal: place(record.normal),
+        foot: place(record.foot),
+        corner: record.corner,
+        carried: record.carried,
+        forced: match record.forced {
+            record::Forced::No => None,
+            record::Forced::Once(_) => Some(Forced::Once),
+            record::Forced::Held(_) => Some(Forced::Held),
+        },
+        over: record.spot.is_some(),
+    }
+}
+
+/// What has no surface has no place on one.
+fn place(at: [f64; 2]) -> Option<[f64; 2]> {
+    at.iter().all(|x| x.is_finite()).then_some(at)
+}
+
+fn test(test: &Test) -> message::Test {
+    let named = |of: Tested| TESTED.iter().find(|(tested, _)| *tested == of);
+    message::Test {
+        tested: named(test.tested)
+            .map_or("own", |(_, name)| name)
+            .to_owned(),
+        value: number(test.value),
+        bound: number(test.bound),
+        margin: number(test.margin),
+        tie: test.tie,
+    }
+}
+
+fn norms(norms: &Norms) -> message::Norms {
+    message::Norms {
+        relative: number(norms.relative),
+        force: number(norms.force),
+        interface: number(norms.interface),
+        correction: number(norms.correction),
+        scale: number(norms.scale),
+        limit: number(norms.limit),
+        noise: number(norms.noise),
+    }
+}

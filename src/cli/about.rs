@@ -1,0 +1,219 @@
+//! `stickslip --version --verbose`: what somebody who helps wants to know: the build, the machine, the terminal, the folders.
+
+use super::base::{Error, Exit, say};
+use crate::action::config;
+use crate::linear::estimate;
+use crate::outside::terminal::{self, Answers};
+use crate::record::journal;
+use crate::scene::memory;
+use crate::study::origin;
+use rustix::fs::Access;
+use std::env;
+use std::fmt::Write;
+use std::io::{IsTerminal, stderr, stdin, stdout};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+pub fn main(verbose: bool) -> Result<Exit, Error> {
+    let mut text = origin::program() + "\n";
+    if verbose {
+        let parts = [
+            ("features", features()),
+            ("target", target()),
+            ("system", system()),
+            ("machine", origin::machine()),
+            ("threads", threads()),
+            ("memory", estimate::bytes(memory::free()) + " for scenes"),
+            ("streams", streams()),
+            ("terminal", terminal()),
+            ("asked", asked()),
+            ("locale", variables(&["LC_ALL", "LC_CTYPE", "LANG"])),
+            ("folder", here()),
+            ("journals", folder(journal::directory().ok())),
+            ("state", folder(journal::home().ok())),
+            ("settings", folder(config::folder())),
+        ];
+        for (name, told) in parts {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{name:<10}{told}");
+        }
+    }
+    say(&text)?;
+    Ok(Exit::Good)
+}
+
+fn features() -> String {
+    let all = [
+        ("tui", cfg!(feature = "tui")),
+        ("plot", cfg!(feature = "plot")),
+    ];
+    let with = |wanted: bool| {
+        let names = all.iter().filter(|(_, has)| *has == wanted);
+        names.map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+    };
+    match (with(true), with(false)) {
+        (all, none) if none.is_empty() => all,
+        (none, without) if none.is_empty() => format!("none; without {without}"),
+        (with, without) => format!("{with}; without {without}"),
+    }
+}
+
+fn target() -> String {
+    let libc = match (cfg!(target_env = "musl"), cfg!(target_env = "gnu")) {
+        (true, _) => "musl",
+        (_, true) => "glibc",
+        _ => "another libc",
+    };
+    let linked = match cfg!(target_feature = "crt-static") {
+        true => ", in the program itself",
+        false => "",
+    };
+    let kind = match cfg!(debug_assertions) {
+        true => "; a development build",
+        false => "",
+    };
+    format!(
+        "{}/{}, {libc}{linked}{kind}",
+        env::consts::OS,
+        env::consts::ARCH
+    )
+}
+
+/// The kernel, and the C library of the system.
+fn system() -> String {
+    let kernel = rustix::system::uname();
+    let word = |text: &std::ffi::CStr| text.to_string_lossy().into_owned();
+    let asked = Command::new("getconf")
+        .arg("GNU_LIBC_VERSION")
+        .output()
+        .ok();
+    let libc = asked.filter(|asked| asked.status.success());
+    let libc = libc.map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
+    let libc = libc.filter(|libc| !libc.is_empty());
+    format!(
+        "{} {}, {}",
+        word(kernel.sysname()),
+        word(kernel.release()),
+        libc.unwrap_or_else(|| "no glibc that getconf knows".into())
+    )
+}
+
+fn threads() -> String {
+    match std::thread::available_parallelism() {
+        Ok(threads) => format!("{threads} at most, unless --jobs says otherwise"),
+        Err(why) => format!("unknown ({why})"),
+    }
+}
+
+/// Which of the standard streams are terminals.
+fn streams() -> String {
+    let all = [
+        ("input", stdin().is_terminal()),
+        ("output", stdout().is_terminal()),
+        ("error", stderr().is_terminal()),
+    ];
+    let told =
+        all.map(|(name, is)| format!("{name}: {}", if is { "a terminal" } else { "no terminal" }));
+    told.join(", ")
+}
+
+/// What the environment says of the terminal.
+fn terminal() -> String {
+    let size = match terminal::size() {
+        Some((columns, rows)) => format!("{columns}x{rows}, "),
+        None => String::new(),
+    };
+    let told = variables(&[
+        "TERM",
+        "COLORTERM",
+        "NO_COLOR",
+        "TERM_PROGRAM",
+        "TERM_PROGRAM_VERSION",
+        "TMUX",
+        "STY",
+        "SSH_TTY",
+    ]);
+    size + &told
+}
+
+fn variables(names: &[&str]) -> String {
+    let told = names.iter().filter_map(|name| {
+        let value = env::var_os(name)?;
+        Some(format!("{name}={}", value.to_string_lossy()))
+    });
+    let told: Vec<String> = told.collect();
+    match told.is_empty() {
+        true => format!("none of {} is set", names.join(", ")),
+        false => told.join(" "),
+    }
+}
+
+/// What the terminal itself says.
+fn asked() -> String {
+    match terminal::ask() {
+        Ok(None) => "nothing, since standard input or output is no terminal".into(),
+        Ok(Some(answers)) if answers == Answers::default() => "the terminal does not answer".into(),
+        Ok(Some(answers)) => told(&answers),
+        Err(why) => format!("the terminal cannot be asked: {why}"),
+    }
+}
+
+fn told(answers: &Answers) -> String {
+    let known = |known: Option<bool>| match known {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "it does not say",
+    };
+    let clipboard = match answers.clipboard() {
+        true => "yes",
+        false => "it does not say",
+    };
+    let widths = match answers.other_widths() {
+        None => "it does not say".into(),
+        Some(other) if other.is_empty() => "as here".into(),
+        Some(other) => {
+            let told = |(what, there, here)| format!("{what} take {there} columns and not {here}");
+            other.into_iter().map(told).collect::<Vec<_>>().join(", ")
+        }
+    };
+    let kind = answers.kind.iter().map(u16::to_string);
+    format!(
+        "mouse (SGR): {}; clipboard (OSC 52): {clipboard}; drawn in one go: {}; widths: {widths}; it is {}",
+        known(answers.mouse()),
+        known(answers.in_one_go()),
+        kind.collect::<Vec<_>>().join(";")
+    )
+}
+
+fn here() -> String {
+    match env::current_dir() {
+        Ok(here) => folder(Some(here)),
+        Err(why) => format!("none: {why}"),
+    }
+}
+
+/// A folder, and whether files can be made in it.
+fn folder(folder: Option<PathBuf>) -> String {
+    let Some(folder) = folder else {
+        return "none: the system names no home directory".into();
+    };
+    // What is not there is made when it is needed, in the nearest folder above that is there.
+    let there = folder.ancestors().find(|above| above.exists());
+    let may = there.is_some_and(writable);
+    let rights = match (folder.exists(), may) {
+        (true, true) => "can be written",
+        (true, false) => "cannot be written",
+        (false, true) => "is not there yet, and can be made",
+        (false, false) => "is not there, and cannot be made",
+    };
+    let free = there.and_then(|there| rustix::fs::statvfs(there).ok());
+    let free = free.map_or(String::new(), |disk| {
+        let free = disk.f_bavail as f64 * disk.f_frsize as f64;
+        format!("; {} free", estimate::bytes(free))
+    });
+    format!("{} {rights}{free}", folder.display())
+}
+
+fn writable(folder: &Path) -> bool {
+    rustix::fs::access(folder, Access::WRITE_OK | Access::EXEC_OK).is_ok()
+}

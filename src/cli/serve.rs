@@ -1,0 +1,20 @@
+//! `stickslip serve`: our own solver, to be attached to over standard input and output.
+
+use super::base::{Error, Exit, SceneArgs};
+use crate::attach::serve::serve;
+use std::io;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+}
+
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let scene = args.scene.open()?;
+    match serve(&scene, io::stdin().lock(), io::stdout().lock()) {
+        // Who attaches may leave.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(error)),
+        _ => Ok(Exit::Good),
+    }
+}

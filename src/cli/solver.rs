@@ -1,0 +1,137 @@
+//! What is solved, and by whom: a scene by our own solver, or what a solver solves that is attached.
+
+use super::base::{Error, SetArgs};
+use crate::attach::{Attached, Log, Start};
+use crate::record::journal::Record;
+use crate::scene::Scene;
+use crate::scene::solver::solver;
+use crate::session::Session;
+use crate::step::solver::Solver;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A solver that is attached, and how long it may take.
+#[derive(Debug, clap::Args)]
+pub struct SolverArgs {
+    /// A solver that speaks the protocol of the manual's page `protocol`, and its arguments
+    #[arg(last = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
+    /// How long the solver may take for an answer
+    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
+    pub timeout: f64,
+    /// How long it may take to start
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
+    pub start_timeout: f64,
+    /// Keeps all that is said between the two in a new file, which can be opened later without the solver
+    #[arg(long, value_name = "FILE", requires = "command")]
+    pub exchange: Option<PathBuf>,
+}
+
+fn seconds(text: &str) -> Result<f64, super::base::NoValue> {
+    match text.parse::<f64>() {
+        // A year is for ever.
+        Ok(seconds) if seconds > 0.0 && seconds <= 3.2e7 => Ok(seconds),
+        _ => Err(super::base::NoValue::new(
+            "it must be a positive number of seconds",
+        )),
+    }
+}
+
+impl SolverArgs {
+    /// Whether a solver is named.
+    pub fn is_named(&self) -> bool {
+        !self.command.is_empty()
+    }
+
+    /// How it is started.
+    pub fn start(&self) -> Start {
+        Start {
+            start: Duration::from_secs_f64(self.start_timeout),
+            answer: Duration::from_secs_f64(self.timeout),
+            ..Start::new(self.command.clone())
+        }
+    }
+
+    /// Starts it; `overwrite` says whether the exchange may take the place of another file.
+    pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
+        let log = Log::default();
+        if let Some(path) = &self.exchange {
+            let kept = log.keep(path, overwrite);
+            kept.map_err(|error| {
+                let how = match error.kind() {
+                    std::io::ErrorKind::AlreadyExists => {
+                        "the file exists already, and nothing is overwritten unasked (--force does it)".into()
+                    }
+                    _ => format!("it cannot be written: {error}"),
+                };
+                Error::Usage(format!("{}: {how}", path.display()))
+            })?;
+        }
+        let attached = Attached::attach(self.start(), log.clone());
+        let (scene, attached) = attached.map_err(|fault| Error::Usage(fault.to_string()))?;
+        Ok((scene, attached, log))
+    }
+}
+
+/// A scene and what is changed in it, or a solver that is attached.
+#[derive(Debug, clap::Args)]
+pub struct SubjectArgs {
+    /// A scene file, or the name of a built-in scene
+    #[arg(required_unless_present = "command", conflicts_with = "command")]
+    pub scene: Option<String>,
+    #[command(flatten)]
+    pub set: SetArgs,
+    #[command(flatten)]
+    pub solver: SolverArgs,
+}
+
+/// What is solved, and by whom.
+pub struct Subject {
+    /// What is solved.
+    pub scene: Scene,
+    /// By whom.
+    pub solver: Box<dyn Solver>,
+}
+
+impl SubjectArgs {
+    /// Opens the scene, or attaches the solver.
+    pub fn open(&self, overwrite: bool) -> Result<Subject, Error> {
+        if self.solver.is_named() {
+            if let Some((path, _)) = self.set.set.first() {
+                return Err(Error::Usage(format!(
+                    "--set {path}: a scene's values are set; what a solver offers is set in the debugger, or by its own arguments"
+                )));
+            }
+            let (scene, attached, _) = self.solver.attach(overwrite)?;
+            return Ok(Subject {
+                scene,
+                solver: Box::new(attached),
+            });
+        }
+        let scene = Scene::open(self.scene.as_deref().unwrap_or_default(), &self.set.set)?;
+        let solver = Box::new(solver(Arc::new(scene.model.clone())));
+        Ok(Subject { scene, solver })
+    }
+}
+
+/// A session at the start of what a journal is of.
+pub fn session_of(record: &Record, solver: &SolverArgs) -> Result<Session, Error> {
+    let (file, header) = (&record.file, &record.header);
+    let wrong = |why: String| Err(Error::Usage(format!("{file}: {why}")));
+    match (solver.is_named(), &header.scene.attached) {
+        (false, None) => Ok(Session::new(record.scene()?)),
+        (true, Some(_)) => {
+            let (scene, attached, log) = solver.attach(false)?;
+            match scene.spec == header.scene {
+                true => Ok(Session::attached(scene, Box::new(attached), log)),
+                false => wrong("the solver's scene is not that of the journal".into()),
+            }
+        }
+        (false, Some(_)) => wrong(format!(
+            "it is of the attached solver {}, which goes on with it: JOURNAL -- COMMAND",
+            header.name
+        )),
+        (true, None) => wrong("it is of a scene, which our own solver solves".into()),
+    }
+}

@@ -1,0 +1,175 @@
+//! States of solvers that keep what they go on from themselves: what a debugger shows of them, from one event to the next.
+
+use crate::contact::projection::SurfacePoint;
+use crate::contact::record::{ContactRecord, Forced};
+use crate::contact::state::ContactState;
+use crate::contact::table2::{Decision, Rule};
+use crate::model::{Mode, Model};
+use crate::step::event::{Event, Outcome, Position};
+use crate::step::intervention::Intervention;
+use crate::step::state::{IncrementStart, Outside, State, Status};
+use std::sync::Arc;
+
+impl Outside {
+    /// At a place, with nothing changed there yet.
+    pub fn at(&self, place: u64) -> Outside {
+        Outside {
+            place,
+            asked: Vec::new(),
+            set: self.set.clone(),
+        }
+    }
+}
+
+impl State {
+    /// The start of a solver that keeps what it goes on from itself: place 0, every node over its first surface.
+    pub fn outside_start(model: &Model) -> State {
+        let mut state = State::at_start(model, vec![0.0; model.dofs.len()], Vec::new());
+        state.way = None;
+        for (node, contact) in state.nodes.iter_mut().zip(&model.contacts) {
+            node.spot = Some(SurfacePoint {
+                surface: contact.surfaces.first().copied().unwrap_or(0),
+                element: 0,
+                xi: 0.0,
+            });
+        }
+        let start = IncrementStart {
+            nodes: state.nodes.clone(),
+            ..(*state.start).clone()
+        };
+        state.start = Arc::new(start);
+        state.outside = Some(Box::default());
+        state
+    }
+
+    /// The number of the place at which such a solver is; `None` for one of ours.
+    pub fn place(&self) -> Option<u64> {
+        self.outside.as_ref().map(|outside| outside.place)
+    }
+
+    /// What was changed since it came there.
+    pub fn asked(&self) -> &[Intervention] {
+        self.outside.as_ref().map_or(&[], |outside| &outside.asked)
+    }
+
+    /// Goes on to where an event led, at a place of this number: modes and numbers of the contacts, the next iteration, the start
+    /// of an increment where one was accepted. Displacements (`u`) are whoever calls's, before.
+    pub fn follow(&mut self, event: &Event, place: u64) {
+        self.minors = self.minors.saturating_add(1);
+        for (node, record) in self.nodes.iter_mut().zip(&event.nodes) {
+            node.renew(record);
+        }
+        self.load_factor = event.load_factor;
+        (self.last_target, self.target) = (event.load_factor, event.load_factor);
+        self.next = after(event.position, &event.outcome);
+        self.status = match &event.outcome {
+            Outcome::Failed(failure) => Status::Failed(failure.clone()),
+            Outcome::Increment { last: true, .. } => Status::Finished,
+            _ => Status::Running,
+        };
+        match event.outcome {
+            Outcome::Cut { size, .. } if size.is_finite() => {
+                Arc::make_mut(&mut self.controls).increment = size;
+            }
+            Outcome::Increment { .. } => {
+                self.minors = 0;
+                self.start = Arc::new(IncrementStart {
+                    load_factor: event.load_factor,
+                    leg: self.start.leg,
+                    u: self.u.clone(),
+                    nodes: self.nodes.clone(),
+                    history: Vec::new(),
+                    verdict: None,
+                });
+            }
+            _ => {}
+        }
+        let outside = self.outside.take().unwrap_or_default();
+        self.outside = Some(Box::new(outside.at(place)));
+    }
+}
+
+/// The iteration that follows one with this outcome.
+fn after(at: Position, outcome: &Outcome) -> Position {
+    let next = |count: u32| count.saturating_add(1);
+    match outcome {
+        Outcome::Minor
+        | Outcome::Damped { .. }
+        | Outcome::Climbed { .. }
+        | Outcome::HeldBack { .. }
+        | Outcome::Failed(_) => Position {
+            minor: next(at.minor),
+            ..at
+        },
+        Outcome::Major { .. } | Outcome::Refused { .. } => Position {
+            major: next(at.major),
+            minor: 1,
+            ..at
+        },
+        Outcome::Cut { .. }
+        | Outcome::Leaps { .. }
+        | Outcome::Turns { .. }
+        | Outcome::Detour { .. }
+        | Outcome::Moves(_) => Position {
+            attempt: next(at.attempt),
+            major: 1,
+            minor: 1,
+            ..at
+        },
+        // Nothing follows.
+        Outcome::Increment { last: true, .. } => at,
+        Outcome::Increment { .. } => Position {
+            increment: next(at.increment),
+            attempt: 1,
+            major: 1,
+            minor: 1,
+        },
+    }
+}
+
+impl ContactState {
+    /// Takes over what an iteration found. A mode that was forced for that iteration is not forced any more.
+    fn renew(&mut self, record: &ContactRecord) {
+        self.mode = record.decision.next;
+        if let Forced::Once(_) = self.forced {
+            self.forced = Forced::No;
+        }
+        (self.f_n, self.f_t, self.t_max) = (record.f_n, record.f_t, record.t_max);
+        self.sign = match record.t_max {
+            t_max if t_max > 0.0 => 1.0,
+            t_max if t_max < 0.0 => -1.0,
+            _ => 0.0,
+        };
+        (self.slip, self.drift) = (record.slip, record.drift);
+        (self.normal, self.corner, self.spot) = (record.normal, record.corner, record.spot);
+    }
+}
+
+impl ContactRecord {
+    /// What a solver of another's found at a node that solved in one mode and goes on in another, by rules of its own: no force
+    /// and no slip, an infinite gap, the upward normal, until they are filled in.
+    pub fn of_modes(before: Mode, next: Mode, node: &ContactState) -> ContactRecord {
+        ContactRecord {
+            decision: Decision {
+                before,
+                next,
+                rule: Rule::Theirs,
+                tests: [None, None],
+                wanted: next,
+            },
+            forced: node.forced,
+            gap: f64::INFINITY,
+            f_n: 0.0,
+            f_t: 0.0,
+            t_max: 0.0,
+            t_max_used: 0.0,
+            slip: 0.0,
+            drift: 0.0,
+            spot: node.spot,
+            normal: [0.0, 1.0],
+            foot: [0.0, 0.0],
+            corner: None,
+            carried: [false; 2],
+        }
+    }
+}

@@ -1,0 +1,490 @@
+//! The seam above the stepper: what a debugger needs of whatever it steps.
+//!
+//! [`Stepper`] is one such solver. Another may be a program of its own that is spoken with, or an iteration written in Rust:
+//! whoever owns a [`State`] and an [`Event`], renews both at every iteration, and finds its way back to a state that it had. A
+//! debugger looks at nothing else, so that timeline, breakpoints, branches and records work for all of them.
+//!
+//! A solver whose iterations depend on the numbers of the [`State`] alone goes back by taking up another one. One that has more
+//! to go on from keeps that itself, in [`Places`] or in a program of its own: its states carry a number for it
+//! ([`Outside::place`]) and what the user changed since ([`Outside::asked`]), and it hears of the changes when it goes on from there.
+//!
+//! # Example
+//!
+//! A node on a spring of stiffness 10 hangs 0.1 above a floor and is pressed on it in two increments of 2; it opens or closes
+//! until its mode fits. All that it needs is the state.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use stickslip_core::contact::record::{ContactRecord, Forced};
+//! use stickslip_core::linear::norms::Norms;
+//! use stickslip_core::model::{Contact, Friction, InitialState, Mode, Model, Node, Surface};
+//! use stickslip_core::step::intervene::{Intervention, Refusal};
+//! use stickslip_core::step::solver::{GoesBack, Lost, Offers};
+//! use stickslip_core::{Event, Outcome, Solver, State, Status};
+//!
+//! struct Pressed {
+//!     model: Arc<Model>,
+//!     state: State,
+//!     event: Event,
+//! }
+//!
+//! impl Solver for Pressed {
+//!     fn model(&self) -> &Arc<Model> {
+//!         &self.model
+//!     }
+//!     fn state(&self) -> &State {
+//!         &self.state
+//!     }
+//!     fn event(&self) -> &Event {
+//!         &self.event
+//!     }
+//!     fn step(&mut self) -> Result<bool, Lost> {
+//!         if self.state.status == Status::Finished {
+//!             return Ok(false);
+//!         }
+//!         let (spring, distance) = (10.0, 0.1);
+//!         let load = self.state.start.load_factor + 0.5;
+//!         let (node, press) = (self.state.nodes[0], 4.0 * load);
+//!         let (gap, f_n) = match node.mode {
+//!             Mode::Free => (distance - press / spring, 0.0),
+//!             _ => (0.0, press - spring * distance),
+//!         };
+//!         let next = match (node.forced, node.mode) {
+//!             (Forced::Held(mode), _) => mode,
+//!             (_, Mode::Free) if gap < 0.0 => Mode::Fixed,
+//!             (_, Mode::Fixed | Mode::Sliding) if f_n < 0.0 => Mode::Free,
+//!             (_, same) => same,
+//!         };
+//!         let found = ContactRecord::of_modes(node.mode, next, &node);
+//!         self.event = Event {
+//!             position: self.state.next,
+//!             load_factor: load,
+//!             nodes: vec![ContactRecord { gap, f_n, ..found }],
+//!             outcome: match next == node.mode {
+//!                 true => Outcome::accepted(Norms::default(), load == 1.0),
+//!                 false => Outcome::Minor,
+//!             },
+//!             ..Event::nothing_yet(&self.model)
+//!         };
+//!         self.state.follow(&self.event, 0);
+//!         Ok(true)
+//!     }
+//!     fn restore(&mut self, state: &State) -> Result<(), Lost> {
+//!         self.state.clone_from(state);
+//!         Ok(())
+//!     }
+//!     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+//!         self.offers().check(intervention)?;
+//!         self.state.intervene(&self.model, intervention)
+//!     }
+//!     fn offers(&self) -> Offers {
+//!         Offers { name: "pressed".into(), force: true, hold: true, goes_back: GoesBack::ToAny, ..Offers::default() }
+//!     }
+//! }
+//!
+//! let node = |name: &str, at| Node { name: name.into(), at };
+//! let nodes = vec![node("slave", [0.0, 0.1]), node("floor.1", [1.0, 0.0]), node("floor.2", [-1.0, 0.0])];
+//! let floor = Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true, smooth: Vec::new() };
+//! let contact = Contact::new(0, vec![0], Friction { angle: 20.0, cohesion: 0.0 });
+//! let model = Arc::new(Model::of_contacts("A node pressed on a floor", nodes, vec![floor], vec![contact]));
+//! let (state, event) = (State::outside_start(&model), Event::nothing_yet(&model));
+//! let mut solver = Pressed { model, state, event };
+//!
+//! let start = solver.state().clone();
+//! // Free, it penetrates; then it touches with 2 - 1 and with 4 - 1.
+//! while solver.step().unwrap() {}
+//! assert_eq!(solver.state().nodes[0].f_n, 3.0);
+//! // Back, and held away from the floor.
+//! solver.restore(&start).unwrap();
+//! solver.intervene(&Intervention::Force { slave: 0, mode: Mode::Free, hold: true }).unwrap();
+//! while solver.step().unwrap() {}
+//! assert_eq!((solver.state().nodes[0].mode, solver.event().nodes[0].gap), (Mode::Free, 0.1 - 0.4));
+//! ```
+//!
+//! [`Outside::place`]: super::state::Outside::place
+//! [`Outside::asked`]: super::state::Outside::asked
+//! [`Places`]: super::places::Places
+
+use crate::model::{Friction, Model};
+use crate::step::event::Event;
+use crate::step::intervene::{Intervention, Refusal, Value};
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+
+/// A solver that cannot go on: it is gone, or does not do what it should. What it did before stands.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct Lost {
+    /// What happened, and what would be right.
+    pub reason: String,
+}
+
+impl Lost {
+    /// With what happened.
+    pub fn new(reason: impl Into<String>) -> Self {
+        Lost {
+            reason: reason.into(),
+        }
+    }
+}
+
+/// What can be stepped.
+pub trait Solver: Send {
+    /// The scene.
+    fn model(&self) -> &Arc<Model>;
+
+    /// Where the solver is.
+    fn state(&self) -> &State;
+
+    /// The last minor iteration.
+    fn event(&self) -> &Event;
+
+    /// One minor iteration; `false` where the history is done, and nothing was solved. Its event and its state are renewed.
+    ///
+    /// # Errors
+    /// [`Lost`] where it cannot; state and event are those before.
+    fn step(&mut self) -> Result<bool, Lost>;
+
+    /// Goes to a state that it has had, with what was changed there.
+    ///
+    /// # Errors
+    /// [`Lost`] where it does not find its way back.
+    fn restore(&mut self, state: &State) -> Result<(), Lost>;
+
+    /// Applies what the user wants changed.
+    ///
+    /// # Errors
+    /// Where it makes no sense, or is not offered.
+    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal>;
+
+    /// Values of the scene's monitors at the end of an increment that was just accepted, appended to `out`; none where the scene
+    /// has none.
+    fn monitors(&mut self, _out: &mut Vec<f64>) {}
+
+    /// What it offers to whoever debugs it.
+    fn offers(&self) -> Offers {
+        Offers::default()
+    }
+
+    /// The interface problem of a state with everything else frozen, where it can be asked for.
+    ///
+    /// # Errors
+    /// Why it cannot be told.
+    fn posed(&mut self, _state: &State) -> Result<Posed, Lost> {
+        Err(Lost::new("the solver does not offer its interface problem"))
+    }
+
+    /// The stepper that it is, where it is one of ours.
+    fn stepper(&mut self) -> Option<&mut Stepper> {
+        None
+    }
+
+    /// Takes what counts how often the user has asked the iteration at hand to end. Who cannot end one, ends after it.
+    fn heed(&mut self, _asks: Arc<AtomicUsize>) {}
+
+    /// What the user should know of how it came to where it is; once.
+    fn remark(&mut self) -> Option<String> {
+        None
+    }
+}
+
+/// What a solver offers to whoever debugs it; the default offers nothing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Offers {
+    /// What the solver is called; empty for one of ours.
+    pub name: String,
+    /// Its version, as it tells it; may be empty.
+    pub version: String,
+    /// It is no more: only what it did can be looked at.
+    pub past: bool,
+    /// Modes can be forced for one iteration.
+    pub force: bool,
+    /// Modes can be held until released.
+    pub hold: bool,
+    /// The increment can be changed.
+    pub increment: bool,
+    /// The friction of all contacts can be changed.
+    pub friction: bool,
+    /// The cohesion of all contacts can be changed.
+    pub cohesion: bool,
+    /// Settings of the two-level method can be changed.
+    pub settings: bool,
+    /// How it goes back.
+    pub goes_back: GoesBack,
+    /// Its frozen interface problem can be asked for ([`Solver::posed`]).
+    pub problem: bool,
+    /// What else can be changed.
+    pub parameters: Vec<Parameter>,
+}
+
+impl Offers {
+    /// All that a stepper of ours does.
+    pub fn all() -> Offers {
+        Offers {
+            name: String::new(),
+            version: String::new(),
+            past: false,
+            force: true,
+            hold: true,
+            increment: true,
+            friction: true,
+            cohesion: true,
+            settings: true,
+            goes_back: GoesBack::ToAny,
+            problem: true,
+            parameters: Vec::new(),
+        }
+    }
+
+    /// Whether it takes an intervention.
+    ///
+    /// # Errors
+    /// [`Refusal::NotOffered`] with what it does not offer, or what is wrong with a parameter's value.
+    pub fn check(&self, intervention: &Intervention) -> Result<(), Refusal> {
+        let (offered, what) = match intervention {
+            Intervention::Force { hold: false, .. } | Intervention::Assume(_) => {
+                (self.force, "forced modes")
+            }
+            Intervention::Force { hold: true, .. } => (self.hold, "modes that are held"),
+            Intervention::Release { .. } => (self.force || self.hold, "forced modes"),
+            Intervention::Increment(_) => (self.increment, "another increment"),
+            Intervention::Friction(_) | Intervention::Frictions(_) => {
+                (self.friction || self.cohesion, "another friction")
+            }
+            Intervention::Settings(_) => (self.settings, "settings of the two-level method"),
+            Intervention::Parameter { name, value } => {
+                let known = self.parameters.iter().find(|known| known.name == *name);
+                let known = known.ok_or_else(|| Refusal::NoParameter(name.clone()))?;
+                return known.check(value);
+            }
+        };
+        match offered {
+            true => Ok(()),
+            false => Err(Refusal::NotOffered(self.lacks(what))),
+        }
+    }
+
+    /// The increment that the solver begins with, where it can be changed.
+    pub fn begins_with(&self) -> Option<f64> {
+        let increment = self
+            .parameters
+            .iter()
+            .find(|known| known.name == "increment")?;
+        match increment.value {
+            Value::Number(size) => Some(size),
+            Value::Flag(_) | Value::Text(_) => None,
+        }
+    }
+
+    /// That something is not offered.
+    pub fn lacks(&self, what: &str) -> String {
+        let name = &self.name;
+        match self.past {
+            true => {
+                format!("a kept exchange is read-only: {what} would need the solver {name} itself")
+            }
+            false => format!("the solver {name} does not offer {what}"),
+        }
+    }
+}
+
+/// How a solver goes back to a state that it has had.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum GoesBack {
+    /// By starting anew, and doing everything again.
+    #[default]
+    Again,
+    /// To the start of an increment, from where it does the rest again.
+    ToIncrements,
+    /// To any state.
+    ToAny,
+}
+
+/// Something that can be changed in an attached solver during a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// What it is at the start.
+    pub value: Value,
+    /// What values it takes.
+    pub range: Range,
+    /// What it does, in a line; may be empty.
+    pub about: String,
+}
+
+/// What values a parameter takes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Range {
+    /// Numbers between two bounds, whole ones or all.
+    Numbers {
+        /// The least.
+        least: f64,
+        /// The most.
+        most: f64,
+        /// Whether they are whole.
+        whole: bool,
+    },
+    /// True or false.
+    Flag,
+    /// One of these texts.
+    Choice(Vec<String>),
+    /// Any text.
+    Text,
+}
+
+impl Parameter {
+    /// Whether it takes a value.
+    ///
+    /// # Errors
+    /// What it takes.
+    pub fn check(&self, value: &Value) -> Result<(), Refusal> {
+        let takes = match (&self.range, value) {
+            (&Range::Numbers { least, most, whole }, Value::Number(x)) => {
+                (least..=most).contains(x) && (!whole || x.fract() == 0.0)
+            }
+            (Range::Flag, Value::Flag(_)) | (Range::Text, Value::Text(_)) => true,
+            (Range::Choice(choices), Value::Text(text)) => choices.contains(text),
+            _ => false,
+        };
+        match takes {
+            true => Ok(()),
+            false => {
+                let (name, range) = (&self.name, &self.range);
+                let message = format!("{name} takes {range}, and {value} is none");
+                Err(Refusal::NotOffered(message))
+            }
+        }
+    }
+
+    /// What it is in a state: what it was set to, or else what it began with. Three names have a meaning, and stand in the state
+    /// under it: increment, friction (mu) and cohesion of all contacts.
+    pub fn now(&self, model: &Model, state: &State) -> Value {
+        let controls = &state.controls;
+        let contacts = controls.friction.first().zip(model.contacts.first());
+        let coulomb = contacts.filter(|(now, first)| **now != first.friction);
+        let number = match (self.name.as_str(), coulomb) {
+            ("increment", _) if controls.increment != model.increment => Some(controls.increment),
+            ("friction", Some((now, _))) => Some(now.coefficient()),
+            ("cohesion", Some((now, _))) => Some(now.cohesion),
+            _ => None,
+        };
+        let outside = state.outside.as_ref();
+        let set =
+            outside.and_then(|outside| outside.set.iter().find(|(name, _)| *name == self.name));
+        match (number, set) {
+            (Some(number), _) => Value::Number(number),
+            (None, Some((_, value))) => value.clone(),
+            (None, None) => self.value.clone(),
+        }
+    }
+
+    /// The value that a word means.
+    ///
+    /// # Errors
+    /// What it takes.
+    pub fn read(&self, word: &str) -> Result<Value, Refusal> {
+        let text = || Value::Text(word.to_owned());
+        let value = match self.range {
+            Range::Numbers { .. } => word.parse().map_or_else(|_| text(), Value::Number),
+            Range::Flag => word.parse().map_or_else(|_| text(), Value::Flag),
+            Range::Choice(_) | Range::Text => text(),
+        };
+        self.check(&value)?;
+        Ok(value)
+    }
+}
+
+impl std::fmt::Display for Range {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Range::Numbers { least, most, whole } => {
+                let kind = if *whole { "a whole number" } else { "a number" };
+                match (least.is_finite(), most.is_finite()) {
+                    (true, true) => write!(f, "{kind} from {least} to {most}"),
+                    (true, false) => write!(f, "{kind} from {least} on"),
+                    (false, true) => write!(f, "{kind} up to {most}"),
+                    (false, false) => f.write_str(kind),
+                }
+            }
+            Range::Flag => f.write_str("true or false"),
+            Range::Choice(choices) => write!(f, "one of {}", choices.join(", ")),
+            Range::Text => f.write_str("a text"),
+        }
+    }
+}
+
+/// A frozen interface problem as an attached solver tells it: with the total forces f = (f_n, f_t) of the listed contacts at the
+/// end of the increment,
+///
+/// ```text
+/// (gap, u) = W f + q        or        f = K ((gap, u) − q)
+/// ```
+///
+/// where u is the motion of the node relative to its master along t since the increment began, so that u = 0 sticks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posed {
+    /// Contact numbers, in the order of the pairs.
+    pub contacts: Vec<usize>,
+    /// What the matrix is.
+    pub form: PosedForm,
+    /// Rows, 2n of 2n numbers.
+    pub matrix: Vec<Vec<f64>>,
+    /// Gap and motion without any force (length), 2n numbers.
+    pub q: Vec<f64>,
+    /// Load, 2n numbers (force): with a stiffness, f = K ((gap, u) − q) − load, so that nothing but the contacts need hold the
+    /// bodies.
+    pub load: Vec<f64>,
+    /// Friction of each contact.
+    pub friction: Vec<Friction>,
+}
+
+/// What the matrix of a [`Posed`] problem is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PosedForm {
+    /// W (length by force).
+    Compliance,
+    /// K (force by length).
+    Stiffness,
+}
+
+impl Solver for Stepper {
+    fn model(&self) -> &Arc<Model> {
+        Stepper::model(self)
+    }
+
+    fn state(&self) -> &State {
+        Stepper::state(self)
+    }
+
+    fn event(&self) -> &Event {
+        Stepper::event(self)
+    }
+
+    fn step(&mut self) -> Result<bool, Lost> {
+        Ok(Stepper::step(self).is_some())
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+        Stepper::restore(self, state);
+        Ok(())
+    }
+
+    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+        Stepper::intervene(self, intervention)
+    }
+
+    fn monitors(&mut self, out: &mut Vec<f64>) {
+        Stepper::monitors(self, out);
+    }
+
+    fn offers(&self) -> Offers {
+        Offers::all()
+    }
+
+    fn stepper(&mut self) -> Option<&mut Stepper> {
+        Some(self)
+    }
+}

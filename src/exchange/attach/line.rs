@@ -1,0 +1,107 @@
+//! Lines from a stream that may hold anything: each is bounded, and what is no line is told.
+
+use std::io::{self, BufRead, Read};
+
+/// What came.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Line {
+    /// A whole line, without its end.
+    Text(String),
+    /// A line that is no UTF-8: its beginning, with marks for what cannot be shown.
+    NoText(String),
+    /// A line of more bytes than there may be: its beginning.
+    TooLong(String),
+    /// The stream ended in the middle of a line.
+    Torn(String),
+    /// The stream ended.
+    End,
+}
+
+/// Characters that are shown of a line that is refused.
+const SHOWN: usize = 80;
+
+/// A stream, line by line.
+#[derive(Debug)]
+pub struct Lines<R> {
+    stream: R,
+    most: usize,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// Lines of at most so many bytes.
+    pub fn new(stream: R, most: usize) -> Self {
+        Lines { stream, most }
+    }
+
+    /// The next line; waits for it. After [`Line::TooLong`] nothing sensible follows.
+    ///
+    /// # Errors
+    /// If the stream cannot be read.
+    pub fn next_line(&mut self) -> io::Result<Line> {
+        let mut bytes = Vec::new();
+        let bound = self.most as u64 + 1;
+        let mut part = self.stream.by_ref().take(bound);
+        part.read_until(b'\n', &mut bytes)?;
+        Ok(match bytes.pop() {
+            None => Line::End,
+            Some(b'\n') => match String::from_utf8(bytes) {
+                Ok(text) => Line::Text(text),
+                Err(error) => Line::NoText(beginning(error.as_bytes())),
+            },
+            Some(last) => {
+                bytes.push(last);
+                let begun = beginning(&bytes);
+                match bytes.len() > self.most {
+                    true => Line::TooLong(begun),
+                    false => Line::Torn(begun),
+                }
+            }
+        })
+    }
+}
+
+/// The first characters of a line, as far as they are text.
+pub fn beginning(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * SHOWN)]);
+    let mut begun: String = text.chars().take(SHOWN).collect();
+    if text.chars().count() > SHOWN {
+        begun.push('…');
+    }
+    begun
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(bytes: &[u8], most: usize) -> Vec<Line> {
+        let mut lines = Lines::new(bytes, most);
+        let mut found = Vec::new();
+        loop {
+            let line = lines.next_line().expect("memory can be read");
+            let ends = matches!(line, Line::End | Line::TooLong(_) | Line::Torn(_));
+            found.push(line);
+            if ends {
+                return found;
+            }
+        }
+    }
+
+    #[test]
+    fn a_stream_comes_apart_at_its_line_feeds() {
+        let text = |s: &str| Line::Text(s.into());
+        assert_eq!(
+            all(b"a\n\nb\n", 9),
+            [text("a"), text(""), text("b"), Line::End]
+        );
+        assert_eq!(all(b"a\nb", 9), [text("a"), Line::Torn("b".into())]);
+        assert_eq!(all(b"\xff\n", 9)[0], Line::NoText("\u{fffd}".into()));
+    }
+
+    #[test]
+    fn a_line_may_have_as_many_bytes_as_are_allowed_and_no_more() {
+        assert_eq!(all(b"1234\n", 4)[0], Line::Text("1234".into()));
+        assert_eq!(all(b"12345\n", 4), [Line::TooLong("12345".into())]);
+        assert_eq!(all(b"12345678", 4), [Line::TooLong("12345".into())]);
+    }
+}

@@ -1,0 +1,402 @@
+//! Messages as lines, and lines as messages.
+//!
+//! An answer is read twice: first for its `type` alone, which passes over all else, and then as what that says. So numbers go where
+//! they belong without a detour (a state of 1,000 contacts is 0.3 MB), and what is wrong is told with its place in the message and
+//! its column in the line.
+
+use super::message::{Answer, Matrix, Request};
+use crate::broken::Broken;
+use serde::de::{self, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::fmt;
+
+/// Most characters of a place in a message that are told.
+const MOST_PATH: usize = 60;
+/// What JSON has no word for, as languages write it all the same.
+const NO_NUMBERS: [&str; 6] = ["NaN", "nan", "Infinity", "inf", "Inf", "-Infinity"];
+
+impl Request {
+    /// The line, with its line feed.
+    pub fn line(&self) -> String {
+        line(self)
+    }
+
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// What is wrong with it, at its column.
+    pub fn read(line: &str) -> Result<Request, Broken> {
+        kind(line)?;
+        body(line)
+    }
+}
+
+impl Answer {
+    /// The line, with its line feed.
+    pub fn line(&self) -> String {
+        line(self)
+    }
+
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// What is wrong with it, at its column.
+    pub fn read(line: &str) -> Result<Answer, Broken> {
+        Ok(match &*kind(line)? {
+            "state" => Answer::State(body(line)?),
+            "scene" => Answer::Scene(body(line)?),
+            "problem" => Answer::Problem(body(line)?),
+            "hello" => Answer::Hello(body(line)?),
+            // Small, or none at all.
+            _ => body(line)?,
+        })
+    }
+}
+
+/// No message of ours has a map with other keys than texts, which is all that could fail.
+fn line(message: &impl Serialize) -> String {
+    let text = serde_json::to_string(message);
+    text.unwrap_or_default() + "\n"
+}
+
+/// The `type` of a message.
+fn kind(line: &str) -> Result<Cow<'_, str>, Broken> {
+    #[derive(Deserialize)]
+    struct Kind<'a> {
+        #[serde(rename = "type", borrow)]
+        kind: Cow<'a, str>,
+    }
+    let kind: Kind<'_> = serde_json::from_str(line).map_err(|error| broken(line, "", &error))?;
+    Ok(kind.kind)
+}
+
+fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, Broken> {
+    serde_json::from_str(line).map_err(|error| {
+        // Where in the message, costs more to know.
+        let mut again = serde_json::Deserializer::from_str(line);
+        match serde_path_to_error::deserialize::<_, T>(&mut again) {
+            Err(at) => broken(line, &at.path().to_string(), at.inner()),
+            Ok(_) => broken(line, "", &error),
+        }
+    })
+}
+
+/// What serde says of a line, with the place in the message, at its column.
+fn broken(line: &str, path: &str, error: &serde_json::Error) -> Broken {
+    let told = error.to_string();
+    // Where it stands is told beside it.
+    let mut told = told.split(" at line ").next().unwrap_or(&told).to_owned();
+    // Columns of serde_json are bytes.
+    let at = error.column().saturating_sub(1).min(line.len());
+    let mut at = (0..=at)
+        .rev()
+        .find(|&at| line.is_char_boundary(at))
+        .unwrap_or(0);
+    // What begins as null does is refused one letter later.
+    let letters = line[..at].trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '-');
+    if NO_NUMBERS
+        .iter()
+        .any(|none| line[letters.len()..].starts_with(none))
+    {
+        told = "JSON knows no NaN and no infinity; null stands for both".to_owned();
+        at = letters.len();
+    }
+    let mut letters = path.chars();
+    let path: String = letters.by_ref().take(MOST_PATH).collect();
+    let cut = if letters.next().is_some() { "…" } else { "" };
+    if !path.is_empty() && path != "." {
+        told = format!("{path}{cut}: {told}");
+    }
+    match error.column() {
+        0 => Broken::whole(told),
+        _ => Broken::at(error.line().max(1), line[..at].chars().count() + 1, told),
+    }
+}
+
+impl<'de> Deserialize<'de> for Matrix {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Matrix, D::Error> {
+        from.deserialize_any(OfMatrix)
+    }
+}
+
+/// Reads a matrix, of which there can be millions of numbers, as it comes.
+struct OfMatrix;
+
+impl<'de> Visitor<'de> for OfMatrix {
+    type Value = Matrix;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("rows of numbers, or an object with size and triplets")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, rows: A) -> Result<Matrix, A::Error> {
+        Deserialize::deserialize(de::value::SeqAccessDeserializer::new(rows)).map(Matrix::Rows)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Matrix, A::Error> {
+        #[derive(Deserialize)]
+        struct Sparse {
+            size: usize,
+            triplets: Vec<(usize, usize, f64)>,
+        }
+        let Sparse { size, triplets } =
+            Deserialize::deserialize(de::value::MapAccessDeserializer::new(map))?;
+        Ok(Matrix::Triplets { size, triplets })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::message::*;
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn infinite_and_missing_numbers_are_null_and_come_back_as_none() {
+        let norms = Norms {
+            relative: number(f64::INFINITY),
+            force: number(-0.0),
+            ..Norms::default()
+        };
+        let text = line(&norms);
+        assert_eq!(text, "{\"relative\":null,\"force\":-0.0}\n");
+        let back: Norms = body(&text).expect("its own text");
+        assert_eq!(back.relative, None);
+        assert_eq!(back.force.map(f64::to_bits), Some((-0.0_f64).to_bits()));
+    }
+
+    #[test]
+    fn what_json_does_not_know_is_said_at_its_column() {
+        for (none, column) in [("NaN", 25), ("Infinity", 25), ("nan", 25)] {
+            let text = format!(r#"{{"type":"saved","token":{none}}}"#);
+            let broken = Answer::read(&text).expect_err(none);
+            assert_eq!(broken.at, Some((1, column)), "{broken}");
+            assert!(broken.message.contains("null"), "{broken}");
+        }
+        let broken = Answer::read(r#"{"type":"sawed"}"#).expect_err("no such message");
+        assert!(broken.message.contains("sawed"), "{broken}");
+        let broken = Answer::read(r#"{"type":"ok"} ok"#).expect_err("two messages");
+        assert!(broken.at.is_some(), "{broken}");
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_place_in_the_message() {
+        let text = r#"{"type":"state","at":{"increment":1},"ended":"iteration","contacts":[{"id":1,"mode":"free","next":"free","gap":0.5}]}"#;
+        assert!(Answer::read(text).is_ok());
+        for (that, this, told) in [
+            (
+                r#""increment":1"#,
+                r#""increment":null"#,
+                "at.increment: invalid type: null, expected u32",
+            ),
+            (
+                r#""increment":1"#,
+                r#""increment":-1"#,
+                "at.increment: invalid value: integer `-1`, expected u32",
+            ),
+            (
+                "0.5",
+                r#""much""#,
+                r#"contacts[0].gap: invalid type: string "much", expected f64"#,
+            ),
+            ("0.5", "1e999", "contacts[0].gap: number out of range"),
+            (
+                r#""free""#,
+                r#""open""#,
+                "contacts[0].mode: unknown variant `open`",
+            ),
+            (
+                r#""id":1"#,
+                r#""id":1.5"#,
+                "contacts[0].id: an id is a whole number or a text",
+            ),
+            (
+                r#""gap":0.5"#,
+                r#""gap":0.5,"gap":1"#,
+                "contacts[0]: duplicate field `gap`",
+            ),
+            (
+                r#"{"type":"state","#,
+                r#"{"type":"state","type":"ok","#,
+                "duplicate field `type`",
+            ),
+            (r#"0.5}]}"#, "0.5}]", "EOF while parsing an object"),
+        ] {
+            let changed = text.replacen(that, this, 1);
+            let broken = Answer::read(&changed).expect_err(&changed);
+            assert!(broken.message.starts_with(told), "{broken}");
+            let (_, column) = broken.at.expect("a column");
+            let from = changed.find(this).expect("it stands there") + 1;
+            assert!(
+                (from..=from + this.len()).contains(&column),
+                "{broken} at {column} of {changed}"
+            );
+        }
+        let broken = Answer::read(&text.replace("contacts", "contact")).expect_err("no contacts");
+        assert!(
+            broken.message.starts_with("missing field `contacts`"),
+            "{broken}"
+        );
+    }
+
+    #[test]
+    fn depths_that_would_exhaust_the_stack_are_refused_or_passed_over() {
+        let deep = |depth: usize| "[".repeat(depth) + &"]".repeat(depth);
+        let token = |depth| format!(r#"{{"type":"saved","token":{}}}"#, deep(depth));
+        assert!(Answer::read(&token(50)).is_ok());
+        let broken = Answer::read(&token(100_000)).expect_err("too deep");
+        assert!(broken.message.contains("recursion"), "{broken}");
+        let unknown = format!(
+            r#"{{"type":"hello","protocol":1,"name":"a","deep":{}}}"#,
+            deep(100_000)
+        );
+        assert!(
+            Answer::read(&unknown).is_ok(),
+            "what is not named is passed over"
+        );
+    }
+
+    #[test]
+    fn an_id_is_a_number_or_a_text() {
+        let text = r#"{"type":"release","contact":"a.1"}"#;
+        let request = Request::read(text).expect("sound");
+        assert_eq!(request.line().trim_end(), text);
+        let text = r#"{"type":"release","contact":-3}"#;
+        assert_eq!(Request::read(text).expect("sound").line().trim_end(), text);
+    }
+
+    #[test]
+    fn a_matrix_is_rows_or_triplets() {
+        let problem = |matrix: &str| {
+            Answer::read(&format!(
+                r#"{{"type":"problem","contacts":[1],"kind":"stiffness","matrix":{matrix},"q":[0,0],"mu":[0]}}"#
+            ))
+        };
+        for matrix in [
+            "[[1.0,0.0],[0.0,1.0]]",
+            r#"{"size":2,"triplets":[[0,0,1.5]]}"#,
+        ] {
+            let answer = problem(matrix).expect("sound");
+            assert!(answer.line().contains(matrix), "{}", answer.line());
+        }
+        for (matrix, told) in [
+            ("[[1,0],[0,null]]", "matrix[1][1]: invalid type: null"),
+            (
+                "3",
+                "matrix: invalid type: integer `3`, expected rows of numbers",
+            ),
+            (r#"{"size":2}"#, "matrix: missing field `triplets`"),
+        ] {
+            let broken = problem(matrix).expect_err(matrix);
+            assert!(broken.message.starts_with(told), "{broken}");
+        }
+    }
+
+    fn mode() -> impl Strategy<Value = Mode> {
+        prop_oneof![Just(Mode::Free), Just(Mode::Sliding), Just(Mode::Fixed)]
+    }
+
+    fn float() -> impl Strategy<Value = Option<f64>> {
+        any::<u64>().prop_map(|bits| number(f64::from_bits(bits)))
+    }
+
+    prop_compose! {
+        fn contact()(
+            id in prop_oneof![any::<i64>().prop_map(Id::Number), ".{0,6}".prop_map(Id::Text)],
+            modes in (mode(), mode()),
+            numbers in [float(), float(), float(), float(), float(), float()],
+            rule in ".{0,8}",
+            over in any::<bool>(),
+        ) -> Found {
+            Found {
+                id,
+                mode: modes.0,
+                next: modes.1,
+                gap: numbers[0],
+                f_n: numbers[1],
+                f_t: numbers[2],
+                limit: numbers[3],
+                slip: numbers[4],
+                rule,
+                margin: numbers[5],
+                tests: Vec::new(),
+                wanted: None,
+                limit_used: None,
+                drift: None,
+                normal: None,
+                foot: None,
+                corner: None,
+                carried: [over, false],
+                forced: None,
+                over,
+            }
+        }
+    }
+
+    prop_compose! {
+        fn state()(
+            contacts in prop::collection::vec(contact(), 0..4),
+            counts in any::<[u32; 4]>(),
+            numbers in [float(), float()],
+            reason in ".{0,12}",
+        ) -> Answer {
+            let [increment, attempt, major, minor] = counts;
+            Answer::State(Box::new(State {
+                at: At { increment, attempt, major, minor },
+                load: numbers[0],
+                ended: Ended::Iteration,
+                reason,
+                size: numbers[1],
+                contacts,
+                residual: Norms { relative: numbers[0], ..Norms::default() },
+                after: None,
+                displacements: None,
+                spring: None,
+                monitors: numbers.to_vec(),
+                arc: None,
+                drag: None,
+            }))
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn floats_keep_their_bits(bits in any::<u64>()) {
+            let x = f64::from_bits(bits);
+            let text = line(&number(x));
+            let back: Option<f64> = body(&text).expect("its own text");
+            prop_assert_eq!(back.map(f64::to_bits), x.is_finite().then_some(bits));
+        }
+
+        #[test]
+        fn a_state_reads_back_as_it_was_written(state in state()) {
+            prop_assert_eq!(Answer::read(&state.line()), Ok(state));
+        }
+
+        #[test]
+        fn a_damaged_line_is_read_or_refused_at_a_column_of_it(
+            state in state(),
+            place in any::<prop::sample::Index>(),
+            damage in prop_oneof![Just(""), Just("\""), Just("}"), Just("]"), Just("NaN"), Just("é"), Just("\u{0}"), Just("-")],
+        ) {
+            let text = state.line();
+            let text = text.trim_end();
+            let letters: Vec<char> = text.chars().collect();
+            let place = place.index(letters.len());
+            let (before, after) = (&letters[..place], &letters[place + 1..]);
+            let damaged = before.iter().chain(&damage.chars().collect::<Vec<_>>()).chain(after).collect::<String>();
+            if let Err(broken) = Answer::read(&damaged) {
+                let count = damaged.chars().count();
+                prop_assert!(!broken.message.is_empty());
+                prop_assert!(broken.at.is_none_or(|(line, column)| line == 1 && column <= count + 1), "{:?}", broken);
+            }
+        }
+
+        #[test]
+        fn no_line_makes_the_reader_panic(text in ".{0,200}") {
+            let _ = Answer::read(&text);
+            let _ = Request::read(&text);
+        }
+    }
+}

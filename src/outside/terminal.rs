@@ -1,0 +1,210 @@
+//! The terminal that the program runs in: its size, and what it answers when it is asked.
+//!
+//! The questions are those of ECMA-48 and of DEC's terminals: CSI 6 n (where is the cursor?), CSI ? mode $ p (do you know that
+//! mode?), CSI c (what are you?). Every terminal answers the last one, and so it ends the wait for the others.
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::termios::{self, OptionalActions, Termios};
+use std::io::{self, IsTerminal, Stdin, Write, stdin, stdout};
+use std::time::{Duration, Instant};
+use unicode_width::UnicodeWidthStr;
+
+/// How long an answer may take, over a slow line, too.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Columns and rows of the terminal that standard output is; `None` where it is none, or does not tell.
+pub fn size() -> Option<(u16, u16)> {
+    let size = termios::tcgetwinsize(stdout()).ok()?;
+    (size.ws_col > 0 && size.ws_row > 0).then_some((size.ws_col, size.ws_row))
+}
+
+/// What a terminal answered.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Answers {
+    /// What it says it is (DA1), as numbers; empty where it did not answer in time.
+    pub kind: Vec<u16>,
+    /// Modes that it was asked for, and whether it knows them (DECRQM).
+    pub modes: Vec<(u16, bool)>,
+    /// Columns of its cursor after each text of [`TEXTS`], from 1, as far as it told.
+    pub columns: Vec<u16>,
+}
+
+/// The mouse's places with numbers of any size.
+const MOUSE: u16 = 1006;
+/// A screen that is shown in one go.
+const IN_ONE_GO: u16 = 2026;
+/// The attribute of DA1 that says: the clipboard can be written (OSC 52).
+const CLIPBOARD: u16 = 52;
+
+/// Texts of which terminals disagree how wide they are: what the debugger draws with, and letters of the far east.
+pub const TEXTS: [(&str, &str); 5] = [
+    ("lines", "┏━│"),
+    ("braille", "⠿⣀"),
+    ("signs", "▸✗●→≤φ"),
+    ("wide letters", "漢"),
+    ("combined letters", "e\u{301}"),
+];
+
+impl Answers {
+    /// Whether it knows a mode; `None` where it did not say.
+    fn knows(&self, mode: u16) -> Option<bool> {
+        let found = self.modes.iter().find(|(own, _)| *own == mode);
+        found.map(|(_, knows)| *knows)
+    }
+
+    /// Whether it reports the mouse as the debugger asks for it.
+    pub fn mouse(&self) -> Option<bool> {
+        self.knows(MOUSE)
+    }
+
+    /// Whether it shows a screen in one go.
+    pub fn in_one_go(&self) -> Option<bool> {
+        self.knows(IN_ONE_GO)
+    }
+
+    /// Whether it says that a program may write the clipboard; many that let it do so do not say it.
+    pub fn clipboard(&self) -> bool {
+        self.kind.contains(&CLIPBOARD)
+    }
+
+    /// The texts whose width is another there than here: what they are, columns there, columns here. `None` where it did
+    /// not tell all of them.
+    pub fn other_widths(&self) -> Option<Vec<(&'static str, usize, usize)>> {
+        if self.columns.len() != TEXTS.len() {
+            return None;
+        }
+        let widths = TEXTS
+            .iter()
+            .zip(&self.columns)
+            .map(|((what, text), column)| {
+                (*what, usize::from(*column).saturating_sub(1), text.width())
+            });
+        Some(widths.filter(|(_, there, here)| there != here).collect())
+    }
+}
+
+/// Asks the terminal; `None` where standard input or output is none.
+///
+/// What is asked stands on the present line for a moment, which is empty then.
+///
+/// # Errors
+/// If the terminal cannot be set to hand its answers on, or goes away.
+pub fn ask() -> io::Result<Option<Answers>> {
+    if !stdin().is_terminal() || !stdout().is_terminal() {
+        return Ok(None);
+    }
+    let _raw = Raw::enter()?;
+    let mut out = stdout().lock();
+    out.write_all(questions().as_bytes())?;
+    out.flush()?;
+    let mut told = Vec::new();
+    let until = Instant::now() + PATIENCE;
+    while !Answers::read(&told).1 {
+        let left = until.saturating_duration_since(Instant::now());
+        let stdin = stdin();
+        let mut from = [PollFd::new(&stdin, PollFlags::IN)];
+        let left = Timespec::try_from(left).unwrap_or_default();
+        if poll(&mut from, Some(&left))? == 0 {
+            break;
+        }
+        let mut some = [0; 256];
+        match rustix::io::read(&stdin, &mut some)? {
+            0 => break,
+            n => told.extend_from_slice(&some[..n]),
+        }
+    }
+    out.write_all(b"\r\x1b[K")?;
+    out.flush()?;
+    Ok(Some(Answers::read(&told).0))
+}
+
+fn questions() -> String {
+    let widths = TEXTS.iter().map(|(_, text)| format!("\r{text}\x1b[6n"));
+    let modes = [MOUSE, IN_ONE_GO].map(|mode| format!("\x1b[?{mode}$p"));
+    // The blank line hides what a terminal shows of questions that it does not know.
+    format!(
+        "{}\r\x1b[K{}\r\x1b[K\x1b[c",
+        widths.collect::<String>(),
+        modes.concat()
+    )
+}
+
+impl Answers {
+    /// What was answered so far, and whether the last answer is there. Keys that were pressed meanwhile are passed over.
+    fn read(told: &[u8]) -> (Answers, bool) {
+        let mut answers = Answers::default();
+        let text = String::from_utf8_lossy(told);
+        for answer in text.split("\x1b[").skip(1) {
+            let end = answer.find(|c: char| c.is_ascii_alphabetic());
+            let Some((numbers, end)) = end.map(|at| (&answer[..at], &answer[at..])) else {
+                continue;
+            };
+            let asked = numbers.starts_with('?');
+            let numbers = numbers.trim_matches(['?', '$']).split(';');
+            let numbers: Vec<u16> = numbers.filter_map(|n| n.parse().ok()).collect();
+            match (&end[..1], asked, numbers.as_slice()) {
+                ("R", false, [_, column]) => answers.columns.push(*column),
+                // 0: it does not know the mode; else whether it is set, for now or for ever.
+                ("y", true, [mode, state]) => answers.modes.push((*mode, *state != 0)),
+                ("c", true, kind) => {
+                    answers.kind = kind.to_vec();
+                    return (answers, true);
+                }
+                _ => {}
+            }
+        }
+        (answers, false)
+    }
+}
+
+/// The terminal without echo and line editing, for as long as this lives.
+struct Raw {
+    of: Stdin,
+    before: Termios,
+}
+
+impl Raw {
+    fn enter() -> io::Result<Raw> {
+        let of = stdin();
+        let before = termios::tcgetattr(&of)?;
+        let mut raw = before.clone();
+        raw.make_raw();
+        termios::tcsetattr(&of, OptionalActions::Now, &raw)?;
+        Ok(Raw { of, before })
+    }
+}
+
+impl Drop for Raw {
+    fn drop(&mut self) {
+        // An answer that came too late must not reach the shell.
+        let _ = termios::tcsetattr(&self.of, OptionalActions::Flush, &self.before);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_are_told_from_keys_and_from_what_is_cut_off() {
+        let whole = b"\x1b[5;4Rx\x1b[5;3R\x1b[5;7R\x1b[5;3R\x1b[5;3R\x1b[A\x1b[?1006;2$y\x1b[?2026;0$y\x1b[?62;52;c";
+        let (answers, all) = Answers::read(whole);
+        assert!(all);
+        assert_eq!(answers.columns, [4, 3, 7, 3, 3]);
+        assert_eq!(
+            (answers.mouse(), answers.in_one_go()),
+            (Some(true), Some(false))
+        );
+        assert!(answers.clipboard());
+        assert_eq!(
+            answers.other_widths(),
+            Some(vec![("combined letters", 2, 1)])
+        );
+        for cut in 0..whole.len() {
+            let (some, all) = Answers::read(&whole[..cut]);
+            assert!(!all, "{cut}");
+            assert!(answers.columns.starts_with(&some.columns), "{cut}");
+        }
+        assert_eq!(Answers::default().other_widths(), None);
+    }
+}

@@ -1,0 +1,324 @@
+//! Scenes that attached solvers told: what they solve stands in them as a message of the protocol
+//! ([`stickslip_exchange::attach`]), and what deforms under the contacts is known to the solver alone.
+//!
+//! The model made of one has nodes, masters and contacts as they are told, and one body without any stiffness, to be drawn.
+//! Nothing of ours solves it.
+
+use super::limits;
+use super::nodes::Names;
+use crate::format::contact_law::FrictionSpec;
+use crate::format::error::{Fault, at};
+use crate::format::spec::{History, Spec};
+use crate::model::{
+    Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Mode,
+    Model, Monitor, Node, Settings, Surface, ToldKind, Watched,
+};
+use crate::outside::shown;
+use std::collections::{HashMap, HashSet};
+use stickslip_exchange::attach::Answer;
+use stickslip_exchange::attach::message::{self, Scene};
+
+/// Most nodes, and most contacts, that a solver may tell.
+const MOST: usize = 1_000_000;
+/// What the body is called that is drawn.
+const SHAPE: &str = "shape";
+
+/// The scene file that a solver's scene is; `increment` is the one that it begins with, if it tells that.
+pub(super) fn spec(scene: &Scene, increment: Option<f64>) -> Spec {
+    let [from, to] = scene.load.unwrap_or([0.0, 1.0]);
+    let whole = (to - from).abs();
+    let uniform = scene
+        .contacts
+        .first()
+        .map(|first| friction(&first.friction));
+    let friction = uniform.unwrap_or_default();
+    Spec {
+        title: scene.title.clone(),
+        about: scene.about.clone(),
+        refine: 1,
+        nodes: Vec::new(),
+        materials: Vec::new(),
+        bodies: Vec::new(),
+        surfaces: Vec::new(),
+        slaves: Vec::new(),
+        friction: FrictionSpec {
+            angle: friction.angle,
+            cohesion: friction.cohesion,
+            adhesion: 0.0,
+        },
+        supports: Vec::new(),
+        loads: Vec::new(),
+        history: History {
+            path: vec![from, to],
+            increment: increment.unwrap_or(whole),
+            increments: Vec::new(),
+            least: None,
+            jumps: Jumps::default(),
+            control: Default::default(),
+            arc: Default::default(),
+        },
+        settings: Settings::default(),
+        monitors: Vec::new(),
+        attached: Some(
+            Answer::Scene(Box::new(scene.clone()))
+                .line()
+                .trim_end()
+                .to_owned(),
+        ),
+    }
+}
+
+/// Friction as the core has it.
+pub fn friction(told: &message::Friction) -> Friction {
+    let cohesion = told.cohesion;
+    match (told.angle, told.mu) {
+        (Some(angle), _) => Friction { angle, cohesion },
+        (None, mu) => Friction::from_coefficient(mu.unwrap_or(0.0), cohesion),
+    }
+}
+
+/// The mode as the core has it.
+pub fn mode(told: message::Mode) -> Mode {
+    match told {
+        message::Mode::Free => Mode::Free,
+        message::Mode::Sliding => Mode::Sliding,
+        message::Mode::Fixed => Mode::Fixed,
+    }
+}
+
+/// The scene message that a scene file holds.
+pub(super) fn told(text: &str) -> Result<Scene, Fault> {
+    let here = at!["attached"];
+    match Answer::read(text) {
+        Ok(Answer::Scene(scene)) => Ok(*scene),
+        Ok(other) => {
+            let message = format!("it is the message {}, and no scene", other.kind());
+            Err(Fault::new(here, message))
+        }
+        Err(broken) => Err(Fault::new(here, broken.message)),
+    }
+}
+
+/// Checks a scene that a solver told.
+pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> {
+    let scene = told(text)?;
+    let nodes = nodes(&scene)?;
+    let (surfaces, numbers) = surfaces(&scene)?;
+    let contacts = contacts(&scene, &numbers)?;
+    let bars = lines(&scene)?;
+    let [from, to] = scene.load.unwrap_or([0.0, 1.0]);
+    if !(from.is_finite() && to.is_finite() && from != to) {
+        return refused("load: it must be two different load factors, as [0, 1]");
+    }
+    let mut of_body: Vec<usize> = bars.iter().flatten().copied().collect();
+    of_body.extend(contacts.iter().map(|contact| contact.node));
+    of_body.sort_unstable();
+    of_body.dedup();
+    let monitor = |(number, told): (usize, &message::Monitor)| {
+        let (name, kind) = monitor(told);
+        let of = Watched::Told { number, kind };
+        Monitor { name, of }
+    };
+    let model = Model {
+        about: shown::text(&scene.about).into_owned(),
+        bodies: vec![Body {
+            name: SHAPE.into(),
+            nodes: of_body,
+            kind: BodyKind::Linear(Linear {
+                form: Form::Stiffness,
+                entries: Vec::new(),
+                bars,
+            }),
+        }],
+        path: vec![from, to],
+        increment: spec.history.increment,
+        jumps: if scene.drag {
+            Jumps::Dynamic
+        } else {
+            Jumps::default()
+        },
+        control: if scene.arc {
+            Control::Arc
+        } else {
+            Control::Load
+        },
+        settings: spec.settings,
+        monitors: scene.monitors.iter().enumerate().map(monitor).collect(),
+        ..Model::of_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
+    };
+    if !model.length.is_finite() {
+        return refused("nodes: they lie too far apart");
+    }
+    if !(model.increment.is_finite() && model.increment > 0.0) {
+        return refused("the parameter increment: it must be positive");
+    }
+    let names = Names::single(&model.nodes);
+    Ok((model, names))
+}
+
+/// Name and kind of a monitor.
+fn monitor(told: &message::Monitor) -> (String, ToldKind) {
+    match told {
+        message::Monitor::Name(name) => (shown::line(name).into_owned(), ToldKind::Other),
+        message::Monitor::Kind { name, kind } => {
+            let kind = match kind {
+                message::MonitorKind::Length => ToldKind::Length,
+                message::MonitorKind::Force => ToldKind::Force,
+                message::MonitorKind::Pressure => ToldKind::Pressure,
+                message::MonitorKind::Count => ToldKind::Count,
+                message::MonitorKind::Other => ToldKind::Other,
+            };
+            (shown::line(name).into_owned(), kind)
+        }
+    }
+}
+
+/// What holds where a contact touches.
+fn bond(told: &message::Contact) -> Bond {
+    match (told.tied, told.gives) {
+        (true, _) => Bond::Tied { upright: false },
+        (false, Some(give)) => Bond::giving(give),
+        (false, None) => Bond::Hard,
+    }
+}
+
+fn refused<T>(message: impl Into<String>) -> Result<T, Fault> {
+    Err(Fault::new(at!["attached"], message.into()))
+}
+
+fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
+    if scene.nodes.len() > MOST || scene.contacts.len() > MOST {
+        return refused(format!(
+            "nodes and contacts can be {MOST} each, and no more"
+        ));
+    }
+    let mut nodes: Vec<Node> = Vec::with_capacity(scene.nodes.len());
+    for (k, node) in scene.nodes.iter().enumerate() {
+        if !node.at.iter().all(|x| x.is_finite()) {
+            return refused(format!("nodes[{k}].at: a place is two finite numbers"));
+        }
+        let name = match node.name.as_str() {
+            "" => format!("node.{}", k + 1),
+            name => shown::cut(name, limits::NAME),
+        };
+        nodes.push(Node { name, at: node.at });
+    }
+    // A contact may be called otherwise than its node.
+    for contact in scene
+        .contacts
+        .iter()
+        .filter(|contact| !contact.name.is_empty())
+    {
+        if let Some(node) = nodes.get_mut(contact.node) {
+            node.name = shown::cut(&contact.name, limits::NAME);
+        }
+    }
+    let mut names = HashSet::new();
+    for (k, node) in nodes.iter().enumerate() {
+        if !names.insert(node.name.as_str()) {
+            return refused(format!(
+                "nodes[{k}].name: there is another {:?}; each node has a name of its own",
+                node.name
+            ));
+        }
+    }
+    Ok(nodes)
+}
+
+/// Whether all of some nodes exist.
+fn known(scene: &Scene, of: &[usize], place: impl Fn() -> String) -> Result<(), Fault> {
+    match of.iter().find(|&&node| node >= scene.nodes.len()) {
+        None => Ok(()),
+        Some(node) => refused(format!(
+            "{}: there is no node {node}; they are numbered from 0 to {}",
+            place(),
+            scene.nodes.len().saturating_sub(1)
+        )),
+    }
+}
+
+fn lines(scene: &Scene) -> Result<Vec<Vec<usize>>, Fault> {
+    for (k, line) in scene.lines.iter().enumerate() {
+        known(scene, line, || format!("lines[{k}]"))?;
+        if line.len() < 2 {
+            return refused(format!("lines[{k}]: a line has two nodes or more"));
+        }
+    }
+    Ok(scene.lines.clone())
+}
+
+type Surfaces<'a> = (Vec<Surface>, HashMap<&'a str, usize>);
+
+fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
+    let mut numbers = HashMap::new();
+    let mut surfaces = Vec::new();
+    for (k, told) in scene.surfaces.iter().enumerate() {
+        known(scene, &told.nodes, || format!("surfaces[{k}].nodes"))?;
+        if told.nodes.len() < 2 {
+            return refused(format!(
+                "surfaces[{k}].nodes: a surface has two nodes or more"
+            ));
+        }
+        if numbers.insert(told.name.as_str(), k).is_some() {
+            return refused(format!(
+                "surfaces[{k}].name: there is another {:?}",
+                told.name
+            ));
+        }
+        surfaces.push(Surface {
+            name: shown::cut(&told.name, limits::NAME),
+            elements: told.nodes.windows(2).map(<[usize]>::to_vec).collect(),
+            rigid: told.rigid,
+            endless: false,
+            smooth: Vec::new(),
+        });
+    }
+    Ok((surfaces, numbers))
+}
+
+fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contact>, Fault> {
+    if scene.contacts.is_empty() {
+        return refused("contacts: there is none, and nothing to step");
+    }
+    let (mut ids, mut taken) = (HashSet::new(), HashSet::new());
+    let mut contacts = Vec::with_capacity(scene.contacts.len());
+    for (k, told) in scene.contacts.iter().enumerate() {
+        known(scene, &[told.node], || format!("contacts[{k}].node"))?;
+        if !ids.insert(&told.id) {
+            return refused(format!("contacts[{k}].id: there is another {}", told.id));
+        }
+        if !taken.insert(told.node) {
+            return refused(format!("contacts[{k}].node: it has a contact already"));
+        }
+        let surface = match &told.surface {
+            None => Vec::new(),
+            Some(name) => match surfaces.get(name.as_str()) {
+                Some(&number) => vec![number],
+                None => {
+                    return refused(format!(
+                        "contacts[{k}].surface: no surface is called {name:?}"
+                    ));
+                }
+            },
+        };
+        let friction = friction(&told.friction);
+        let sound = (0.0..90.0).contains(&friction.angle)
+            && (0.0..f64::INFINITY).contains(&friction.cohesion);
+        if !sound {
+            return refused(format!(
+                "contacts[{k}].friction: mu and cohesion are finite numbers that are not negative"
+            ));
+        }
+        contacts.push(Contact {
+            node: told.node,
+            surfaces: surface,
+            friction,
+            start: mode(told.mode),
+            state: InitialState::default(),
+            overlap: 0.0,
+            bond: bond(told),
+            area: told.area,
+        });
+    }
+    Ok(contacts)
+}

@@ -1,0 +1,55 @@
+//! A session on an exchange that was kept in a file: all ways that the solver went are in its tree, as branches, and nothing can
+//! follow on them.
+
+use super::machine::Session;
+use crate::attach::past::{Line, Opened};
+use crate::attach::story::in_common;
+use crate::history::branches;
+
+impl Session {
+    /// The session at the start of the first way, with all others as branches that leave the nearest one before.
+    pub fn kept(opened: Opened) -> Session {
+        let mut session = Session::attached(opened.scene, Box::new(opened.past), opened.log);
+        let mut done: Vec<(usize, Line)> = Vec::new();
+        for line in opened.lines {
+            session.go_along(&line, &done);
+            done.push((session.tree.current(), line));
+        }
+        if done.len() > 1 {
+            session.tree.switch(0);
+        }
+        session.rest_at(0);
+        session
+    }
+
+    /// Goes a way, from where it leaves those before.
+    fn go_along(&mut self, line: &Line, done: &[(usize, Line)]) {
+        let common = |(branch, before): &(usize, Line)| (in_common(line, before), *branch);
+        let Some((along, branch)) = done.iter().map(common).max_by_key(|&(along, _)| along) else {
+            self.take_steps(line.clone());
+            self.wait();
+            return;
+        };
+        self.tree.switch(branch);
+        let along = along.min(self.frames().len() - 1);
+        self.cursor = self.frames().len() - 1;
+        self.rest_at(along);
+        let rest = line[along..].to_vec();
+        let first = rest.iter().flatten().next();
+        let label = match first {
+            Some(first) => branches::label(self.model(), first, None),
+            None => "otherwise".into(),
+        };
+        // What is kept was done, and can be gone along.
+        if self.follow(label, rest).is_ok() {
+            self.wait();
+        }
+    }
+
+    /// Puts the cursor on a step that there is.
+    fn rest_at(&mut self, step: usize) {
+        if self.jump(step).is_ok() {
+            self.wait();
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Memory for runs side by side: a run begins only when what it will take fits beside those that are at work.
+//!
+//! What a run takes is estimated ([`Estimate`]), what there is is what the machine and the process's groups leave
+//! ([`memory::free`]). A run alone may always begin: whether it fits was decided when its scene was read. Bits do not depend on it.
+
+use crate::linear::estimate::Estimate;
+use crate::model::Model;
+use crate::scene::memory;
+use std::collections::HashMap;
+use std::sync::{Condvar, Mutex, MutexGuard};
+
+/// What is taken, and by how many.
+#[derive(Debug, Default)]
+struct Taken {
+    bytes: f64,
+    runs: usize,
+    /// Estimates, by what they hang on: unknowns, contacts and bodies.
+    known: HashMap<[usize; 3], f64>,
+}
+
+/// Memory that runs take and give back.
+#[derive(Debug)]
+pub struct Room {
+    free: f64,
+    taken: Mutex<Taken>,
+    given: Condvar,
+}
+
+/// A run's memory, until it is dropped.
+#[derive(Debug)]
+pub struct Place<'a> {
+    room: &'a Room,
+    bytes: f64,
+}
+
+impl Default for Room {
+    fn default() -> Room {
+        Room::new(memory::free())
+    }
+}
+
+impl Room {
+    /// So many bytes.
+    pub fn new(free: f64) -> Room {
+        Room {
+            free,
+            taken: Mutex::default(),
+            given: Condvar::new(),
+        }
+    }
+
+    /// Waits until a run of a model fits.
+    pub fn take(&self, model: &Model) -> Place<'_> {
+        let layout = [model.dofs.len(), model.contacts.len(), model.bodies.len()];
+        let known = self.taken().known.get(&layout).copied();
+        let bytes = known.unwrap_or_else(|| {
+            let bytes = Estimate::of(model).with(model.settings.solver).0.bytes;
+            self.taken().known.insert(layout, bytes);
+            bytes
+        });
+        self.wait(bytes)
+    }
+
+    fn wait(&self, bytes: f64) -> Place<'_> {
+        let full = |taken: &mut Taken| taken.runs > 0 && taken.bytes + bytes > self.free;
+        let taken = self.given.wait_while(self.taken(), full);
+        let mut taken = taken.unwrap_or_else(|e| e.into_inner());
+        taken.bytes += bytes;
+        taken.runs += 1;
+        Place { room: self, bytes }
+    }
+
+    fn taken(&self) -> MutexGuard<'_, Taken> {
+        self.taken.lock().unwrap_or_else(|e| e.into_inner())
+    }
+}
+
+impl Drop for Place<'_> {
+    fn drop(&mut self) {
+        let mut taken = self.room.taken();
+        taken.bytes -= self.bytes;
+        taken.runs -= 1;
+        drop(taken);
+        self.room.given.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn no_more_runs_are_at_work_than_fit_and_one_always_is() {
+        for (bytes, most) in [(40.0, 2), (100.0, 1), (1e9, 1)] {
+            let room = Room::new(100.0);
+            let (now, seen) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            std::thread::scope(|scope| {
+                for _ in 0..6 {
+                    scope.spawn(|| {
+                        for _ in 0..20 {
+                            let place = room.wait(bytes);
+                            let at_work = now.fetch_add(1, Ordering::SeqCst) + 1;
+                            seen.fetch_max(at_work, Ordering::SeqCst);
+                            std::thread::yield_now();
+                            now.fetch_sub(1, Ordering::SeqCst);
+                            drop(place);
+                        }
+                    });
+                }
+            });
+            let seen = seen.load(Ordering::SeqCst);
+            assert!((1..=most).contains(&seen), "{bytes}: {seen} at once");
+        }
+    }
+}

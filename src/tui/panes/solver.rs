@@ -1,0 +1,232 @@
+//! Two pages of an attached solver: what it says besides (its messages, its standard error, and what happened to it), which
+//! follows the end while it is there; and the parameters that `:set` changes, with what they are now.
+
+use crate::action::present;
+use crate::attach::log::How;
+use crate::explain::number;
+use crate::manual::search::Search;
+use crate::outside::shown;
+use crate::step::intervene::Value;
+use crate::step::solver::Parameter;
+use crate::tui::paint;
+use crate::tui::theme::Theme;
+use crate::tui::view::{View, context};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::Line;
+use stickslip_exchange::attach::message::Level;
+
+/// Rows that a page key goes past, and columns that a sideways key does.
+const PAGE: usize = 10;
+const ASIDE: usize = 20;
+/// Width of the words that say how a line was said.
+const HOW: usize = 8;
+
+/// Which page is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Page {
+    /// What the solver says.
+    Log,
+    /// What can be set.
+    Parameters,
+}
+
+/// A page that is being read.
+#[derive(Debug, Clone)]
+pub struct Reader {
+    /// Which.
+    pub page: Page,
+    /// The first row that is shown, from 0; `None` at the end, where new rows come, and at the top of what does not grow.
+    top: Option<usize>,
+    /// Columns that are left out on the left.
+    aside: usize,
+    /// What is looked for in it.
+    pub search: Search,
+}
+
+/// A row, and how it is drawn.
+struct Row {
+    text: String,
+    style: fn(&Theme) -> Style,
+}
+
+impl Reader {
+    /// The page, where one begins to read.
+    pub fn new(page: Page) -> Reader {
+        Reader {
+            page,
+            top: None,
+            aside: 0,
+            search: Search::default(),
+        }
+    }
+
+    /// The first row that is shown of so many, in a page of this height.
+    fn first(&self, rows: usize, height: usize) -> usize {
+        let last = rows.saturating_sub(height);
+        match (self.top, self.page) {
+            (Some(top), _) => top.min(last),
+            (None, Page::Log) => last,
+            (None, Page::Parameters) => 0,
+        }
+    }
+
+    /// What a key does in a page of this size; false if it leaves it.
+    pub fn key(&mut self, name: &str, size: Rect, view: Option<&View>) -> bool {
+        let rows = rows(self.page, size.width.into(), view);
+        let height = usize::from(size.height);
+        let (top, last) = (
+            self.first(rows.len(), height),
+            rows.len().saturating_sub(height),
+        );
+        if let Some(go) = self.search.key(name) {
+            let texts: Vec<String> = rows.into_iter().map(|row| row.text).collect();
+            self.top = self.search.find(go, top, &texts).or(self.top);
+            return true;
+        }
+        let to = match name {
+            "Esc" | "q" | "Enter" | "O" => return false,
+            "Left" | "h" => {
+                self.aside = self.aside.saturating_sub(ASIDE);
+                return true;
+            }
+            "Right" | "l" => {
+                self.aside += ASIDE;
+                return true;
+            }
+            "Up" | "k" => top.saturating_sub(1),
+            "Down" | "j" => top + 1,
+            "PageUp" => top.saturating_sub(PAGE),
+            "PageDown" | "Space" => top + PAGE,
+            "Home" | "g" => 0,
+            "End" | "G" => last,
+            _ => return true,
+        };
+        // Who is at the end again follows it.
+        self.top = (to < last || self.page == Page::Parameters).then_some(to.min(last));
+        true
+    }
+}
+
+/// Draws the page.
+pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, view: Option<&View>, theme: &Theme) {
+    let width = usize::from(area.width.saturating_sub(2));
+    let rows = rows(reader.page, width, view);
+    let height = usize::from(area.height.saturating_sub(2));
+    let top = reader.first(rows.len(), height);
+    let name = view
+        .and_then(|view| view.guest)
+        .map_or("", |guest| &guest.offers.name);
+    let title = reader.search.title().unwrap_or_else(|| {
+        let what = match reader.page {
+            Page::Log => format!("What {name} says"),
+            Page::Parameters => format!("What can be set in {name}"),
+        };
+        match rows.len() > height {
+            true => format!(
+                "{what}  lines {} to {} of {}",
+                top + 1,
+                (top + height).min(rows.len()),
+                rows.len()
+            ),
+            false => what,
+        }
+    });
+    let inner = paint::frame(
+        buffer,
+        area,
+        &paint::cut(&title, width.saturating_sub(2)),
+        true,
+        theme,
+    );
+    let line = |row: &Row| {
+        let text: String = row.text.chars().skip(reader.aside).collect();
+        let style = match reader.search.holds(&row.text) {
+            true => theme.selected,
+            false => (row.style)(theme),
+        };
+        Line::styled(
+            format!(" {}", paint::cut(&text, width.saturating_sub(1))),
+            style,
+        )
+    };
+    let lines: Vec<Line> = rows.iter().skip(top).take(height).map(line).collect();
+    paint::lines(buffer, inner, &lines);
+}
+
+fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
+    let Some((view, guest)) = view.and_then(|view| Some((view, view.guest?))) else {
+        return Vec::new();
+    };
+    match page {
+        Page::Log => said(guest.log.lines()),
+        Page::Parameters => parameters(&guest.offers.parameters, width, view),
+    }
+}
+
+/// What was said, a row a line, the newest last.
+fn said((first, lines): (usize, Vec<crate::attach::log::Said>)) -> Vec<Row> {
+    let faint = |text: String| Row {
+        text,
+        style: |theme| theme.faint,
+    };
+    let mut rows = Vec::with_capacity(lines.len() + 1);
+    match (first, lines.is_empty()) {
+        (0, true) => rows.push(faint("It has said nothing yet.".into())),
+        (0, false) => {}
+        (gone, _) => rows.push(faint(format!("The first {gone} lines are forgotten."))),
+    }
+    rows.extend(lines.into_iter().map(|said| Row {
+        text: format!("{:<HOW$} {}", said.how.word(), said.text),
+        style: match said.how {
+            How::Told(Level::Error) => |theme| theme.bad,
+            How::Told(Level::Warning) => |theme| theme.warning,
+            How::Told(Level::Info) | How::Printed => |theme| theme.text,
+            How::Noted => |theme| theme.faint,
+        },
+    }));
+    rows
+}
+
+/// The parameters: what each is now and takes, and what it does.
+fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
+    let context = context(Some(view), 0, &[]);
+    let mut rows = Vec::new();
+    for known in all {
+        let name = shown::line(&known.name);
+        let began = match &known.value {
+            Value::Number(value) => number::plain(*value),
+            other => other.to_string(),
+        };
+        let now = present(known, &context);
+        let began = match now == began {
+            true => String::new(),
+            false => format!(", began with {began}"),
+        };
+        let text = format!("{name} = {now}   ({}{began})", known.range);
+        rows.push(Row {
+            text: shown::line(&text).into_owned(),
+            style: |theme| theme.strong,
+        });
+        let about = paint::wrap(&known.about, width.saturating_sub(6));
+        rows.extend(
+            about
+                .into_iter()
+                .filter(|line| !line.is_empty())
+                .map(|line| Row {
+                    text: format!("    {line}"),
+                    style: |theme| theme.text,
+                }),
+        );
+    }
+    let last = match all.is_empty() {
+        true => "It offers no parameters.",
+        false => ":set NAME VALUE sets one from here on.",
+    };
+    rows.push(Row {
+        text: last.into(),
+        style: |theme| theme.faint,
+    });
+    rows
+}

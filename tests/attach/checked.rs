@@ -1,0 +1,193 @@
+//! `attach --check` passes a solver that does what it says, and names what is wrong of one that does not.
+
+use super::program::{code, err, out, program};
+use super::served::{start, stickslip};
+use super::side::Rude;
+use libtest_mimic::Trial;
+use stickslip::attach::check::{Report, Verdict, check};
+
+pub fn tests() -> Vec<Trial> {
+    crate::tests![
+        our_own_solver_passes_every_check,
+        each_wrong_is_found_by_its_check,
+        the_command_line_tells_it_and_ends_with_1,
+    ]
+}
+
+fn verdict(report: &Report, what: &str) -> Verdict {
+    let found = report.checks.iter().find(|check| check.what == what);
+    found
+        .unwrap_or_else(|| panic!("{what}: {}", report.text()))
+        .verdict
+        .clone()
+}
+
+fn our_own_solver_passes_every_check() {
+    std::thread::scope(|scope| {
+        for (name, restore) in [
+            ("osc-lag4", "any"),
+            ("02-two-cantilevers-rough", "increment"),
+            ("osc-three10", "none"),
+        ] {
+            scope.spawn(move || {
+                let report = check(&start(name, restore, ""));
+                assert_eq!(report.failed(), 0, "{name}: {}", report.text());
+                for what in [
+                    "step",
+                    "answers",
+                    "states",
+                    "order",
+                    "determinism",
+                    "force",
+                    "hold",
+                    "parameters",
+                    "increment",
+                    "friction",
+                    "problem",
+                    "wrong requests",
+                    "bye",
+                    "end of input",
+                ] {
+                    assert_eq!(
+                        verdict(&report, what),
+                        Verdict::Good,
+                        "{name}, {what}: {}",
+                        report.text()
+                    );
+                }
+                let back = if restore == "none" {
+                    Verdict::NotOffered
+                } else {
+                    Verdict::Good
+                };
+                assert_eq!(
+                    verdict(&report, "restore"),
+                    back,
+                    "{name}: {}",
+                    report.text()
+                );
+            });
+        }
+    });
+}
+
+/// What a solver does wrong, the check that finds it, and what it says.
+const WRONGS: &[(&str, &str, &str)] = &[
+    ("version", "start", "speaks version 2"),
+    ("same-id", "scene", "there is another a"),
+    ("text", "step", "is no message"),
+    ("nan", "step", "null stands for both"),
+    ("wrong-id", "states", "it must be 7, as in the scene"),
+    (
+        "displacements",
+        "states",
+        "it has 1 displacements, and the scene 4 nodes",
+    ),
+    ("random", "determinism", "started again, iteration"),
+    (
+        "restores-another",
+        "restore",
+        "gone back to the state after iteration",
+    ),
+    (
+        "refuses-restore",
+        "restore",
+        "is refused: I would rather not",
+    ),
+    (
+        "refuses-save",
+        "restore",
+        "save after iteration 0 is refused",
+    ),
+    ("dies-in-restore", "restore", "exit status 9"),
+    ("deaf-to-force", "force", "is forced"),
+    ("second-not-forced", "force", "contact 7 is forced"),
+    ("refuses-force", "force", "I would rather not"),
+    ("holds-once", "hold", "is held"),
+    ("refuses-release", "hold", "release of contact a is refused"),
+    (
+        "refuses-set",
+        "parameters",
+        "gain refuses the value that it has",
+    ),
+    (
+        "takes-all",
+        "parameters",
+        "gain takes -1.0, which is none of its values",
+    ),
+    ("problem-short", "problem", "4 rows of 4 numbers"),
+    (
+        "problem-negative",
+        "problem",
+        "the diagonal is negative at contact a along n",
+    ),
+    (
+        "problem-null",
+        "problem",
+        "matrix[0][1]: invalid type: null",
+    ),
+    ("deaf-to-bye", "bye", "it does not end"),
+];
+
+fn each_wrong_is_found_by_its_check() {
+    std::thread::scope(|scope| {
+        for &(how, what, told) in WRONGS {
+            scope.spawn(move || {
+                let rude = Rude::new(how);
+                let report = check(&rude.start);
+                let Verdict::Fails(mend) = verdict(&report, what) else {
+                    panic!("{how}: {}", report.text());
+                };
+                assert!(!mend.is_empty(), "{how}");
+                let failed = report
+                    .checks
+                    .iter()
+                    .find(|check| check.what == what && matches!(check.verdict, Verdict::Fails(_)));
+                let found = &failed.unwrap().found;
+                assert!(found.contains(told), "{how}: {found}");
+                super::side::is_harmless(&report.text().replace("rude", ""));
+                rude.is_gone();
+            });
+        }
+        for (how, what, told) in [
+            ("upside-down", "laws", "compression is positive"),
+            ("flat", "problem", "gap = W f + q"),
+            ("deaf", "increment", "`load` is the factor"),
+        ] {
+            scope.spawn(move || {
+                let report = check(&start("02-two-cantilevers-rough", "any", how));
+                let Verdict::Fails(mend) = verdict(&report, what) else {
+                    panic!("{how}: {}", report.text());
+                };
+                assert!(mend.contains(told), "{how}: {mend}");
+            });
+        }
+    });
+}
+
+fn the_command_line_tells_it_and_ends_with_1() {
+    let folder = tempfile::tempdir().unwrap();
+    let rude = Rude::new("holds-once");
+    let mut arguments = vec!["attach", "--check", "--"];
+    arguments.extend(rude.start.command.iter().map(String::as_str));
+    let output = program(folder.path(), &arguments).output().unwrap();
+    assert_eq!(code(&output), 1, "{}", err(&output));
+    assert!(
+        out(&output).contains("  FAILS        hold"),
+        "{}",
+        out(&output)
+    );
+    assert_eq!(err(&output), "1 check failed\n");
+    let output = program(
+        folder.path(),
+        &["attach", "--check", "--", stickslip(), "serve", "osc-lag4"],
+    )
+    .output()
+    .unwrap();
+    assert_eq!(
+        (code(&output), err(&output).as_str()),
+        (0, ""),
+        "{}",
+        out(&output)
+    );
+}

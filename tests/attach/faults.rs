@@ -1,0 +1,624 @@
+//! Each fault of a solver has its name; what was done before stands; and nothing of it is left.
+
+use super::program::{code, err, out, program};
+use super::served::seen;
+use super::side::{Rude, does, is_harmless, minor};
+use libtest_mimic::Trial;
+use std::time::{Duration, Instant};
+use stickslip::model::Mode;
+use stickslip::record::command::{Command, Unit};
+
+pub fn tests() -> Vec<Trial> {
+    crate::tests![
+        each_fault_of_a_step_has_a_name_and_leaves_what_was_done,
+        each_fault_at_the_start_has_a_name,
+        the_command_line_ends_with_3_after_a_fault_and_with_2_before_the_first_step,
+        a_solver_that_died_once_is_started_anew_and_comes_to_the_same,
+        one_that_is_another_when_started_again_is_not_believed,
+        what_is_refused_is_told_and_the_solver_goes_on,
+        a_restore_that_is_refused_is_done_again_from_before,
+        an_interrupt_is_a_message_then_a_signal_then_the_end,
+        a_hostile_scene_does_nothing_to_the_terminal,
+    ]
+}
+
+/// What a solver does in its third step, whether it hangs, and what is said of it.
+const FAULTS: &[(&str, bool, &str)] = &[
+    (
+        "exit",
+        false,
+        "the solver ended (exit status 7; panicked at the worst time",
+    ),
+    (
+        "signal",
+        false,
+        "the solver ended (killed by signal 9); step is not answered",
+    ),
+    (
+        "bye",
+        false,
+        r"the solver answered step with bye: no licence\u{1b}[2J left",
+    ),
+    (
+        "bye-silently",
+        false,
+        "the solver answered step with bye; what was done",
+    ),
+    (
+        "hang",
+        true,
+        "the solver did not answer step within 0.5 s, and was stopped; --timeout gives it longer",
+    ),
+    (
+        "hang-deaf",
+        true,
+        "the solver did not answer step within 0.5 s",
+    ),
+    (
+        "text",
+        false,
+        r#"that is no message (it is no JSON object): "Iteration 3: residual 1.0e-3"; what it prints belongs on standard error"#,
+    ),
+    (
+        "text-then-answer",
+        false,
+        "that is no message (it is no JSON object)",
+    ),
+    ("binary", false, "that is no message (it is not UTF-8)"),
+    (
+        "ansi",
+        false,
+        r#"(it is no JSON object): "\u{1b}[2J\u{1b}]0;owned\u{7}\u{9b}31m""#,
+    ),
+    ("blank", false, "that is no message (an empty line)"),
+    ("number", false, r#"(it is no JSON object): "42""#),
+    ("array", false, "(it is no JSON object)"),
+    (
+        "nan",
+        false,
+        "the solver's answer to step cannot be read (column ",
+    ),
+    (
+        "infinity",
+        false,
+        "JSON knows no NaN and no infinity; null stands for both",
+    ),
+    (
+        "null",
+        false,
+        "at.increment: invalid type: null, expected u32",
+    ),
+    (
+        "word",
+        false,
+        r#"contacts[1].f_n: invalid type: string "much", expected f64"#,
+    ),
+    (
+        "mode",
+        false,
+        r"contacts[1].mode: unknown variant `open\u{1b}[2J`, expected one of `free`, `sliding`, `fixed`",
+    ),
+    (
+        "zero",
+        false,
+        "the solver's state is unsound: at: all counts are from 1 to",
+    ),
+    (
+        "huge",
+        false,
+        "the solver's state is unsound: at: all counts are from 1 to",
+    ),
+    (
+        "wrong-id",
+        false,
+        r"the solver's state is unsound: contacts[1].id is \u{1b}[2Jb; it must be 7, as in the scene",
+    ),
+    (
+        "other-order",
+        false,
+        "contacts[0].id is 7; it must be a, as in the scene",
+    ),
+    ("too-few", false, "it has 1 contacts, and the scene 2"),
+    ("too-many", false, "it has 3 contacts, and the scene 2"),
+    (
+        "displacements",
+        false,
+        "it has 1 displacements, and the scene 4 nodes",
+    ),
+    (
+        "normal",
+        false,
+        "contacts[0].normal: it must be of length 1",
+    ),
+    (
+        "cut-to-nothing",
+        false,
+        "size: that of an increment is positive",
+    ),
+    (
+        "half",
+        false,
+        r#"the solver ended in the middle of a line: "{\"type\":\"state\",\"at\":{\"incr""#,
+    ),
+    (
+        "half-and-hang",
+        true,
+        "the solver did not answer step within 0.5 s",
+    ),
+    ("deep", false, "recursion limit exceeded"),
+    ("key-twice", false, "at: duplicate field `minor`"),
+    ("type-twice", false, "duplicate field `type`"),
+    (
+        "unknown-type",
+        false,
+        r"unknown variant `stat\u{1b}[2J`, expected one of `hello`, `scene`, `state`",
+    ),
+    ("no-type", false, "missing field `type`"),
+    (
+        "ok",
+        false,
+        "the solver answered step with ok; state is the answer to that",
+    ),
+    (
+        "saved",
+        false,
+        "the solver answered step with saved; state is the answer to that",
+    ),
+    (
+        "refuses-step",
+        false,
+        "the solver refuses step: I would rather not",
+    ),
+    (
+        "closes",
+        false,
+        "the solver ended (it closed its standard output); step is not answered",
+    ),
+    (
+        "leaves-a-child",
+        false,
+        "the solver ended (exit status 5; what it started lives on); step is not answered",
+    ),
+];
+
+/// What it does after its third step, and what is said of it: before the next request, or in the place of its answer, as it
+/// comes.
+const AFTER: &[(&str, [&str; 2])] = &[
+    (
+        "twice",
+        [
+            "the solver said state unasked, before ",
+            "the solver answered save with state; saved is the answer to that",
+        ],
+    ),
+    (
+        "unasked",
+        [
+            "the solver said ok unasked, before ",
+            "the solver answered save with ok; saved is the answer to that",
+        ],
+    ),
+    (
+        "exits-between",
+        [
+            "the solver ended (exit status 4",
+            "the solver ended (exit status 4",
+        ],
+    ),
+    (
+        "junk-between",
+        [
+            r#"(it is no JSON object): "done.""#,
+            "what it prints belongs on standard error",
+        ],
+    ),
+];
+
+#[track_caller]
+fn says(how: &str, said: &str, told: &str) {
+    assert!(said.contains(told), "{how}: {said}");
+    assert!(
+        said.ends_with("; what was done so far is kept"),
+        "{how}: {said}"
+    );
+    is_harmless(said);
+    assert!(!said.contains('\n'), "{how}: {said}");
+}
+
+fn each_fault_of_a_step_has_a_name_and_leaves_what_was_done() {
+    std::thread::scope(|scope| {
+        for &(how, hangs, told) in FAULTS {
+            scope.spawn(move || {
+                let rude = if hangs {
+                    Rude::hurried(how)
+                } else {
+                    Rude::new(how)
+                };
+                let mut session = rude
+                    .attach()
+                    .unwrap_or_else(|fault| panic!("{how}: {fault}"));
+                for _ in 0..2 {
+                    does(&mut session, minor());
+                }
+                assert_eq!(session.frames().len(), 3, "{how}");
+                let before = session.frames()[2].clone();
+                let began = Instant::now();
+                says(how, &does(&mut session, minor()), told);
+                assert!(
+                    began.elapsed() < Duration::from_secs(20),
+                    "{how} takes {:?}",
+                    began.elapsed()
+                );
+                assert_eq!((session.frames().len(), session.cursor()), (3, 2), "{how}");
+                assert_eq!(session.frames()[2].state, before.state, "{how}");
+                assert_eq!(seen(&session.frames()[2]), seen(&before), "{how}");
+                // It is tried again, from a solver that is started again or taken back, and does the same wrong.
+                if !hangs {
+                    says(how, &does(&mut session, minor()), told);
+                }
+                let lines = session.log().unwrap().lines().1;
+                lines.iter().for_each(|said| is_harmless(&said.text));
+                drop(session);
+                rude.is_gone();
+            });
+        }
+        for &(how, told) in AFTER {
+            scope.spawn(move || {
+                let rude = Rude::new(how);
+                let mut session = rude
+                    .attach()
+                    .unwrap_or_else(|fault| panic!("{how}: {fault}"));
+                let mut said = String::new();
+                // What comes after the answer may come after the next request.
+                for _ in 0..5 {
+                    said = does(&mut session, minor());
+                    if said.ends_with("is kept") {
+                        break;
+                    }
+                }
+                let log = session.log().unwrap().lines().1;
+                let is_told = |text: &str| told.iter().any(|told| text.contains(told));
+                let noted = log.iter().any(|line| is_told(&line.text));
+                assert!(is_told(&said) || noted, "{how}: {said}\n{log:#?}");
+                assert!(
+                    session.frames().len() >= 4,
+                    "{how}: {}",
+                    session.frames().len()
+                );
+                drop(session);
+                rude.is_gone();
+            });
+        }
+    });
+}
+
+/// What a solver does at its start, and what is said of it.
+const BAD_STARTS: &[(&str, &str)] = &[
+    (
+        "hang-at-start",
+        "did not answer hello within 0.5 s, and was stopped; --start-timeout gives it longer",
+    ),
+    ("hang-in-scene", "did not answer scene within 0.5 s"),
+    (
+        "dies-in-scene",
+        "the solver ended (exit status 3); scene is not answered",
+    ),
+    (
+        "version",
+        "the solver speaks version 2 of the protocol, and this program version 1",
+    ),
+    ("refuses-to-talk", "the solver refuses hello: not with you"),
+    (
+        "scene-for-hello",
+        "the solver answered hello with scene; hello is the answer to that",
+    ),
+    ("hello-without-question", "hello"),
+    (
+        "parameter-twice",
+        r#"the solver's hello is unsound: the parameter "gain": there are two of this name"#,
+    ),
+    (
+        "parameter-unsound",
+        "its own value is none that it takes: gain takes a number from 0 on, and -1 is none",
+    ),
+    ("parameter-null", "its value is a number, a flag or a text"),
+    (
+        "same-id",
+        "the solver's scene is unsound: contacts[1].id: there is another a",
+    ),
+    (
+        "no-such-node",
+        "contacts[1].node: there is no node 4; they are numbered from 0 to 3",
+    ),
+    (
+        "no-contacts",
+        "contacts: there is none, and nothing to step",
+    ),
+    ("far-apart", "nodes: they lie too far apart"),
+];
+
+fn each_fault_at_the_start_has_a_name() {
+    std::thread::scope(|scope| {
+        for &(how, told) in BAD_STARTS {
+            scope.spawn(move || {
+                let mut rude = Rude::new(how);
+                if how.starts_with("hang") {
+                    rude.start.start = super::side::SHORT;
+                }
+                let fault = rude
+                    .attach()
+                    .err()
+                    .unwrap_or_else(|| panic!("{how} goes well"));
+                assert!(fault.to_string().contains(told), "{how}: {fault}");
+                is_harmless(&fault.to_string());
+                rude.is_gone();
+            });
+        }
+    });
+    let mut nobody = Rude::new("");
+    nobody.start.command = vec!["/no/such/solver".into()];
+    let fault = nobody.attach().err().expect("there is none").to_string();
+    assert!(
+        fault.starts_with("/no/such/solver cannot be started: No such file"),
+        "{fault}"
+    );
+}
+
+fn the_command_line_ends_with_3_after_a_fault_and_with_2_before_the_first_step() {
+    let runs = |how: &str| {
+        let rude = Rude::new(how);
+        let folder = rude.folder();
+        let mut arguments = vec![
+            "run",
+            "--trace",
+            "-",
+            "--timeout",
+            "1",
+            "--start-timeout",
+            "20",
+            "--",
+        ];
+        arguments.extend(rude.start.command.iter().map(String::as_str));
+        let output = program(&folder, &arguments).output().unwrap();
+        let (out, err) = (out(&output), err(&output));
+        is_harmless(&out);
+        is_harmless(&err);
+        rude.is_gone();
+        (code(&output), out, err)
+    };
+    std::thread::scope(|scope| {
+        for how in [
+            "exit",
+            "signal",
+            "bye",
+            "hang-deaf",
+            "ansi",
+            "nan",
+            "half",
+            "leaves-a-child",
+            "refuses-step",
+            "unknown-type",
+        ] {
+            scope.spawn(move || {
+                let (code, out, err) = runs(how);
+                assert_eq!(code, 3, "{how}: {err}");
+                // Heads, and two iterations of two contacts.
+                let rows = out.lines().filter(|line| !line.starts_with('#')).count();
+                assert_eq!(rows, 5, "{how}: {out}");
+                assert!(err.contains("the solver"), "{how}: {err}");
+            });
+        }
+        for how in ["version", "dies-in-scene", "same-id"] {
+            scope.spawn(move || {
+                let (code, out, err) = runs(how);
+                assert_eq!((code, out.as_str()), (2, ""), "{how}: {err}");
+                assert!(err.contains("the solver"), "{how}: {err}");
+            });
+        }
+        scope.spawn(move || {
+            let (code, _, err) = runs("failure");
+            assert_eq!(code, 3, "{err}");
+            assert!(
+                err.contains(r"it \u{1b}[31mdiverges\u{1b}[0m\u{a}at once"),
+                "{err}"
+            );
+        });
+    });
+}
+
+fn a_solver_that_died_once_is_started_anew_and_comes_to_the_same() {
+    let rude = Rude::new("dies-once");
+    let mut session = rude.attach().unwrap();
+    does(&mut session, minor());
+    does(&mut session, minor());
+    let said = does(&mut session, minor());
+    assert!(said.contains("the solver ended (exit status 1)"), "{said}");
+    let said = does(&mut session, minor());
+    assert!(
+        said.starts_with("the solver was started anew, and did 2 iterations again; "),
+        "{said}"
+    );
+    assert_eq!(session.frames().len(), 4);
+    let whole = Rude::new("none");
+    let mut other = whole.attach().unwrap();
+    (0..3).for_each(|_| {
+        does(&mut other, minor());
+    });
+    assert_eq!(seen(session.frame()), seen(other.frame()));
+    assert_eq!(session.frame().state, other.frame().state);
+    drop((session, other));
+    rude.is_gone();
+    whole.is_gone();
+    assert_eq!(rude.pids().len(), 2);
+}
+
+fn one_that_is_another_when_started_again_is_not_believed() {
+    let back = || Command::Back {
+        unit: Unit::Minor,
+        count: 3,
+    };
+    let force = || Command::Force {
+        slave: 0,
+        mode: Mode::Fixed,
+        hold: false,
+    };
+    for (how, told) in [
+        (
+            "random",
+            "done again, iteration 2 of the solver is not what it was (",
+        ),
+        (
+            "other-scene",
+            "started again, the solver tells another list of contacts",
+        ),
+        (
+            "other-parameters",
+            "started again, the solver tells another list of parameters, or other values of them",
+        ),
+    ] {
+        let rude = Rude::new(how);
+        let mut session = rude.attach().unwrap();
+        for _ in 0..5 {
+            does(&mut session, minor());
+        }
+        does(&mut session, back());
+        does(&mut session, force());
+        says(how, &does(&mut session, minor()), told);
+        drop(session);
+        rude.is_gone();
+    }
+}
+
+fn what_is_refused_is_told_and_the_solver_goes_on() {
+    for how in ["refuses-force", "refuses-save"] {
+        let rude = Rude::new(how);
+        let mut session = rude.attach().unwrap();
+        does(&mut session, minor());
+        let force = Command::Force {
+            slave: 1,
+            mode: Mode::Fixed,
+            hold: false,
+        };
+        does(&mut session, force);
+        let said = does(&mut session, minor());
+        let log = session.log().unwrap().lines().1;
+        match how {
+            "refuses-force" => says(
+                how,
+                &said,
+                "the solver refuses force of contact 7: I would rather not",
+            ),
+            _ => {
+                assert_eq!(
+                    session.frame().event.as_ref().unwrap().nodes[1]
+                        .decision
+                        .before,
+                    Mode::Fixed
+                );
+                assert!(
+                    log.iter()
+                        .any(|said| said.text == "save is refused: I would rather not")
+                );
+            }
+        }
+        // The way without it is open.
+        let back = Command::Back {
+            unit: Unit::Minor,
+            count: 9,
+        };
+        does(&mut session, back);
+        assert_eq!(session.cursor(), 0);
+        drop(session);
+        rude.is_gone();
+    }
+}
+
+fn a_restore_that_is_refused_is_done_again_from_before() {
+    let rude = Rude::new("refuses-restore");
+    let mut session = rude.attach().unwrap();
+    for _ in 0..4 {
+        does(&mut session, minor());
+    }
+    let back = Command::Back {
+        unit: Unit::Minor,
+        count: 2,
+    };
+    does(&mut session, back);
+    let force = Command::Force {
+        slave: 0,
+        mode: Mode::Sliding,
+        hold: false,
+    };
+    does(&mut session, force);
+    let said = does(&mut session, minor());
+    assert!(said.contains("2 iterations again"), "{said}");
+    assert_eq!(
+        session.frame().event.as_ref().unwrap().nodes[0]
+            .decision
+            .before,
+        Mode::Sliding
+    );
+    drop(session);
+    rude.is_gone();
+}
+
+fn an_interrupt_is_a_message_then_a_signal_then_the_end() {
+    // It listens: it ends its iteration, which counts.
+    let interrupted = |how: &str, times: usize| {
+        let rude = Rude::new(how);
+        let mut session = rude.attach().unwrap();
+        does(&mut session, minor());
+        does(&mut session, minor());
+        session.submit(minor()).unwrap();
+        for _ in 0..times {
+            std::thread::sleep(Duration::from_millis(150));
+            session.interrupt();
+        }
+        let said = session.wait().unwrap().0;
+        let frames = session.frames().len();
+        drop(session);
+        rude.is_gone();
+        (said, frames)
+    };
+    let (said, frames) = interrupted("interrupt", 1);
+    assert_eq!(frames, 4, "{said}");
+    let (said, frames) = interrupted("hang", 2);
+    assert!(
+        said.contains("the solver ended (killed by signal 2)"),
+        "{said}"
+    );
+    assert_eq!(frames, 3);
+    for deaf in ["hang-deaf", "interrupt-ignored"] {
+        let (said, frames) = interrupted(deaf, 3);
+        assert!(
+            said.contains(
+                "interrupted: the solver did not end step when it was asked to, and was stopped"
+            ),
+            "{said}"
+        );
+        assert_eq!(frames, 3);
+    }
+}
+
+fn a_hostile_scene_does_nothing_to_the_terminal() {
+    let rude = Rude::new("escapes");
+    let folder = rude.folder();
+    for arguments in [
+        &["run", "--trace", "-", "--"][..],
+        &["run", "--csv", "-", "--"],
+        &["run", "--"],
+        &["record", "--at", "1", "-o", "-", "--"],
+        &["attach", "--check", "--"],
+    ] {
+        let mut arguments = arguments.to_vec();
+        arguments.extend(rude.start.command.iter().map(String::as_str));
+        let output = program(&folder, &arguments).output().unwrap();
+        assert!(code(&output) < 2, "{}", err(&output));
+        is_harmless(&out(&output));
+        is_harmless(&err(&output));
+        if arguments[1] == "--trace" {
+            assert_eq!(super::program::rows(&out(&output)).len(), 24);
+        }
+    }
+    rude.is_gone();
+}

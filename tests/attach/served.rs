@@ -1,0 +1,264 @@
+//! Our own solver on the other side: what is seen of it is what is seen of the scene itself, to the last bit.
+
+use super::common::scene;
+use super::program::{code, err, out, program, well};
+use super::side::{PATIENT, does, own};
+use libtest_mimic::Trial;
+use std::path::Path;
+use stickslip::attach::{Attached, Log, Start};
+use stickslip::history::frame::Frame;
+use stickslip::model::Mode;
+use stickslip::record::command::{Command, To, Unit};
+use stickslip::scene::builtin;
+use stickslip::session::Session;
+use stickslip::step::Status;
+
+pub fn tests() -> Vec<Trial> {
+    crate::tests![
+        every_quick_scene_writes_the_same_trace_and_table,
+        sessions_with_interventions_are_the_same_frame_by_frame,
+        a_snapshot_of_an_attached_solver_is_equal_when_replayed_against_it,
+        what_is_not_offered_is_refused_with_the_reason,
+    ]
+}
+
+/// Scenes of which two runs take more than three seconds where nothing is optimised.
+const SLOW: &[&str] = &["bench-belt", "bench-mindlin", "bench-ssnv128"];
+
+pub fn stickslip() -> &'static str {
+    env!("CARGO_BIN_EXE_stickslip")
+}
+
+fn every_quick_scene_writes_the_same_trace_and_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let names: Vec<&str> = builtin::list()
+        .iter()
+        .map(|scene| scene.name)
+        .filter(|name| !SLOW.contains(name))
+        .collect();
+    assert!(names.len() > 20, "{names:?}");
+    let (half, rest) = names.split_at(names.len() / 2);
+    std::thread::scope(|scope| {
+        for part in [half, rest] {
+            let folder = folder.path();
+            scope.spawn(move || part.iter().for_each(|name| same_tables(folder, name)));
+        }
+    });
+}
+
+/// Runs a scene by itself and attached, and compares the bytes of what is written.
+fn same_tables(folder: &Path, name: &str) {
+    let own = [format!("{name}.own.trace"), format!("{name}.own.csv")];
+    let attached = [format!("{name}.trace"), format!("{name}.csv")];
+    let run = |[trace, csv]: &[String; 2], subject: &[&str]| {
+        let arguments = [&["run", "--quiet", "--trace", trace, "--csv", csv], subject].concat();
+        let output = program(folder, &arguments).output().unwrap();
+        (code(&output), err(&output))
+    };
+    let (own_code, own_err) = run(&own, &[name]);
+    let (code, err) = run(&attached, &["--", stickslip(), "serve", name]);
+    assert_eq!(code, own_code, "{name}: {err}, and by itself {own_err}");
+    for (own, attached) in own.iter().zip(&attached) {
+        let read = |file: &String| std::fs::read_to_string(folder.join(file)).unwrap();
+        let (own, attached) = (read(own), read(attached));
+        let other = own
+            .lines()
+            .zip(attached.lines())
+            .zip(1..)
+            .find(|((own, attached), _)| own != attached);
+        assert_eq!(other, None, "{name}");
+        assert!(
+            own == attached,
+            "{name}: {} bytes, and by itself {}",
+            attached.len(),
+            own.len()
+        );
+    }
+}
+
+/// `serve` of a scene behind a filter that offers this way to go back.
+pub fn start(name: &str, restore: &str, how: &str) -> Start {
+    let served = [stickslip(), "serve", name].map(str::to_owned);
+    let filter = [
+        own(),
+        super::filter::NAME.into(),
+        restore.into(),
+        how.into(),
+    ];
+    let command = match (restore, how) {
+        ("any", "") => served.to_vec(),
+        _ => [filter.to_vec(), served.to_vec()].concat(),
+    };
+    Start {
+        start: PATIENT,
+        answer: PATIENT,
+        ..Start::new(command)
+    }
+}
+
+pub fn session(start: Start, log: &Log) -> Session {
+    let (scene, attached) =
+        Attached::attach(start, log.clone()).unwrap_or_else(|fault| panic!("{fault}"));
+    Session::attached(scene, Box::new(attached), log.clone())
+}
+
+fn forward(unit: Unit, count: u32) -> Command {
+    Command::Forward { unit, count }
+}
+
+fn back(unit: Unit, count: u32) -> Command {
+    Command::Back { unit, count }
+}
+
+fn force(mode: Mode, hold: bool) -> Command {
+    Command::Force {
+        slave: 0,
+        mode,
+        hold,
+    }
+}
+
+fn set(path: &str, value: &str) -> Command {
+    Command::Set {
+        path: path.into(),
+        value: value.into(),
+    }
+}
+
+/// Steps, interventions of all kinds, branches, going back and on.
+pub fn script() -> Vec<Command> {
+    vec![
+        forward(Unit::Minor, 3),
+        force(Mode::Sliding, false),
+        forward(Unit::Minor, 2),
+        force(Mode::Free, true),
+        forward(Unit::Major, 1),
+        Command::Release { slave: 0 },
+        forward(Unit::Increment, 1),
+        back(Unit::Minor, 4),
+        set("friction.angle", "12.5"),
+        forward(Unit::Increment, 1),
+        set("settings.strategy", "newton"),
+        forward(Unit::Minor, 3),
+        Command::Increment(0.03),
+        forward(Unit::Increment, 2),
+        Command::Goto { step: 2 },
+        force(Mode::Fixed, false),
+        forward(Unit::Minor, 4),
+        Command::Branch(To::Next),
+        back(Unit::Increment, 1),
+        set("settings.majors", "7"),
+        forward(Unit::Increment, 1),
+    ]
+}
+
+/// What is seen of a frame: where it is, what was decided, and every number with its bits. What comes after a failure, no message
+/// tells.
+pub fn seen(frame: &Frame) -> String {
+    let Some(event) = &frame.event else {
+        return format!("start, changed: {}", frame.intervention.is_some());
+    };
+    let nodes = event.nodes.iter().map(|node| {
+        let numbers = [
+            node.gap,
+            node.f_n,
+            node.f_t,
+            node.t_max,
+            node.t_max_used,
+            node.slip,
+            node.drift,
+        ];
+        let bits = numbers.map(|x| if x.is_finite() { x.to_bits() } else { 0 });
+        let decision = &node.decision;
+        (
+            decision.before,
+            decision.next,
+            decision.rule,
+            decision.wanted,
+            node.forced,
+            bits,
+        )
+    });
+    let modes: Vec<Mode> = frame.state.nodes.iter().map(|node| node.mode).collect();
+    format!(
+        "{:?} {:?} {:x} {} {:?} {modes:?} {:?}",
+        event.position,
+        (!matches!(frame.state.status, Status::Failed(_))).then_some(frame.state.next),
+        event.load_factor.to_bits(),
+        event.outcome.ends_major(),
+        frame.intervention.is_some(),
+        nodes.collect::<Vec<_>>()
+    )
+}
+
+fn sessions_with_interventions_are_the_same_frame_by_frame() {
+    for name in ["02-two-cantilevers-rough", "osc-lag4"] {
+        std::thread::scope(|scope| {
+            for restore in ["any", "increment", "none"] {
+                scope.spawn(move || {
+                    let log = Log::default();
+                    let mut attached = session(start(name, restore, ""), &log);
+                    let mut own = Session::new(scene(name, &[]));
+                    for (command, number) in script().into_iter().zip(1..) {
+                        let here =
+                            format!("{name}, restore {restore}, command {number} {command:?}");
+                        let (one, other) = (
+                            does(&mut own, command.clone()),
+                            does(&mut attached, command),
+                        );
+                        assert!(
+                            !other.contains("kept"),
+                            "{here}: {other}, and by itself {one}"
+                        );
+                        let (one, other) = (own.frames(), attached.frames());
+                        assert_eq!(one.len(), other.len(), "{here}");
+                        assert_eq!(own.cursor(), attached.cursor(), "{here}");
+                        for (k, (one, other)) in one.iter().zip(other).enumerate() {
+                            assert_eq!(seen(one), seen(other), "{here}, frame {k}");
+                        }
+                    }
+                    assert_eq!(own.branches().len(), attached.branches().len());
+                });
+            }
+        });
+    }
+}
+
+fn a_snapshot_of_an_attached_solver_is_equal_when_replayed_against_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = "01-pinned-beam-rough-floor";
+    let served = ["--", stickslip(), "serve", name];
+    let record = [&["record", "--at", "2", "-o", "two.ron"][..], &served].concat();
+    let output = program(folder.path(), &record).output().unwrap();
+    well(&output);
+    let replay = [&["replay", "two.ron"][..], &served].concat();
+    let said = well(&program(folder.path(), &replay).output().unwrap());
+    assert!(said.starts_with("two.ron: equal, after "), "{said}");
+    // Another scene is not equal, and says so.
+    let other = [
+        "replay",
+        "two.ron",
+        "--",
+        stickslip(),
+        "serve",
+        "osc-touch2",
+    ];
+    let output = program(folder.path(), &other).output().unwrap();
+    assert_ne!(code(&output), 0, "{}", out(&output));
+    assert!(!(out(&output) + &err(&output)).is_empty());
+}
+
+fn what_is_not_offered_is_refused_with_the_reason() {
+    let rude = super::side::Rude::new("polite");
+    let mut session = rude.attach().unwrap();
+    does(&mut session, forward(Unit::Minor, 1));
+    let said = does(&mut session, Command::Increment(0.1));
+    assert_eq!(said, "the solver rude does not offer another increment");
+    let said = does(&mut session, set("friction.angle", "3"));
+    assert_eq!(said, "the solver rude does not offer another friction");
+    let said = does(&mut session, set("gain", "-1"));
+    assert_eq!(said, "gain takes a number from 0 on, and -1 is none");
+    assert_eq!(session.frames().len(), 2);
+    drop(session);
+    rude.is_gone();
+}

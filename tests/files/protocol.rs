@@ -1,0 +1,40 @@
+//! The page `protocol`: every message on it is one.
+
+use stickslip::manual;
+use stickslip_exchange::attach::{Answer, Request};
+
+/// The JSON values on a page, one after the other, from its blocks of JSON.
+fn messages(page: &str) -> Vec<serde_json::Value> {
+    let blocks = page.split("```json\n").skip(1);
+    let texts = blocks.filter_map(|rest| rest.split("```").next());
+    texts
+        .flat_map(|text| {
+            serde_json::Deserializer::from_str(text)
+                .into_iter()
+                .map(|value| value.unwrap_or_else(|why| panic!("{why}: {text}")))
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+#[test]
+fn every_message_on_the_page_of_the_protocol_is_read_whole() {
+    let page = manual::page("protocol").expect("the page exists").text;
+    let all = messages(page);
+    assert!(all.len() > 18, "{} messages", all.len());
+    let mut kinds = std::collections::BTreeSet::new();
+    for value in all {
+        let line = value.to_string();
+        let request = Request::read(&line).ok().map(|request| request.line());
+        let answer = Answer::read(&line).ok().map(|answer| answer.line());
+        let keys = value.as_object().expect("a message is an object");
+        // Nothing of it is passed over: all keys come back.
+        let whole = |told: &String| {
+            let told: serde_json::Value = serde_json::from_str(told).expect("our own line");
+            keys.keys().all(|key| told.get(key).is_some())
+        };
+        assert!(request.iter().chain(&answer).any(whole), "{line}");
+        kinds.insert(value["type"].to_string());
+    }
+    assert_eq!(kinds.len(), 16, "all messages are shown: {kinds:?}");
+}
