@@ -375,7 +375,7 @@ impl Session {
         }
     }
 
-    /// Gathers what the worker did since the last call, for [`SLICE`] at most; a message when a job came to its end. Never
+    /// Gathers what the worker did since the last call, for a slice of time at most; a message when a job came to its end. Never
     /// blocks.
     pub fn poll(&mut self) -> Option<Reply> {
         let began = Instant::now();
