@@ -1,8 +1,8 @@
 //! What can be told of an attached solver's state from the interface problem that it offers: which states are consistent, and
 //! whether Table 2 (or Newton's method) would cycle on it.
 //!
-//! The problem becomes a scene of contacts ([`mod@crate::format::condensed`]), in total forces from zero load to one; it is examined as a frozen
-//! problem of our own bodies is, and what is found is told in the numbers of the solver's scene.
+//! The problem becomes a scene of contacts ([`mod@crate::format::condensed`]), in total forces from zero load to one; it is
+//! examined as a frozen problem of our own bodies is, and what is found is told in the numbers of the solver's scene.
 
 use super::examination::{DONE, Examination, examine_nodes, frozen};
 use super::names;

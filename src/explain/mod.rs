@@ -10,7 +10,7 @@
 //! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
 //!   where nothing holds it; [`reach`]: up to which load there is an answer; [`finer`]: whether a finer mesh has one.
 //! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
-//! - [`attached`]: the same of a solver of another's, from the problem that it offers.
+//! - [`attached`]: the same of a solver of another's, from the problem that it offers; [`pushes_told`]: who pushed whom there.
 //! - [`past`]: a run of another program that is over: what cycled in it, and who chattered.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
@@ -34,6 +34,7 @@ pub mod outline;
 pub mod page;
 pub mod past;
 pub mod proven;
+pub mod pushes_told;
 pub mod reach;
 pub mod remedies;
 pub mod remedy;

@@ -4,7 +4,7 @@ use super::condensed::Problem;
 use super::error::{Path, SceneError, Step, did_you_mean, quoted, shortened};
 use super::kind::{FileKind, mistaken};
 use super::locate::{line_and_column, locate, too_deep};
-use super::notation::options;
+use super::notation::read_with_path;
 use super::spec::Spec;
 use crate::outside::input::{self, Unreadable};
 use crate::outside::shown;
@@ -45,18 +45,8 @@ pub(crate) fn value<T: DeserializeOwned>(
     what: &str,
 ) -> Result<T, SceneError> {
     shallow(file, text, what)?;
-    let options = options();
-    let unread = |error: SpannedError, path: &Path| unreadable(file, text, what, &error, path);
-    let mut reader = ron::Deserializer::from_str_with_options(text, &options)
-        .map_err(|e| unread(e, &Path::default()))?;
-    let value = serde_path_to_error::deserialize::<_, T>(&mut reader).map_err(|e| {
-        let path = plain(e.path());
-        unread(reader.span_error(e.into_inner()), &path)
-    })?;
-    reader
-        .end()
-        .map_err(|e| unread(reader.span_error(e), &Path::default()))?;
-    Ok(value)
+    read_with_path(text)
+        .map_err(|(error, path)| unreadable(file, text, what, &error, &plain(&path)))
 }
 
 /// Refuses a text whose brackets are nested deeper than those of any file; messages call it a `what`.

@@ -21,6 +21,8 @@ pub enum BranchEnd {
         /// λ at which both were compared.
         load: f64,
     },
+    /// At an accepted increment whose state the judge finds wrong, and no earlier branch has the same.
+    Marked,
     /// An earlier branch accepted another state at the same load; this one is as valid.
     Other {
         /// The earlier branch.
@@ -144,18 +146,38 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
                             load,
                         };
                     }
-                    Some((Sameness::Different, load)) => {
+                    // A state that is wrong is nothing that another would be as valid as.
+                    Some((Sameness::Different, load)) if !ends_marked(tree, earlier) => {
                         other.get_or_insert(BranchEnd::Other {
                             branch: earlier,
                             load,
                         });
                     }
-                    None => {}
+                    _ => {}
                 }
             }
-            other.unwrap_or(BranchEnd::Accepted)
+            match ends_marked(tree, branch) {
+                true => BranchEnd::Marked,
+                false => other.unwrap_or(BranchEnd::Accepted),
+            }
         }
     }
+}
+
+/// Whether the judge finds the last state of a branch wrong.
+fn ends_marked(tree: &Tree, branch: usize) -> bool {
+    let event = tree
+        .tip(branch)
+        .and_then(|(frame, _)| frame.event.as_deref());
+    event.is_some_and(|event| {
+        matches!(
+            &event.outcome,
+            Outcome::Increment {
+                marked: Some(_),
+                ..
+            }
+        )
+    })
 }
 
 fn cycle(outcome: &Outcome) -> Option<&Cycle> {
@@ -188,6 +210,7 @@ pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
     match verdict {
         BranchEnd::Running => "running".into(),
         BranchEnd::Accepted => "accepted".into(),
+        BranchEnd::Marked => "accepted, but judged wrong".into(),
         BranchEnd::Same { branch, load } => format!("same state as {} at load {load}", b(branch)),
         BranchEnd::Other { branch, load } => {
             format!("another valid state than {} at load {load}", b(branch))

@@ -13,6 +13,7 @@ use crate::outside::input::{self, RECORD_BYTES, Unreadable};
 use crate::record::command::Command;
 use crate::scene::Scene;
 use crate::step::state::State;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Write as _};
 use std::fs::File;
@@ -434,7 +435,7 @@ fn header(file: &str, line: &str) -> Result<Header, JournalError> {
     struct Any {
         format: u32,
     }
-    if let Ok(any) = notation::options().from_str::<Any>(line)
+    if let Ok(any) = notation::read::<Any>(line)
         && any.format != FORMAT
     {
         return Err(JournalError::Format {
@@ -445,12 +446,8 @@ fn header(file: &str, line: &str) -> Result<Header, JournalError> {
     parsed(file, 1, line)
 }
 
-fn parsed<T: for<'de> Deserialize<'de>>(
-    file: &str,
-    number: usize,
-    line: &str,
-) -> Result<T, JournalError> {
-    notation::options().from_str(line).map_err(|e| {
+fn parsed<T: DeserializeOwned>(file: &str, number: usize, line: &str) -> Result<T, JournalError> {
+    notation::read(line).map_err(|e| {
         let column = e.span.start.col;
         damaged(
             file,

@@ -284,7 +284,7 @@ impl Snapshot {
                 message: deep.message,
             }
         })?;
-        if let Ok(header) = notation::options().from_str::<Header>(text)
+        if let Ok(header) = notation::read::<Header>(text)
             && header.format != FORMAT
         {
             return Err(SnapshotError::Format {
@@ -292,7 +292,7 @@ impl Snapshot {
                 found: header.format,
             });
         }
-        notation::options().from_str(text).map_err(|e| {
+        notation::read(text).map_err(|e| {
             let file = file.to_owned();
             match mistaken(&file, text, FileKind::Snapshot) {
                 Some(told) => SnapshotError::Mistaken { file, told },

@@ -19,6 +19,7 @@ use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
 use crate::explain::influence::{Push, Way, between, pushed, pushes};
 use crate::explain::page::page;
+use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::remedies::{self, Trial};
 use crate::format::spec::Spec;
 use crate::linear::estimate::Estimate;
@@ -59,6 +60,8 @@ pub struct Tried {
 
 enum Ask {
     Pushes(LinePlace, usize, Way),
+    /// The same of an attached solver.
+    PushesThere(LinePlace, usize, Iterations),
     /// With what is known already, of an attached solver.
     Examination(LinePlace, Box<State>, Vec<usize>, Vec<String>),
     Remedies(Box<State>),
@@ -67,6 +70,8 @@ enum Ask {
 
 enum Told {
     Pushes(LinePlace, usize, Option<Vec<Push>>),
+    /// The solver was at work.
+    NotNow,
     /// The page as far as it is made, or (not `going_on`) whole.
     Examination {
         place: LinePlace,
@@ -96,6 +101,8 @@ struct Helper {
     stopping: Arc<AtomicBool>,
     /// Made when something is asked.
     stepper: Option<Stepper>,
+    /// The problem that an attached solver told last beside the session, and of which state.
+    posed: Option<(State, Posed)>,
     /// Whether the solver takes much memory.
     large: bool,
     /// Where the session's solver is asked for what it has at hand.
@@ -148,6 +155,7 @@ impl Background {
                 offers,
                 stopping: flag.clone(),
                 stepper: None,
+                posed: None,
                 lender,
             };
             while let Ok(ask) = orders.recv() {
@@ -207,6 +215,33 @@ impl Background {
         if self.waiting == 0 && !self.pushes.contains_key(&(place, slave)) {
             self.send(Ask::Pushes(place, slave, way()));
         }
+    }
+
+    /// The same of an attached solver, of two of its iterations.
+    pub(super) fn ask_pushes_there(
+        &mut self,
+        place: LinePlace,
+        slave: usize,
+        iterations: impl FnOnce() -> Option<Iterations>,
+    ) {
+        if self.waiting == 0
+            && !self.pushes.contains_key(&(place, slave))
+            && let Some(iterations) = iterations()
+        {
+            self.send(Ask::PushesThere(place, slave, iterations));
+        }
+    }
+
+    /// Nobody but an attached solver knows what pushed a node.
+    pub(super) fn pushes_untold(&mut self, place: LinePlace, slave: usize) {
+        self.keep_pushes(place, slave, None);
+    }
+
+    fn keep_pushes(&mut self, place: LinePlace, slave: usize, found: Option<Vec<Push>>) {
+        if self.pushes.len() >= KEPT {
+            self.pushes.clear();
+        }
+        self.pushes.insert((place, slave), found);
     }
 
     /// Asks for the finding at a place, with the state there: of these nodes, or (none) of what matters.
@@ -302,12 +337,10 @@ impl Background {
     fn take(&mut self, told: Told) {
         match told {
             Told::Pushes(place, slave, found) => {
-                if self.pushes.len() >= KEPT {
-                    self.pushes.clear();
-                }
-                self.pushes.insert((place, slave), found);
+                self.keep_pushes(place, slave, found);
                 self.waiting -= 1;
             }
+            Told::NotNow => self.waiting -= 1,
             Told::Examination {
                 place,
                 nodes,
@@ -368,6 +401,15 @@ impl Helper {
                 let found = self.pushes(slave, way);
                 news.send(Told::Pushes(place, slave, found)).ok()
             }
+            Ask::PushesThere(place, slave, iterations) => {
+                let posed = self.posed_aside(&iterations.start);
+                let found = posed.map(|posed| {
+                    let posed = posed.ok()?;
+                    pushes_told::pushes(&posed, &iterations.found, slave)
+                });
+                let told = found.map_or(Told::NotNow, |found| Told::Pushes(place, slave, found));
+                news.send(told).ok()
+            }
             Ask::Examination(place, state, nodes, known) if self.spec.is_none() => {
                 let found = self.examine_attached(&state, &nodes, known, stop);
                 let found = (!stop.load(Ordering::Relaxed)).then(|| Box::new(found));
@@ -417,6 +459,27 @@ impl Helper {
         let wanted = state.clone();
         let asked = self.lender.look(move |solver| solver.posed(&wanted));
         asked.unwrap_or_else(|| Err(Lost::new("the solver is at work; :census asks again")))
+    }
+
+    /// The same, and the solver stands afterwards where it stood; `None` where it is at work.
+    fn posed_aside(&mut self, state: &State) -> Option<Result<Posed, Lost>> {
+        if let Some((known, posed)) = &self.posed
+            && known == state
+        {
+            return Some(Ok(posed.clone()));
+        }
+        let wanted = state.clone();
+        let posed = self.lender.look(move |solver| {
+            let stood = solver.state().clone();
+            let posed = solver.posed(&wanted);
+            // A solver that does not find back says so when it goes on.
+            let _ = solver.restore(&stood);
+            posed
+        })?;
+        if let Ok(posed) = &posed {
+            self.posed = Some((state.clone(), posed.clone()));
+        }
+        Some(posed)
     }
 
     /// What is known of an attached solver's state: what its line tells, and what is found in its interface problem.
@@ -498,8 +561,6 @@ impl Helper {
 
     /// What pushed a node: by the session's solver where that has the problem at hand, else by its own.
     fn pushes(&mut self, slave: usize, way: Way) -> Option<Vec<Push>> {
-        // What deforms under an attached solver is not known.
-        self.spec.as_ref()?;
         let way = Arc::new(way);
         let theirs = way.clone();
         // Their solver goes the way alone; what takes time is found out here.

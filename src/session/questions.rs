@@ -5,10 +5,12 @@ use super::exports::{Export, NotWritten, Seen};
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
 use crate::explain::influence::Way;
+use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::report;
 use crate::history::frame::Frame;
 use crate::history::rounds::{self, rounds};
 use crate::history::strip::{PointKind, Strip};
+use crate::history::tree::Tree;
 use crate::outside::files;
 use crate::record::command::Exported;
 use crate::record::export::shown::COLUMNS;
@@ -54,6 +56,16 @@ impl Session {
             return;
         };
         let (tree, cursor) = (&self.tree, self.cursor);
+        if self.log().is_some() {
+            match pushes_told::are_told(tree.model(), &self.offers) {
+                true => {
+                    let iterations = || iterations(tree, before, cursor);
+                    self.background.ask_pushes_there(place, slave, iterations);
+                }
+                false => self.background.pushes_untold(place, slave),
+            }
+            return;
+        }
         self.background.ask_pushes(place, slave, || {
             let from = tree.whole_before(before - 1);
             let frames = &tree.frames()[from..cursor];
@@ -221,4 +233,14 @@ impl Session {
         self.stands.at = None;
         Reply("trying every remedy from here; Ctrl-C stops".into())
     }
+}
+
+/// Two minor iterations on the line, where all of their frames are whole.
+fn iterations(tree: &Tree, before: usize, shown: usize) -> Option<Iterations> {
+    let frames = tree.frames();
+    let whole = |at: usize| frames.get(at).filter(|frame| frame.is_whole());
+    Some(Iterations {
+        start: Box::new(whole(shown.checked_sub(1)?)?.state.clone()),
+        found: [whole(before)?.event.clone()?, whole(shown)?.event.clone()?],
+    })
 }

@@ -241,7 +241,7 @@ fn entry<T: DeserializeOwned>(line: &str) -> Result<Entry<T>, (usize, String)> {
         (column, plainly(&e.code))
     };
     if key == INPUT {
-        return ron::from_str(value).map(Entry::Input).map_err(wrong);
+        return notation::read(value).map(Entry::Input).map_err(wrong);
     }
     let key = Key::read(key).ok_or((1, "its key has not 32 hexadecimal digits".to_owned()))?;
     let value = ron::from_str(value).map_err(wrong)?;

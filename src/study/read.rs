@@ -18,7 +18,7 @@ use super::builtin;
 use crate::format::error::{Path, SceneError, Step, did_you_mean, quoted};
 use crate::format::kind::FileKind;
 use crate::format::locate::{locate, too_deep};
-use crate::format::notation::options;
+use crate::format::notation::read_with_path;
 use crate::format::read::{or_mistaken, plain, plainly, shallow, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
@@ -322,17 +322,7 @@ pub(super) fn vary(words: Vec<(String, Vec<Word>)>) -> Vec<Vary> {
 /// Reads a file that holds one value.
 pub(super) fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, SceneError> {
     shallow(name, text, "study")?;
-    let options = options();
-    let mut reader = ron::Deserializer::from_str_with_options(text, &options)
-        .map_err(|e| unreadable(name, &e, String::new()))?;
-    let file = serde_path_to_error::deserialize::<_, T>(&mut reader).map_err(|e| {
-        let path = plain(e.path()).to_string();
-        unreadable(name, &reader.span_error(e.into_inner()), path)
-    })?;
-    reader
-        .end()
-        .map_err(|e| unreadable(name, &reader.span_error(e), String::new()))?;
-    Ok(file)
+    read_with_path(text).map_err(|(error, path)| unreadable(name, &error, plain(&path).to_string()))
 }
 
 fn unreadable(name: &str, error: &SpannedError, path: String) -> SceneError {

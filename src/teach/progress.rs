@@ -98,14 +98,11 @@ impl Progress {
             why,
         };
         let text = input::text(file, BYTES, "delete it to begin anew").map_err(unread)?;
-        let read: Progress =
-            notation::options()
-                .from_str(&text)
-                .map_err(|e| ProgressError::Damaged {
-                    file: file.to_owned(),
-                    line: e.span.start.line,
-                    message: e.code.to_string(),
-                })?;
+        let read: Progress = notation::read(&text).map_err(|e| ProgressError::Damaged {
+            file: file.to_owned(),
+            line: e.span.start.line,
+            message: e.code.to_string(),
+        })?;
         match read.format {
             FORMAT => Ok(read),
             found => Err(ProgressError::Format {

@@ -151,6 +151,23 @@ fn whole_screens_of_an_attached_solver() {
     }
 }
 
+/// An accepted state in which a fixed contact pulls.
+fn pulls() -> Json {
+    let mut last = state(1, "fixed");
+    last["ended"] = json!("done");
+    last["load"] = json!(1);
+    last["contacts"][0]["f_n"] = json!(-2.5);
+    last
+}
+
+#[test]
+fn an_end_that_is_judged_wrong_is_no_other_valid_state() {
+    let mut debugger = attached(&exchange(&scene(), &steps([pulls()])), Offers::default());
+    debugger.type_keys("s");
+    debugger.type_keys(": b r a n c h e s Enter");
+    holds(&debugger, "accepted, but judged wrong");
+}
+
 #[test]
 fn who_is_attached_and_how_it_goes_back_stand_at_the_top() {
     for (goes_back, words) in [

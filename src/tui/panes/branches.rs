@@ -117,6 +117,7 @@ fn glyph(verdict: &BranchEnd, app: &App) -> (&'static str, Style) {
     match verdict {
         BranchEnd::Running => ("▸", theme.text),
         BranchEnd::Accepted | BranchEnd::Same { .. } => ("✓", theme.good),
+        BranchEnd::Marked => ("!", theme.warning),
         BranchEnd::Other { .. } => ("≠", theme.warning),
         BranchEnd::Cycle | BranchEnd::SameCycle { .. } => ("↺", theme.bad),
         BranchEnd::Diverged | BranchEnd::Failed => ("✗", theme.bad),

@@ -6,6 +6,7 @@ use crate::explain::bond;
 use crate::explain::influence::Push;
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::number::{self, four, long};
+use crate::explain::pushes_told;
 use crate::explain::report;
 use crate::explain::round_off::NOTE;
 use crate::model::Mode;
@@ -134,6 +135,9 @@ fn pushes(
     };
     let Some(found) = found else {
         return vec![heading(match view.guest {
+            Some(guest) if pushes_told::are_told(view.model, guest.offers) => {
+                "Who pushed it: its problem gives other numbers"
+            }
             Some(_) => "Who pushed it is known to the solver alone",
             None => "Who pushed it cannot be told here",
         })];
