@@ -1,8 +1,14 @@
 //! Tells the program the revision that it is built from: `STICKSLIP_REVISION` where that is set, else what git says of the
-//! work tree, but only in an optimised build, so that a commit does not build all tests anew. And it compresses the font.
+//! work tree, but only in an optimised build, so that a commit does not build all tests anew. And it compresses the font, and the texts that the program carries.
 
-use std::env;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::{env, fs};
+
+/// How hard to compress.
+const LEVEL: u8 = 9;
+/// Folders with the files that the program carries.
+const CARRIED: [&str; 2] = ["problems", "src/manual/pages"];
 
 fn main() {
     println!("cargo::rerun-if-env-changed=STICKSLIP_REVISION");
@@ -12,8 +18,12 @@ fn main() {
             println!("cargo::rerun-if-changed={path}");
         }
     }
+    for folder in CARRIED {
+        println!("cargo::rerun-if-changed={folder}");
+        compress_all(Path::new(folder));
+    }
     #[cfg(feature = "plot")]
-    compress_font();
+    compress(dejavu::sans::regular(), "font.deflate");
     let given = env::var("STICKSLIP_REVISION").ok();
     let revision = given.or_else(|| optimised.then(described).flatten());
     let revision = revision.unwrap_or_else(|| "a build without a revision".into());
@@ -29,12 +39,27 @@ fn described() -> Option<String> {
     (output.status.success() && !text.is_empty()).then(|| text.to_owned())
 }
 
-/// Writes the font that pictures are drawn with where the program takes it from, at half its size.
-#[cfg(feature = "plot")]
-fn compress_font() {
-    const LEVEL: u8 = 8;
-    let font = miniz_oxide::deflate::compress_to_vec(dejavu::sans::regular(), LEVEL);
+/// Compresses all files of a folder, and of those in it.
+fn compress_all(folder: &Path) {
+    let entries = fs::read_dir(folder).expect("the package has its folders");
+    for entry in entries {
+        let path = entry.expect("a folder can be listed").path();
+        match path.is_dir() {
+            true => compress_all(&path),
+            false => {
+                let bytes = fs::read(&path).expect("a file of the package can be read");
+                compress(&bytes, Path::new("carried").join(&path));
+            }
+        }
+    }
+}
+
+/// Writes what the program carries where it is taken from.
+fn compress(bytes: &[u8], to: impl AsRef<Path>) {
     let folder = env::var("OUT_DIR").expect("cargo names a folder for what is made");
-    let file = std::path::Path::new(&folder).join("font.deflate");
-    std::fs::write(&file, font).expect("the folder for what is made can be written");
+    let file = PathBuf::from(folder).join(to);
+    let around = file.parent().expect("it is in a folder");
+    fs::create_dir_all(around).expect("a folder can be made where things are made");
+    let packed = miniz_oxide::deflate::compress_to_vec(bytes, LEVEL);
+    fs::write(&file, packed).expect("the folder for what is made can be written");
 }

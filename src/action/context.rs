@@ -6,7 +6,8 @@ use super::table::{Entry, begun, by_name};
 use crate::history::tree::Tree;
 use crate::interface::census::MOST;
 use crate::model::Model;
-use crate::scene::{Builtin, Scene};
+use crate::outside::carried::Carried;
+use crate::scene::Scene;
 use crate::step::solver::Offers;
 use crate::step::state::State;
 
@@ -24,7 +25,7 @@ pub struct Context<'a> {
     /// Names of the built-in scenes, and of the built-in lessons.
     pub scenes: &'a [String],
     /// Lessons that the program carries.
-    pub lessons: &'a [Builtin],
+    pub lessons: &'a [Carried],
     /// What an attached solver offers; none is a solver of ours.
     pub offers: Option<&'a Offers>,
     /// The shown state.

@@ -182,7 +182,8 @@ type Named = (&'static str, String);
 
 fn scenes() -> Vec<Named> {
     let list = builtin::list().iter();
-    list.map(|scene| (scene.name, scene.title())).collect()
+    list.map(|scene| (scene.name, builtin::title(scene)))
+        .collect()
 }
 
 fn with_studies() -> Vec<Named> {
@@ -269,7 +270,7 @@ fn of_scene(words: &[OsString]) -> Option<Vec<Settable>> {
     let listed = words.iter().skip(1).find_map(|word| {
         let name = word.to_str()?;
         let text = match builtin::find(name) {
-            Some(scene) => scene.text.to_owned(),
+            Some(scene) => scene.text(),
             None if Path::new(name).is_file() => read::text(name).ok()?,
             None => return None,
         };

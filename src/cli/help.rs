@@ -123,7 +123,7 @@ fn show(page: &Page) -> Result<Exit, Error> {
         false => render::WIDTH,
     };
     let styled = terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-    let lines = render::render(page.text, width);
+    let lines = render::render(&page.text(), width);
     let line = |line: &render::Line| match styled {
         true => line.ansi() + "\n",
         false => line.plain() + "\n",

@@ -48,7 +48,7 @@ fn list() -> Result<String, Error> {
     };
     let lessons: Vec<_> = teach::list()
         .iter()
-        .filter_map(|lesson| Lesson::from_text(lesson.name, lesson.text).ok())
+        .filter_map(|lesson| Lesson::from_text(lesson.name, &lesson.text()).ok())
         .collect();
     let done = |lesson: &Lesson| {
         progress

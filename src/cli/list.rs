@@ -8,7 +8,7 @@ pub fn main() -> Result<Exit, Error> {
     let width = scenes.iter().map(|s| s.name.len()).max().unwrap_or(0);
     let lines: String = scenes
         .iter()
-        .map(|scene| format!("{:<width$}  {}\n", scene.name, scene.title()))
+        .map(|scene| format!("{:<width$}  {}\n", scene.name, builtin::title(scene)))
         .collect();
     say(&lines)?;
     Ok(Exit::Good)

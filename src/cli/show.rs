@@ -6,6 +6,7 @@ use super::past;
 use crate::attach::story::story;
 use crate::explain::past::summary;
 use crate::format::error::did_you_mean;
+use crate::outside::carried::Carried;
 use crate::outside::files;
 use crate::scene::builtin;
 use crate::study::{benchmarks, builtin as studies, chart_file};
@@ -47,14 +48,14 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-fn find(name: &str, chart: bool) -> Result<&'static str, String> {
+fn find(name: &str, chart: bool) -> Result<String, String> {
     let found = match chart {
         true => chart_file::text(name.strip_suffix(".ron").unwrap_or(name)),
         false => builtin::find(name)
-            .map(|scene| scene.text)
-            .or_else(|| studies::find(name).map(|study| study.text))
-            .or_else(|| (name == benchmarks::BUILTIN).then_some(benchmarks::BUILTIN_TEXT))
-            .or_else(|| teach::find(name).map(|lesson| lesson.text)),
+            .map(Carried::text)
+            .or_else(|| studies::find(name).map(Carried::text))
+            .or_else(|| (name == benchmarks::BUILTIN).then(benchmarks::builtin_text))
+            .or_else(|| teach::find(name).map(Carried::text)),
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);

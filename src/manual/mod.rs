@@ -7,6 +7,7 @@ pub mod render;
 pub mod search;
 
 use crate::format::error::did_you_mean;
+use crate::outside::carried::{Carried, carried};
 
 /// A page of the manual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,8 +16,14 @@ pub struct Page {
     pub topic: &'static str,
     /// What it is about, in a line.
     pub about: &'static str,
+    file: Carried,
+}
+
+impl Page {
     /// Markdown.
-    pub text: &'static str,
+    pub fn text(&self) -> String {
+        self.file.text()
+    }
 }
 
 macro_rules! pages {
@@ -30,7 +37,7 @@ macro_rules! pages {
 
         /// All pages, in the order in which one may read them.
         pub const PAGES: &[Page] = &[
-            $(Page { topic: $topic, about: $about, text: include_str!($file) }),*
+            $(Page { topic: $topic, about: $about, file: carried!($topic, "src/manual/", $file) }),*
         ];
     };
 }
@@ -116,7 +123,7 @@ pub fn search(text: &str) -> Vec<Hit> {
     }
     for page in PAGES {
         let mut heading = String::new();
-        for line in render::render(page.text, render::WIDTH) {
+        for line in render::render(&page.text(), render::WIDTH) {
             let shown = line.text();
             if line.is_heading() {
                 heading = shown.trim().to_owned();

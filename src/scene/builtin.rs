@@ -1,26 +1,16 @@
 //! The scenes that the program carries inside itself.
 
-/// A built-in scene: its name, and the text of its file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Builtin {
-    /// What the command line calls it: the file's name without its ending.
-    pub name: &'static str,
-    /// The file.
-    pub text: &'static str,
-}
+use crate::outside::carried::{Carried, carried};
 
 /// A scene by its name, and its folder below `problems`.
 macro_rules! scenes {
     ($($folder:literal: $($name:literal),+;)+) => {
-        &[$($(Builtin {
-            name: $name,
-            text: include_str!(concat!("../../problems/", $folder, $name, ".ron")),
-        }),+),+]
+        &[$($(carried!($name, "problems/", $folder, $name, ".ron")),+),+]
     };
 }
 
 /// In the order in which they are offered.
-const SCENES: &[Builtin] = scenes![
+const SCENES: &[Carried] = scenes![
     "":
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
@@ -64,23 +54,21 @@ const SCENES: &[Builtin] = scenes![
 ];
 
 /// All built-in scenes, in the order in which they are offered.
-pub fn list() -> &'static [Builtin] {
+pub fn list() -> &'static [Carried] {
     SCENES
 }
 
 /// The built-in scene with a name, with or without the ending `.ron`.
-pub fn find(name: &str) -> Option<&'static Builtin> {
+pub fn find(name: &str) -> Option<&'static Carried> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     SCENES.iter().find(|scene| scene.name == name)
 }
 
-impl Builtin {
-    /// One line that says what the scene is: its title.
-    ///
-    /// A built-in scene that cannot be read is a bug that the tests find; its description is empty then.
-    pub fn title(&self) -> String {
-        crate::format::read::spec(self.name, self.text)
-            .map(|spec| spec.title)
-            .unwrap_or_default()
-    }
+/// One line that says what a built-in scene is: its title.
+///
+/// A built-in scene that cannot be read is a bug that the tests find; its description is empty then.
+pub fn title(scene: &Carried) -> String {
+    crate::format::read::spec(scene.name, &scene.text())
+        .map(|spec| spec.title)
+        .unwrap_or_default()
 }

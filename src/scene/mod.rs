@@ -33,7 +33,6 @@ use crate::format::kind;
 use crate::format::paths::Override;
 use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read};
 use crate::model::Model;
-pub use builtin::Builtin;
 pub use problems::siconos;
 use stickslip_exchange::attach::message;
 
@@ -68,7 +67,7 @@ impl Scene {
         if !std::path::Path::new(name).is_file()
             && let Some(builtin) = builtin::find(name)
         {
-            return Scene::from_text(builtin.name, builtin.text, overrides);
+            return Scene::from_text(builtin.name, &builtin.text(), overrides);
         }
         if import::is_mesh(name) {
             return Err(SceneError::whole(name, import::no_scene(name)));

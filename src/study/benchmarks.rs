@@ -25,6 +25,7 @@ use super::result::{CaseEnd, Row, Run};
 use super::run::{RunError, Spare, Watch, one, pool};
 use crate::format::error::{SceneError, did_you_mean};
 use crate::format::read::{text as file_text, value as from_ron};
+use crate::outside::carried::{Carried, carried};
 use crate::scene::{Scene, increments};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -36,12 +37,16 @@ use std::sync::Arc;
 
 /// Name of the list that the program carries.
 pub const BUILTIN: &str = "benchmarks";
-/// Its text.
-pub const BUILTIN_TEXT: &str = include_str!("../../problems/benchmarks/table.ron");
+const TABLE: Carried = carried!(BUILTIN, "problems/benchmarks/table.ron");
 /// Default of [`Benchmark::drift`]: other processors round otherwise.
 const DRIFT: f64 = 1e-8;
 /// How near the end of an increment must be to a load factor that is named.
 const NEAR: f64 = 1e-9;
+
+/// The text of the list that the program carries.
+pub fn builtin_text() -> String {
+    TABLE.text()
+}
 
 /// A list of benchmarks.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +140,7 @@ impl Benchmarks {
         if !path.is_file() {
             let own = name.strip_suffix(".ron").unwrap_or(name) == BUILTIN;
             return own
-                .then(|| Benchmarks::from_text(BUILTIN, BUILTIN_TEXT))
+                .then(|| Benchmarks::from_text(BUILTIN, &builtin_text()))
                 .transpose();
         }
         let text = file_text(name)?;

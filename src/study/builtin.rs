@@ -1,25 +1,15 @@
 //! The studies that the program carries inside itself.
 
-/// A built-in study: its name, and the text of its file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Builtin {
-    /// What the command line calls it: the file's name without its ending.
-    pub name: &'static str,
-    /// The file.
-    pub text: &'static str,
-}
+use crate::outside::carried::{Carried, carried};
 
 macro_rules! studies {
     ($($name:literal),* $(,)?) => {
-        &[$(Builtin {
-            name: $name,
-            text: include_str!(concat!("../../problems/studies/", $name, ".ron")),
-        }),*]
+        &[$(carried!($name, "problems/studies/", $name, ".ron")),*]
     };
 }
 
 /// In the order in which they are offered.
-const STUDIES: &[Builtin] = studies![
+const STUDIES: &[Carried] = studies![
     "fig-08-increment",
     "fig-09-majors",
     "fig-10-minors",
@@ -33,12 +23,12 @@ const STUDIES: &[Builtin] = studies![
 ];
 
 /// All built-in studies, in the order in which they are offered.
-pub fn list() -> &'static [Builtin] {
+pub fn list() -> &'static [Carried] {
     STUDIES
 }
 
 /// The built-in study with a name, with or without the ending `.ron`.
-pub fn find(name: &str) -> Option<&'static Builtin> {
+pub fn find(name: &str) -> Option<&'static Carried> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     STUDIES.iter().find(|study| study.name == name)
 }

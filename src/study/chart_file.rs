@@ -16,6 +16,7 @@
 use super::read::{Vary, Word, parse, vary};
 use super::reference::Reference;
 use crate::format::error::SceneError;
+use crate::outside::carried::{Carried, carried};
 use crate::scene::{Scene, builtin};
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -65,12 +66,12 @@ pub struct Series {
 
 macro_rules! charts {
     ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../problems/charts/", $name, ".ron")))),*]
+        &[$(carried!($name, "problems/charts/", $name, ".ron")),*]
     };
 }
 
 /// Charts of built-in scenes, by the scene's name.
-const CHARTS: &[(&str, &str)] = charts![
+const CHARTS: &[Carried] = charts![
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
     "02-two-cantilevers-rough",
@@ -83,13 +84,13 @@ const CHARTS: &[(&str, &str)] = charts![
 
 /// Names of the scenes that have a chart of their own.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    CHARTS.iter().map(|(name, _)| *name)
+    CHARTS.iter().map(|chart| chart.name)
 }
 
 /// The file of a scene's chart.
-pub fn text(name: &str) -> Option<&'static str> {
-    let found = CHARTS.iter().find(|(own, _)| *own == name);
-    found.map(|(_, text)| *text)
+pub fn text(name: &str) -> Option<String> {
+    let found = CHARTS.iter().find(|chart| chart.name == name);
+    found.map(Carried::text)
 }
 
 #[derive(Deserialize)]
@@ -130,9 +131,9 @@ impl Chart {
     /// If there is no such scene.
     pub fn open(name: &str, over: &[Vary]) -> Result<Chart, SceneError> {
         let scene = Scene::open(name, &[])?;
-        let known = CHARTS.iter().find(|(own, _)| *own == scene.name);
+        let known = CHARTS.iter().find(|chart| chart.name == scene.name);
         let mut chart = match known {
-            Some((own, text)) => Chart::from_text(own, text)?,
+            Some(file) => Chart::from_text(file.name, &file.text())?,
             None => Chart {
                 title: String::new(),
                 scene: name.to_owned(),

@@ -183,7 +183,7 @@ impl Study {
             };
         }
         if let Some(builtin) = builtin::find(name) {
-            return Study::from_text(builtin.name, builtin.text);
+            return Study::from_text(builtin.name, &builtin.text());
         }
         if crate::scene::builtin::find(name).is_some() {
             return Ok(Study::of_scene(name));

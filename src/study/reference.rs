@@ -7,6 +7,7 @@
 use super::csv::{Table, TableError};
 use super::result::Run;
 use crate::format::error::{quoted, shortened};
+use crate::outside::carried::{Carried, carried};
 use crate::outside::input::{self, TABLE_BYTES};
 use std::path::Path;
 
@@ -37,12 +38,12 @@ pub struct Point {
 
 macro_rules! tables {
     ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../problems/references/", $name, ".csv")))),*]
+        &[$(carried!($name, "problems/references/", $name, ".csv")),*]
     };
 }
 
 /// The references that the program carries, by their scene's name.
-const TABLES: &[(&str, &str)] = tables![
+const TABLES: &[Carried] = tables![
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
     "02-two-cantilevers-rough",
@@ -57,8 +58,12 @@ impl Reference {
     /// # Errors
     /// None that the tests have not found.
     pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, TableError>> {
-        let (name, text) = TABLES.iter().find(|(name, _)| *name == scene)?;
-        Some(Reference::read(&format!("{name}.csv"), text, path))
+        let table = TABLES.iter().find(|table| table.name == scene)?;
+        Some(Reference::read(
+            &format!("{}.csv", table.name),
+            &table.text(),
+            path,
+        ))
     }
 
     /// Opens a table.
@@ -185,7 +190,7 @@ mod tests {
 
     #[test]
     fn every_built_in_table_reads_and_ends_where_its_scene_does() {
-        for (name, _) in TABLES {
+        for Carried { name, .. } in TABLES {
             let scene = crate::scene::Scene::open(name, &[]).unwrap();
             let path = &scene.model.path;
             let table = Reference::builtin(name, path).unwrap().unwrap();

@@ -10,8 +10,9 @@ use crate::format::error::{Path, SceneError, at, did_you_mean};
 use crate::format::kind::FileKind;
 use crate::format::{Fault, read};
 use crate::model::{Mode, Model};
+use crate::outside::carried::{Carried, carried};
 use crate::record::command::Command;
-use crate::scene::{Builtin, Scene, placed};
+use crate::scene::{Scene, placed};
 use crate::study::Vary;
 use std::sync::Arc;
 
@@ -126,15 +127,12 @@ const FARTHEST: u32 = 100;
 
 macro_rules! lessons {
     ($($name:literal),* $(,)?) => {
-        &[$(Builtin {
-            name: $name,
-            text: include_str!(concat!("../../problems/lessons/", $name, ".ron")),
-        }),*]
+        &[$(carried!($name, "problems/lessons/", $name, ".ron")),*]
     };
 }
 
 /// In the order in which they are to be taken.
-const LESSONS: &[Builtin] = lessons![
+const LESSONS: &[Carried] = lessons![
     "1-modes",
     "2-table-2",
     "3-by-hand",
@@ -151,20 +149,20 @@ const LESSONS: &[Builtin] = lessons![
 ];
 
 /// All built-in lessons, in the order in which they are to be taken.
-pub fn list() -> &'static [Builtin] {
+pub fn list() -> &'static [Carried] {
     LESSONS
 }
 
 /// The title of a built-in lesson; empty if it cannot be read, which is a bug that the tests find.
-pub fn title(lesson: &Builtin) -> String {
-    let spec = read::value::<LessonSpec>(lesson.name, lesson.text, "lesson");
+pub fn title(lesson: &Carried) -> String {
+    let spec = read::value::<LessonSpec>(lesson.name, &lesson.text(), "lesson");
     spec.map(|spec| spec.title).unwrap_or_default()
 }
 
 /// The built-in lesson with a name, with or without the ending `.ron`, or with the number or the word of a name alone.
-pub fn find(name: &str) -> Option<&'static Builtin> {
+pub fn find(name: &str) -> Option<&'static Carried> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
-    let called = |lesson: &&Builtin| {
+    let called = |lesson: &&Carried| {
         let (number, word) = lesson.name.split_once('-').unwrap_or((lesson.name, ""));
         [lesson.name, number, word].contains(&name)
     };
@@ -180,7 +178,7 @@ impl Lesson {
         if !std::path::Path::new(name).is_file()
             && let Some(builtin) = find(name)
         {
-            return Lesson::from_text(builtin.name, builtin.text);
+            return Lesson::from_text(builtin.name, &builtin.text());
         }
         let text = read::text(name).map_err(|mut error| {
             if !std::path::Path::new(name).exists() {

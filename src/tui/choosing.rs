@@ -3,6 +3,7 @@
 use crate::format::SceneError;
 use crate::history::frame::Frame;
 use crate::model::Model;
+use crate::outside::carried::Carried;
 use crate::scene::{Scene, builtin};
 use crate::step::stepper::Stepper;
 use crate::teach::progress::Progress;
@@ -236,17 +237,17 @@ fn glance(model: Model, title: String, about: String, is_lesson: bool) -> Glance
 
 /// What the program itself has, and the files of the folder in which it runs.
 pub fn offers(progress: &Progress) -> Vec<Offer> {
-    let scene = |scene: &builtin::Builtin| Offer {
+    let scene = |scene: &Carried| Offer {
         group: match scene.name.split('-').next() {
             Some("osc") => Group::Oscillations,
             Some("bench") => Group::Benchmarks,
             _ => Group::Paper,
         },
         name: scene.name.into(),
-        title: scene.title(),
+        title: builtin::title(scene),
         done: String::new(),
     };
-    let lesson = |lesson: &builtin::Builtin| Offer {
+    let lesson = |lesson: &Carried| Offer {
         group: Group::Lessons,
         name: lesson.name.into(),
         title: teach::lesson::title(lesson),

@@ -218,7 +218,7 @@ fn list_and_check_tell_what_there_is() {
     assert_eq!(out(&output).lines().count(), builtin.len());
     for (line, scene) in out(&output).lines().zip(builtin) {
         assert!(line.starts_with(scene.name));
-        assert!(line.ends_with(&scene.title()));
+        assert!(line.ends_with(&stickslip::scene::builtin::title(scene)));
         let output = ran(&["check", scene.name]);
         assert_eq!(code(&output), 0, "{}", err(&output));
         assert!(out(&output).contains("unknowns"), "{}", out(&output));

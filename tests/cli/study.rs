@@ -337,7 +337,7 @@ fn a_study_file_and_the_scene_beside_it_are_found_and_arguments_go_over_it() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path().join("mine");
     std::fs::create_dir(&folder).unwrap();
-    let scene = stickslip::scene::builtin::find(ROUGH).unwrap().text;
+    let scene = stickslip::scene::builtin::find(ROUGH).unwrap().text();
     std::fs::write(folder.join("scene.ron"), scene).unwrap();
     let text = "(title: \"T\", scene: \"scene.ron\", vary: [(\"history.increment\", [0.5, 1.25])])";
     std::fs::write(folder.join("study.ron"), text).unwrap();

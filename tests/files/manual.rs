@@ -42,11 +42,11 @@ fn every_file_of_the_manual_is_a_page_and_has_one_title() {
     assert_eq!(names, topics);
     for page in PAGES {
         let titles = page
-            .text
+            .text()
             .lines()
             .filter(|line| line.starts_with("# "))
             .count();
-        assert!(page.text.starts_with("# "), "{}", page.topic);
+        assert!(page.text().starts_with("# "), "{}", page.topic);
         // A comment in a block of code looks like a title.
         assert!(titles >= 1);
         assert!(page.about.len() <= 70, "{}: {}", page.topic, page.about);
@@ -56,7 +56,7 @@ fn every_file_of_the_manual_is_a_page_and_has_one_title() {
 #[test]
 fn every_page_fits_80_columns() {
     for page in PAGES {
-        for line in render(page.text, WIDTH) {
+        for line in render(&page.text(), WIDTH) {
             let text = line.text();
             let wide = unicode_width::UnicodeWidthStr::width(text.trim_end());
             assert!(wide <= WIDTH, "{}: {wide} columns: {text}", page.topic);
@@ -68,7 +68,8 @@ fn every_page_fits_80_columns() {
 #[test]
 fn every_block_of_code_names_its_language() {
     for page in PAGES {
-        let fences = page.text.lines().filter(|line| line.starts_with("```"));
+        let text = page.text();
+        let fences = text.lines().filter(|line| line.starts_with("```"));
         for fence in fences.step_by(2) {
             assert!(
                 ["```text", "```sh", "```ron", "```json", "```python"].contains(&fence),
@@ -83,7 +84,7 @@ fn every_block_of_code_names_its_language() {
 fn every_command_in_the_manual_can_be_typed() {
     let mut commands = 0;
     for page in PAGES {
-        for line in pages::typed(page.text) {
+        for line in pages::typed(&page.text()) {
             if let Some(words) = pages::arguments(&line) {
                 commands += 1;
                 stickslip::cli::is_command_line(&words)
@@ -103,7 +104,7 @@ fn every_command_in_the_manual_can_be_typed() {
 fn scenes_studies_and_benches_that_the_manual_names_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     for page in PAGES {
-        for line in pages::typed(page.text) {
+        for line in pages::typed(&page.text()) {
             let words: Vec<&str> = line.split_whitespace().collect();
             let path = line.split_whitespace().next().unwrap_or_default();
             if ["src/", "tests/", "problems/", "snapshots/"]
@@ -134,7 +135,7 @@ fn every_symbol_leads_to_a_name_in_the_source() {
         &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
         &mut sources,
     );
-    let text = manual::page("theory").unwrap().text;
+    let text = manual::page("theory").unwrap().text();
     let rows = text
         .lines()
         .skip_while(|line| !line.starts_with("| paper |"))
@@ -169,7 +170,7 @@ fn read(folder: &Path, into: &mut String) {
 
 /// The RON examples of a page.
 fn examples(topic: &str) -> Vec<&'static str> {
-    let text = manual::page(topic).unwrap().text;
+    let text: &str = manual::page(topic).unwrap().text().leak();
     let blocks = text.split("```ron\n").skip(1);
     blocks
         .map(|after| after.split("```").next().unwrap())
@@ -237,7 +238,7 @@ fn help_lists_the_pages_and_shows_one_as_plain_text_where_there_is_no_terminal()
         assert!(out(&listed).lines().any(line), "{}", page.topic);
         let shown = stickslip(&["help", page.topic]);
         assert_eq!(shown.status.code(), Some(0));
-        let expected: Vec<String> = render(page.text, WIDTH)
+        let expected: Vec<String> = render(&page.text(), WIDTH)
             .iter()
             .map(|line| line.plain())
             .collect();
@@ -310,12 +311,12 @@ fn show_prints_what_is_built_in_byte_for_byte() {
     }
     assert_eq!(
         out(&stickslip(&["show", benchmarks::BUILTIN])),
-        benchmarks::BUILTIN_TEXT
+        benchmarks::builtin_text()
     );
     let study = studies::list()[0];
-    assert_eq!(out(&stickslip(&["show", study.name])), study.text);
+    assert_eq!(out(&stickslip(&["show", study.name])), study.text());
     let lesson = teach::list()[0];
-    assert_eq!(out(&stickslip(&["show", lesson.name])), lesson.text);
+    assert_eq!(out(&stickslip(&["show", lesson.name])), lesson.text());
     let name = chart_file::names().next().unwrap();
     assert_eq!(
         out(&stickslip(&["show", "--chart", name])),
@@ -334,14 +335,14 @@ fn show_writes_a_file_but_never_over_another_unasked() {
     );
     assert_eq!(
         fs::read_to_string(&file).unwrap(),
-        builtin::find("osc-two6").unwrap().text
+        builtin::find("osc-two6").unwrap().text()
     );
     let again = stickslip(&["show", "osc-two3", "-o", path]);
     assert_eq!(again.status.code(), Some(2));
     assert!(err(&again).contains("--force"), "{}", err(&again));
     assert_eq!(
         fs::read_to_string(&file).unwrap(),
-        builtin::find("osc-two6").unwrap().text
+        builtin::find("osc-two6").unwrap().text()
     );
     assert_eq!(
         stickslip(&["show", "osc-two3", "-o", path, "--force"])
@@ -351,7 +352,7 @@ fn show_writes_a_file_but_never_over_another_unasked() {
     );
     assert_eq!(
         fs::read_to_string(&file).unwrap(),
-        builtin::find("osc-two3").unwrap().text
+        builtin::find("osc-two3").unwrap().text()
     );
 }
 

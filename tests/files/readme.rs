@@ -42,7 +42,7 @@ fn every_command_in_the_readme_can_be_typed() {
 #[test]
 fn the_readme_and_the_page_on_speed_tell_the_same() {
     let readme = fs::read_to_string(readme()).unwrap();
-    let speed = stickslip::manual::page("speed").unwrap().text;
+    let speed = stickslip::manual::page("speed").unwrap().text();
     let cells = |row: &str| {
         row.split('|')
             .map(|cell| cell.trim().to_owned())
@@ -70,7 +70,7 @@ fn the_readme_and_the_page_on_speed_tell_the_same() {
 #[test]
 fn errors_that_the_readme_names_stand_on_the_page_on_verification() {
     let readme = fs::read_to_string(readme()).unwrap();
-    let page = stickslip::manual::page("verification").unwrap().text;
+    let page = stickslip::manual::page("verification").unwrap().text();
     let rows = readme
         .lines()
         .skip_while(|line| !line.starts_with("| problem "));

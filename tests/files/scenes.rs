@@ -7,13 +7,14 @@ use stickslip::scene::{Scene, builtin};
 
 pub const PINNED: &str = "01-pinned-beam-rough-floor";
 
-pub fn pinned() -> &'static str {
-    builtin::find(PINNED).map(|scene| scene.text).unwrap()
+pub fn pinned() -> String {
+    builtin::find(PINNED).map(|scene| scene.text()).unwrap()
 }
 
 /// The pinned beam with a piece replaced; without its settings, so that they can be given.
 pub fn changed(from: &str, to: &str) -> Result<Scene, SceneError> {
-    let (start, rest) = pinned().split_once("    // The last increment").unwrap();
+    let text = pinned();
+    let (start, rest) = text.split_once("    // The last increment").unwrap();
     let (_, end) = rest.split_once("settings: (at_cycle: damp),\n").unwrap();
     let text = format!("{start}{end}");
     assert!(text.contains(from), "the scene has no {from:?}");

@@ -105,7 +105,9 @@ fn files_of_a_folder_are_offered_and_those_that_cannot_be_opened_say_why() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let scene = Scene::open("osc-touch2", &[]).unwrap();
-    let text = stickslip::scene::builtin::find("osc-touch2").unwrap().text;
+    let text = stickslip::scene::builtin::find("osc-touch2")
+        .unwrap()
+        .text();
     std::fs::write(at("接触の例.ron"), text).unwrap();
     std::fs::write(at("broken.ron"), "(title: \"x\"").unwrap();
     std::fs::write(at("notes.txt"), "").unwrap();
@@ -136,7 +138,9 @@ fn tab_completes_files_and_goes_on_into_folders() {
     let folder = tempfile::tempdir().unwrap();
     let deep = folder.path().join("my scenes");
     std::fs::create_dir(&deep).unwrap();
-    let text = stickslip::scene::builtin::find("osc-touch2").unwrap().text;
+    let text = stickslip::scene::builtin::find("osc-touch2")
+        .unwrap()
+        .text();
     std::fs::write(deep.join("one node.ron"), text).unwrap();
     std::fs::write(deep.join("one node.txt"), "").unwrap();
     let mut debugger = choosing();

@@ -61,6 +61,11 @@ fn is_zero(length: &f64) -> bool {
 }
 
 impl ContactState {
+    /// Whether the user says which mode it has.
+    pub fn is_forced(&self) -> bool {
+        self.forced != Forced::No
+    }
+
     /// A node before the first minor iteration: its mode, and what it brings into the scene.
     pub fn new(mode: Mode, brought: &InitialState) -> Self {
         ContactState {

@@ -147,6 +147,7 @@ impl Ground<'_> {
             && half > STRAIGHT
             && node.left == Some(to.element)
             && node.mode == Mode::Sliding
+            && !node.is_forced()
         {
             (node.spot, node.corner, node.mode) = (Some(border), Some(half), Mode::Fixed);
             node.left = None;
@@ -241,6 +242,9 @@ impl Ground<'_> {
             if there.gap >= -AT_VERTEX * deep || there.gap < -deep {
                 continue;
             }
+            if node.mode == Mode::Sliding && node.is_forced() {
+                return;
+            }
             let Some(met) = crossing::find(self.surfaces, [spot, across], self.positions) else {
                 continue;
             };
@@ -254,7 +258,7 @@ impl Ground<'_> {
     }
 
     /// Holds a node whose S* is just where two sides meet: in a concave corner, since it is out over both sides; on a convex
-    /// vertex where friction can hold it. Else it stands on a side of the vertex.
+    /// vertex where friction can hold it. Else it stands on a side of the vertex. A mode that the user forces stays.
     fn meet_both(&self, node: &mut ContactState, at: [f64; 2], friction: &Friction) {
         let Some(spot) = node.spot else {
             return;
@@ -265,7 +269,7 @@ impl Ground<'_> {
         };
         if half > 0.0 {
             // What sticks between two elements that bend needs no corner's friction.
-            if node.mode == Mode::Sliding {
+            if node.mode == Mode::Sliding && !node.is_forced() {
                 (node.corner, node.mode) = (Some(half), Mode::Fixed);
             }
         } else if node.mode != Mode::Sliding && corner::holds(friction, half) {
@@ -276,7 +280,7 @@ impl Ground<'_> {
             if here.gap.abs() <= AT_VERTEX * size {
                 let surface = &self.surfaces[spot.surface];
                 node.spot = Some(beside(surface, spot, spot.xi < 0.0));
-                if node.mode == Mode::Fixed {
+                if node.mode == Mode::Fixed && !node.is_forced() {
                     // Friction points back to the vertex, which is ahead along t at ξ = 1.
                     (node.mode, node.sign) = (Mode::Sliding, spot.xi);
                     node.t_max = t_max(friction, node.f_n, node.sign);

@@ -28,7 +28,7 @@ impl Reader {
     pub fn new(page: &'static Page) -> Reader {
         Reader {
             page,
-            lines: render::render(page.text, render::WIDTH),
+            lines: render::render(&page.text(), render::WIDTH),
             top: 0,
             search: Search::default(),
         }
