@@ -1,8 +1,10 @@
 //! Where a value stands in a RON text.
 //!
 //! ron tells the position of what it cannot read; of a value that reads well and means nothing (a name that nothing
-//! has) nobody knows the place any more. This finds it again, by walking the text along the value's path. It relies on
-//! the text being RON that has been read; on any other text it finds something or other, and never fails.
+//! has) nobody knows the place any more. This finds it again, by walking the text along the value's path ([`locate`]). And of
+//! what ron cannot read, it finds the path to the place ([`path_at`]), so that the deserializer need not keep it for all that
+//! is well. It relies on the text being RON that has been read so far; on any other text it finds something or other, and
+//! never fails.
 
 use super::error::{Path, Step};
 use std::ops::Range;
@@ -22,6 +24,30 @@ pub fn locate(text: &str, path: &Path) -> Range<usize> {
     scan.at = here;
     scan.skip_value();
     here..scan.end_of_value.max(here)
+}
+
+/// The byte at a line and a column, both from 1.
+pub fn byte_at(text: &str, line: usize, column: usize) -> usize {
+    let before = text.split_inclusive('\n').take(line.saturating_sub(1));
+    let start: usize = before.map(str::len).sum();
+    let rest = text.get(start..).unwrap_or("").chars();
+    let within = rest.take(column.saturating_sub(1)).map(char::len_utf8);
+    start + within.sum::<usize>()
+}
+
+/// The path of the innermost value around a byte, or just before it; names of fields are no values.
+pub fn path_at(text: &str, byte: usize) -> Path {
+    let mut scan = Scan::new(text);
+    scan.skip_attributes();
+    let mut path = Path::default();
+    for _ in 0..DEEPEST {
+        match scan.enter_at(byte) {
+            Some(Some(step)) => path.0.push(step),
+            Some(None) => {}
+            None => break,
+        }
+    }
+    path
 }
 
 /// The name before the first bracket, if the text has one there.
@@ -295,6 +321,52 @@ impl<'a> Scan<'a> {
         None
     }
 
+    /// Moves to the start of that inner value of the value that starts here in which a byte lies, from what parts it from the one
+    /// before up to its end; tells the step to it, if it is one. `None` where there is no such value.
+    fn enter_at(&mut self, byte: usize) -> Option<Option<Step>> {
+        self.skip_blanks();
+        let name = self.word();
+        self.skip_blanks();
+        let bracket = self.peek().filter(|c| matches!(c, '(' | '[' | '{'))?;
+        self.bump();
+        for index in 0.. {
+            if byte < self.at {
+                return None;
+            }
+            self.skip_blanks();
+            let first = self.at;
+            self.skip_value();
+            let key = (bracket != '[' && self.peek() == Some(':')).then(|| {
+                let key = self.text.get(first..self.end_of_value).unwrap_or("");
+                key.trim_start_matches("r#").trim_matches('"').to_owned()
+            });
+            let start = if key.is_some() {
+                self.bump();
+                let start = self.at;
+                self.skip_value();
+                start
+            } else {
+                first
+            };
+            let (end, last) = (self.end_of_value, self.peek() != Some(','));
+            if byte <= end && (key.is_none() || byte >= start) {
+                let step = match key {
+                    Some(key) => Some(Step::Key(key)),
+                    // `Some(x)`, `Name(x)`, `((...))`: the only value stands for it.
+                    None if bracket == '(' && index == 0 && last => None,
+                    None if name == Some("Some") => None,
+                    None => Some(Step::Index(index)),
+                };
+                self.at = start;
+                return Some(step);
+            }
+            if byte <= end || !self.eat(",") {
+                return None;
+            }
+        }
+        None
+    }
+
     /// Whether what follows an opening bracket is a list. Leaves the place as it is.
     fn is_list(&mut self) -> bool {
         let start = self.at;
@@ -402,6 +474,30 @@ mod tests {
         assert_eq!(found(text, at!["slaves", 0, "nodes", 4]), "[]");
         assert_eq!(found(text, at!["slaves", 7]), "[(nodes: [])]");
         assert_eq!(found(text, at!["nothing"]), text);
+    }
+
+    #[test]
+    fn the_path_to_a_place_leads_back_to_it() {
+        let text = "#![enable(implicit_some)]\n(\n  a: 1, /* ( */ b: [(x: \"),\", y: Some(2)), (3, 4)],\n  c: Name(u: {\"k\": 5}),\n  d: Two([6]),\n)";
+        for (value, path) in [
+            ("1", "a"),
+            ("\"),\"", "b[0].x"),
+            ("2", "b[0].y"),
+            ("3", "b[1][0]"),
+            ("4", "b[1][1]"),
+            ("5", "c.u.k"),
+            ("6", "d[0]"),
+        ] {
+            let byte = text.rfind(value).unwrap();
+            let (line, column) = line_and_column(text, byte);
+            assert_eq!(byte_at(text, line, column), byte);
+            let found = path_at(text, byte);
+            assert_eq!(found.to_string(), path, "{value}");
+            assert!(text[locate(text, &found)].contains(value), "{value}");
+        }
+        // A field's name is in the value around it, and so is what is no text any more.
+        assert_eq!(path_at(text, byte_at(text, 4, 11)).to_string(), "c");
+        assert_eq!(path_at(text, byte_at(text, 99, 1)), Path::default());
     }
 
     #[test]

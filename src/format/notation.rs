@@ -1,14 +1,14 @@
 //! How the files of this program are written: RON in which `Some` may be left out.
 //!
 //! Whatever is written goes through one serializer that does not know its type: a serializer made for each type would be
-//! a twentieth of the program. Whatever is read goes through one deserializer, which knows the path to a mistake, wanted or not.
+//! a twentieth of the program. Whatever is read goes
+//! through one deserializer.
 
 use ron::error::SpannedError;
 use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde_path_to_error::Path;
 use std::fmt;
 
 /// How scene files are read and written: `Some` may be left out.
@@ -24,26 +24,7 @@ pub fn options() -> ron::Options {
 /// # Errors
 /// What is wrong with it, and where.
 pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, SpannedError> {
-    read_with_path(text).map_err(|(error, _)| error)
-}
-
-/// The value that a text is.
-///
-/// # Errors
-/// What is wrong with it, where, and on which path into the value.
-pub fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, (SpannedError, Path)> {
-    let options = options();
-    let nowhere = || serde_path_to_error::Track::new().path();
-    let mut reader =
-        ron::Deserializer::from_str_with_options(text, &options).map_err(|e| (e, nowhere()))?;
-    let value = serde_path_to_error::deserialize::<_, T>(&mut reader).map_err(|e| {
-        let path = e.path().clone();
-        (reader.span_error(e.into_inner()), path)
-    })?;
-    match reader.end() {
-        Ok(()) => Ok(value),
-        Err(e) => Err((reader.span_error(e), nowhere())),
-    }
+    options().from_str(text)
 }
 
 /// A value in one line.

@@ -1,16 +1,15 @@
 //! From the text of a file to a [`Spec`]: syntax and types, with the place of what is wrong.
 
 use super::condensed::Problem;
-use super::error::{Path, SceneError, Step, did_you_mean, quoted, shortened};
+use super::error::{Path, SceneError, did_you_mean, quoted, shortened};
 use super::kind::{FileKind, mistaken};
-use super::locate::{line_and_column, locate, too_deep};
-use super::notation::read_with_path;
+use super::locate::{byte_at, line_and_column, locate, path_at, too_deep};
+use super::notation;
 use super::spec::Spec;
 use crate::outside::input::{self, Unreadable};
 use crate::outside::shown;
 use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
-use serde_path_to_error::Segment;
 
 /// Most bytes of a scene file: a dense matrix of 2,500 contacts to the last digit.
 pub const FILE_BYTES: usize = 512 << 20;
@@ -45,8 +44,7 @@ pub(crate) fn value<T: DeserializeOwned>(
     what: &str,
 ) -> Result<T, SceneError> {
     shallow(file, text, what)?;
-    read_with_path(text)
-        .map_err(|(error, path)| unreadable(file, text, what, &error, &plain(&path)))
+    notation::read(text).map_err(|error| unreadable(file, text, what, &error))
 }
 
 /// Refuses a text whose brackets are nested deeper than those of any file; messages call it a `what`.
@@ -64,8 +62,9 @@ pub(crate) fn shallow(file: &str, text: &str, what: &str) -> Result<(), SceneErr
 }
 
 /// ron's error in our form.
-fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError, path: &Path) -> SceneError {
-    let value = locate(text, path);
+fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> SceneError {
+    let path = path_of(text, error);
+    let value = locate(text, &path);
     let of_value = line_and_column(text, value.start);
     // Where a whole value is wrong, its start is the place. Else it is ron's cursor, of which the start of the span is
     // nearer to the fault than the end.
@@ -90,6 +89,30 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError, path: &P
         path: path.to_string(),
         message,
     }
+}
+
+/// The path to what ron cannot read.
+pub(crate) fn path_of(text: &str, error: &SpannedError) -> Path {
+    use ron::Error as E;
+    // That a field is missing shows at the end of its struct.
+    let place = match error.code {
+        E::MissingStructField { .. } => error.span.end,
+        _ => error.span.start,
+    };
+    let byte = byte_at(text, place.line, place.col);
+    let mut path = path_at(text, byte);
+    match &error.code {
+        // What goes on wrongly behind a value is the value around it.
+        E::ExpectedComma | E::ExpectedArrayEnd | E::ExpectedMapEnd | E::ExpectedStructLikeEnd => {
+            path.0.pop();
+        }
+        E::MissingStructField { .. } if byte >= locate(text, &path).end => {
+            path.0.pop();
+        }
+        E::NoSuchStructField { found, .. } => path = path.then(found.as_str()),
+        _ => {}
+    }
+    path
 }
 
 /// What a value should be that is something else.
@@ -129,16 +152,6 @@ pub(crate) fn unread(file: &str, error: Unreadable) -> SceneError {
         at,
         ..SceneError::whole(file, format!("{error}{more}"))
     }
-}
-
-/// The path without names of variants.
-pub(crate) fn plain(path: &serde_path_to_error::Path) -> Path {
-    let step = |segment: &Segment| match segment {
-        Segment::Seq { index } => Some(Step::Index(*index)),
-        Segment::Map { key } => Some(Step::Key(key.clone())),
-        Segment::Enum { .. } | Segment::Unknown => None,
-    };
-    Path(path.iter().filter_map(step).collect())
 }
 
 /// ron's message, in words for an author who is no programmer where that helps.

@@ -18,8 +18,8 @@ use super::builtin;
 use crate::format::error::{Path, SceneError, Step, did_you_mean, quoted};
 use crate::format::kind::FileKind;
 use crate::format::locate::{locate, too_deep};
-use crate::format::notation::read_with_path;
-use crate::format::read::{or_mistaken, plain, plainly, shallow, text};
+use crate::format::notation;
+use crate::format::read::{or_mistaken, path_of, plainly, shallow, text};
 use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
@@ -322,7 +322,10 @@ pub(super) fn vary(words: Vec<(String, Vec<Word>)>) -> Vec<Vary> {
 /// Reads a file that holds one value.
 pub(super) fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, SceneError> {
     shallow(name, text, "study")?;
-    read_with_path(text).map_err(|(error, path)| unreadable(name, &error, plain(&path).to_string()))
+    notation::read(text).map_err(|error| {
+        let path = path_of(text, &error).to_string();
+        unreadable(name, &error, path)
+    })
 }
 
 fn unreadable(name: &str, error: &SpannedError, path: String) -> SceneError {
