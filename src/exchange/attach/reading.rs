@@ -108,7 +108,7 @@ fn path_at(line: &str, byte: usize) -> String {
             _ => {}
         }
     }
-    if string.is_none() && line.bytes().nth(byte).is_some_and(ends) {
+    if string.is_none() && line.as_bytes().get(byte).copied().is_some_and(ends) {
         steps.pop();
     }
     let mut path = String::new();
