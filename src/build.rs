@@ -6,9 +6,13 @@ use std::process::Command;
 use std::{env, fs};
 
 /// How hard to compress.
-const LEVEL: u8 = 9;
-/// Folders with the files that the program carries.
-const CARRIED: [&str; 2] = ["problems", "src/manual/pages"];
+const LEVEL: u8 = 10;
+/// Files that the program carries, and folders of such.
+const CARRIED: [&str; 3] = [
+    "problems",
+    "src/manual/pages",
+    "src/attach/stickslip_attach.py",
+];
 
 fn main() {
     println!("cargo::rerun-if-env-changed=STICKSLIP_REVISION");
@@ -18,9 +22,9 @@ fn main() {
             println!("cargo::rerun-if-changed={path}");
         }
     }
-    for folder in CARRIED {
-        println!("cargo::rerun-if-changed={folder}");
-        compress_all(Path::new(folder));
+    for path in CARRIED {
+        println!("cargo::rerun-if-changed={path}");
+        carry(Path::new(path));
     }
     #[cfg(feature = "plot")]
     compress(dejavu::sans::regular(), "font.deflate");
@@ -39,19 +43,17 @@ fn described() -> Option<String> {
     (output.status.success() && !text.is_empty()).then(|| text.to_owned())
 }
 
-/// Compresses all files of a folder, and of those in it.
-fn compress_all(folder: &Path) {
-    let entries = fs::read_dir(folder).expect("the package has its folders");
-    for entry in entries {
-        let path = entry.expect("a folder can be listed").path();
-        match path.is_dir() {
-            true => compress_all(&path),
-            false => {
-                let bytes = fs::read(&path).expect("a file of the package can be read");
-                compress(&bytes, Path::new("carried").join(&path));
-            }
+/// Compresses a file, or all files of a folder, and of those in it.
+fn carry(path: &Path) {
+    if path.is_dir() {
+        let entries = fs::read_dir(path).expect("a folder of the package can be listed");
+        for entry in entries {
+            carry(&entry.expect("a folder can be listed").path());
         }
+        return;
     }
+    let bytes = fs::read(path).expect("a file of the package can be read");
+    compress(&bytes, Path::new("carried").join(path));
 }
 
 /// Writes what the program carries where it is taken from.

@@ -24,10 +24,11 @@ pub mod story;
 mod told;
 mod wire;
 
+use crate::outside::carried::{Carried, carried};
 pub use attached::Attached;
 pub use fault::Fault;
 pub use link::Start;
 pub use log::Log;
 
 /// The Python side of the protocol, as one file.
-pub const PYTHON: &str = include_str!("stickslip_attach.py");
+pub const PYTHON: Carried = carried!("stickslip_attach.py", "src/attach/stickslip_attach.py");

@@ -32,7 +32,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if args.python {
-        say(PYTHON)?;
+        say(&PYTHON.text())?;
         return Ok(Exit::Good);
     }
     if !args.solver.is_named() {
