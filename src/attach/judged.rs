@@ -8,8 +8,8 @@ use crate::contact::record::ContactRecord;
 use crate::model::{Mode, Model};
 
 /// Forces and lengths against a law that are accepted without a word, over the largest force and the largest motion. Other
-/// solvers stop where their own criterion is met, which is often a thousandth.
-const ALLOWED: f64 = 1e-2;
+/// solvers stop where their own criterion is met, which is often a thousandth, or meet the laws on the average of an element.
+pub(super) const ALLOWED: f64 = 1e-2;
 
 /// The law that an accepted state is furthest from; `moved` is the largest displacement (length).
 pub fn broken(model: &Model, nodes: &[ContactRecord], moved: f64) -> Option<Finding> {

@@ -2,6 +2,7 @@
 //! of the protocol, and whether it is the same when started again.
 
 use super::super::fault::Fault;
+use super::super::judged::ALLOWED;
 use super::super::told::Frame;
 use super::report::{Report, Verdict};
 use super::trial::{Trial, is_last, millis, word};
@@ -20,8 +21,6 @@ const MOST_STEPS: usize = 200;
 const ROUNDS: u32 = 10;
 /// Longest that a line may take to be answered that takes no work (ms).
 const PROMPT: f64 = 20.0;
-/// Forces below this part of the largest are none, and lengths of the largest gap or slip.
-const SMALL: f64 = 1e-6;
 
 /// Steps on, and looks at what is told.
 pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
@@ -260,7 +259,7 @@ fn laws(report: &mut Report, states: &[State]) {
     // A state may have no forces but those of rounding: what is small, all states tell.
     let all = states.iter().flat_map(|state| &state.contacts);
     let forces = all.flat_map(|found| [found.f_n, found.f_t]).flatten();
-    let small = SMALL * forces.fold(0.0, |most: f64, force| most.max(force.abs()));
+    let small = ALLOWED * forces.fold(0.0, |most: f64, force| most.max(force.abs()));
     let mut count = 0;
     for state in accepted {
         count += 1;
@@ -318,17 +317,13 @@ fn unlawful(found: &Found, small: f64) -> Option<(String, &'static str)> {
                 "limit has the sign of the friction force: copysign(mu * f_n + cohesion, f_t)",
             ))
         }
-        _ if limit
-            .is_some_and(|limit| f_t.abs() > limit.abs() + small.max(SMALL * limit.abs())) =>
-        {
-            Some((
-                format!(
-                    "f_t = {f_t:?} is more than the limit {:?}",
-                    limit.unwrap_or(0.0)
-                ),
-                "in an accepted state |f_t| <= |limit| = mu f_n + cohesion",
-            ))
-        }
+        _ if limit.is_some_and(|limit| f_t.abs() > limit.abs() + small) => Some((
+            format!(
+                "f_t = {f_t:?} is more than the limit {:?}",
+                limit.unwrap_or(0.0)
+            ),
+            "in an accepted state |f_t| <= |limit| = mu f_n + cohesion",
+        )),
         _ => None,
     }
 }
