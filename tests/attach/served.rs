@@ -19,6 +19,7 @@ pub fn tests() -> Vec<Trial> {
         sessions_with_interventions_are_the_same_frame_by_frame,
         a_snapshot_of_an_attached_solver_is_equal_when_replayed_against_it,
         what_is_not_offered_is_refused_with_the_reason,
+        a_journal_leads_to_the_same_bits_against_the_solver_and_to_others_against_another,
         who_pushed_a_contact_is_told_as_of_the_scene_itself,
     ]
 }
@@ -149,6 +150,11 @@ pub fn script() -> Vec<Command> {
         Command::Branch(To::Next),
         back(Unit::Increment, 1),
         set("settings.majors", "7"),
+        forward(Unit::Increment, 1),
+        // A mode that is held stays so where the increment starts again.
+        force(Mode::Free, true),
+        forward(Unit::Minor, 1),
+        Command::Increment(0.02),
         forward(Unit::Increment, 1),
     ]
 }
@@ -320,4 +326,39 @@ fn who_pushed_a_contact_is_told_as_of_the_scene_itself() {
         }
         assert!(told > 3 && pushed > 3, "{name}: {pushed} in {told}");
     }
+}
+
+fn a_journal_leads_to_the_same_bits_against_the_solver_and_to_others_against_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("afternoon.journal");
+    let mut session = session(start("osc-lag4", "any", ""), &Log::default());
+    does(&mut session, Command::Journal(Some(file.clone())));
+    for command in script() {
+        does(&mut session, command);
+    }
+    drop(session);
+    let resumed = |scene: &str| {
+        let arguments = [
+            "resume",
+            "--check",
+            "afternoon.journal",
+            "--",
+            stickslip(),
+            "serve",
+            scene,
+        ];
+        program(folder.path(), &arguments).output().unwrap()
+    };
+    let same = resumed("osc-lag4");
+    let told = out(&same) + &err(&same);
+    assert_eq!(code(&same), 0, "{told}");
+    assert!(told.contains("equal to the last bit"), "{told}");
+    let other = resumed("osc-zig3");
+    assert_ne!(code(&other), 0, "{}", out(&other));
+    // Without the solver nothing can be resumed, and a command never comes from a file.
+    let none = program(folder.path(), &["resume", "--check", "afternoon.journal"])
+        .output()
+        .unwrap();
+    assert_eq!(code(&none), 2, "{}", out(&none));
+    assert!(err(&none).contains("-- COMMAND"), "{}", err(&none));
 }
