@@ -6,26 +6,30 @@ nothing but what is in them. Then the walk of five minutes and more of the manua
 program alone: where this is run as root, the folder is all that the program sees (chroot), with the libraries that the
 program is linked with; else it is an empty folder, an empty home and a path with nothing else.
 
-    tests/install/run.py [--debug] [--features LIST]
+    tests/install/run.py [--debug] [--features LIST] [--program FILE]
 
---debug builds faster. --features takes the place of the default ones; `--features ""` is a cluster's build. What is built is
-kept below CARGO_TARGET_DIR, if that is set.
+--debug builds faster; --program walks with a program that is there. --features takes the place of the default ones; `--features ""`
+is a cluster's build. What is built is kept below CARGO_TARGET_DIR, if that is set.
 """
 
 import argparse
+import fcntl
 import json
 import os
 import pty
 import re
 import select
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
+MOST_BYTES = 15_000_000
 PACKAGES = ["stickslip-linalg", "stickslip-exchange", "stickslip-core", "stickslip"]
 
 
@@ -67,7 +71,10 @@ def installed(folders, root, options):
     begin = time.monotonic()
     cargo(*arguments, cwd=root.parent)
     program = root / "bin" / "stickslip"
-    say(f"installed   {program.stat().st_size / 1e6:.2f} MB in {time.monotonic() - begin:.0f} s")
+    size = program.stat().st_size
+    say(f"installed   {size / 1e6:.2f} MB in {time.monotonic() - begin:.0f} s")
+    if not options.debug and size >= MOST_BYTES:
+        sys.exit(f"the program has {size} bytes; it must have less than {MOST_BYTES}")
     return program
 
 
@@ -127,6 +134,40 @@ class Place:
             seen += os.read(terminal, 65536)
         seen = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", seen.decode(errors="replace"))
         return re.sub(r"\s", "", seen)
+
+    def first_screen(self, scene):
+        """Seconds from the start of the debugger until its footer is drawn."""
+        begin = time.monotonic()
+        child, terminal = pty.fork()
+        if child == 0:
+            self.enter()
+            os.execve(f"{self.root}/bin/stickslip", ["stickslip", scene], {**self.environment, "LINES": "40", "COLUMNS": "120"})
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 120, 0, 0))
+        seen = b""
+        while b"quit" not in seen:
+            seen += os.read(terminal, 65536)
+        seconds = time.monotonic() - begin
+        os.write(terminal, b"q")
+        try:
+            while os.read(terminal, 65536):
+                pass
+        except OSError:
+            pass
+        os.waitpid(child, 0)
+        return seconds
+
+    def starts(self, walks):
+        """What starts take; nothing is concluded from it."""
+        def timed(*arguments):
+            begin = time.monotonic()
+            self.run(*arguments)
+            return time.monotonic() - begin
+        told = {"--version": [timed("--version") for _ in range(30)], "list": [timed("list") for _ in range(30)]}
+        if walks:
+            told["first screen"] = [self.first_screen("01-pinned-beam-rough-floor") for _ in range(30)]
+        for what, seconds in told.items():
+            seconds.sort()
+            say(f"starts      {what}: {1e3 * seconds[0]:.1f} ms at least, {1e3 * seconds[15]:.1f} in the middle of 30")
 
     def debug(self, scene, steps):
         """The debugger in a terminal: keys, and what it must say after them."""
@@ -231,6 +272,7 @@ def main():
             program = installed(packed(folder / "packages"), folder / "root", options)
         place = Place(folder / "alone", program)
         say(place.run("--version", "--verbose")[0].rstrip())
+        place.starts("tui" in features)
         without_terminal(place, features)
         if "tui" in features:
             walk(place)
