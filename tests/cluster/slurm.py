@@ -114,10 +114,15 @@ class Slurm:
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         return (done.stdout or done.stderr).strip()
 
-    def running(self):
-        """The shards that run, each with its node."""
-        lines = self.ask("squeue", "-h", "-r", "-t", "R", "-o", "%K %N").splitlines()
-        return {int(line.split()[0]): line.split()[1] for line in lines if len(line.split()) == 2}
+    @staticmethod
+    def node_of(process):
+        """The node that a shard runs on, by its environment: to ask Slurm takes longer than a shard may last."""
+        try:
+            words = Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
+        except OSError:
+            return None
+        names = [word.split(b"=", 1)[1].decode() for word in words if word.startswith(b"SLURMD_NODENAME=")]
+        return names[0] if names else None
 
     def stop_one(self, sweep, job):
         """Sends SIGTERM to a shard, as where another job is more urgent; its number."""
@@ -135,22 +140,24 @@ class Slurm:
         """Kills a slurmd, the step that it watches, and what that runs: the machine is gone. The number of the shard, the node."""
         while True:
             work = sweep.wait_for_middle({but})
-            nodes = self.running()
-            for k in set(work) & set(nodes):
-                kept, family = sweep.kept(k), self.family(work[k])
-                worker = self.processes[nodes[k]]
+            for k, process in work.items():
+                node = self.node_of(process)
+                if node is None:
+                    continue
+                kept, family = sweep.kept(k), self.family(process)
+                worker = self.processes[node]
                 try:
-                    os.kill(work[k], signal.SIGKILL)
+                    os.kill(process, signal.SIGKILL)
                 except ProcessLookupError:
                     continue
-                for process in [worker.pid, *family]:
+                for one in [worker.pid, *family]:
                     try:
-                        os.kill(process, signal.SIGKILL)
+                        os.kill(one, signal.SIGKILL)
                     except ProcessLookupError:
                         pass
                 worker.wait()
-                common.tell(f"killed {nodes[k]} (-9) that had {kept} cells of shard {k}")
-                return k, nodes[k]
+                common.tell(f"killed {node} (-9) that had {kept} cells of shard {k}")
+                return k, node
 
     @staticmethod
     def family(process):
