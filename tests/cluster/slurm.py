@@ -129,7 +129,8 @@ class Slurm:
         while True:
             k = next(iter(sweep.wait_for_middle()))
             told = sweep.folder / f"shard-{k}.told"
-            self.ask("scancel", "--batch", "--signal=TERM", f"{job}_{k}")
+            # It may wait for the end of the job for longer than all other shards take.
+            subprocess.Popen(["scancel", "--batch", "--signal=TERM", f"{job}_{k}"], stderr=subprocess.DEVNULL)
             for _ in range(100):
                 if "interrupted" in told.read_text():
                     common.tell(f"SIGTERM to shard {k}")
