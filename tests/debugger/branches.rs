@@ -364,3 +364,19 @@ fn a_session_with_hardly_any_memory_does_the_same() {
     assert_eq!(roomy.curve(0), tight.curve(0));
     assert_eq!(verdicts(&roomy).len(), 2);
 }
+
+/// Node 7 of the block stands on a vertex of the bent column, where a smooth contact that nobody holds would slide.
+#[test]
+fn a_mode_that_is_held_is_that_of_every_solve_at_a_vertex_too() {
+    let mut session = session("05-cantilever-elastic-block");
+    let hold = Command::Force {
+        slave: 6,
+        mode: Mode::Fixed,
+        hold: true,
+    };
+    submit(&mut session, hold);
+    forward(&mut session, Unit::Minor, 12);
+    let events = session.frames().iter().filter_map(|f| f.event.as_ref());
+    let modes: Vec<Mode> = events.map(|e| e.nodes[6].decision.before).collect();
+    assert_eq!(modes, [Mode::Fixed; 12]);
+}
