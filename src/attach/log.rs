@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
-use stickslip_exchange::attach::conversation::HEAD;
+use stickslip_exchange::attach::conversation::SEALED_HEAD;
 use stickslip_exchange::attach::message::Level;
 use stickslip_exchange::attach::{Kept, Side};
 
@@ -75,7 +75,7 @@ impl Log {
             false => options.create_new(true),
         };
         let mut file = options.open(path)?;
-        file.write_all(format!("{HEAD}\n").as_bytes())?;
+        file.write_all(format!("{SEALED_HEAD}\n").as_bytes())?;
         self.with(|inner| inner.kept = Some(file));
         Ok(())
     }

@@ -68,8 +68,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 
 /// Tries a solver, and prints what was found.
 fn checked(args: &Args) -> Result<Exit, Error> {
-    let report = check::check(&args.solver.start());
+    let log = args.solver.log(args.force)?;
+    let report = check::check(&args.solver.start(), &log);
     say(&report.text())?;
+    if let Some(lost) = log.lost() {
+        tell(&format!("warning: {lost}"));
+    }
     let failed = report.failed();
     if failed > 0 {
         let s = if failed == 1 { "" } else { "s" };

@@ -2,7 +2,7 @@
 
 use super::base::Error;
 use super::sink::Sink;
-use crate::outside::files::Output;
+use crate::outside::files::{Output, finish_all};
 use crate::outside::shown;
 use crate::study::drawn::PlotError;
 use crate::study::pen;
@@ -107,25 +107,29 @@ impl Outputs {
         })
     }
 
-    /// Writes all that is wanted; a picture is drawn only then. A reader that closes the pipe has what he wanted.
+    /// Writes all that is wanted, or none of it; a picture is drawn only then. Standard output, which cannot be taken back, is
+    /// written to when all else is drawn. A reader that closes the pipe has what he wanted.
     ///
     /// # Errors
     /// If it cannot be written or drawn.
     pub fn write(
-        mut self,
+        self,
         table: &str,
         svg: impl FnOnce() -> Result<String, PlotError>,
         png: impl FnOnce() -> Result<Vec<u8>, PlotError>,
     ) -> Result<(), Error> {
-        // The numbers first: they are kept even if a figure cannot be drawn.
-        self.write_table(table)?;
+        let mut files = Vec::new();
         if let Some(output) = self.svg {
-            write(output, svg().map_err(undrawn)?.as_bytes())?;
+            files.push(written(output, svg().map_err(undrawn)?.as_bytes())?);
         }
         if let Some(output) = self.png {
-            write(output, &png().map_err(undrawn)?)?;
+            files.push(written(output, &png().map_err(undrawn)?)?);
         }
-        Ok(())
+        if let Some(mut sink) = self.csv {
+            sink.send(table)?;
+            files.extend(sink.into_file());
+        }
+        Ok(finish_all(files)?)
     }
 
     /// Writes the table, where that is wanted.
@@ -145,9 +149,9 @@ fn undrawn(error: PlotError) -> Error {
     Error::Usage(error.to_string())
 }
 
-fn write(mut output: Output, bytes: &[u8]) -> Result<(), Error> {
+fn written(mut output: Output, bytes: &[u8]) -> Result<Output, Error> {
     output.write_all(bytes).map_err(|e| output.failed(e))?;
-    Ok(output.finish()?)
+    Ok(output)
 }
 
 /// Most characters of a cell of a table for people.

@@ -51,6 +51,14 @@ impl Sink {
         }
     }
 
+    /// The file, which has no name yet; nothing for standard output.
+    pub fn into_file(self) -> Option<Output> {
+        match self {
+            Sink::Standard => None,
+            Sink::File(output) => Some(*output),
+        }
+    }
+
     /// Ends the table: a file gets its name.
     pub fn finish(self) -> Result<(), Error> {
         match self {

@@ -53,8 +53,9 @@ impl SolverArgs {
         }
     }
 
-    /// Starts it; `overwrite` says whether the exchange may take the place of another file.
-    pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
+    /// What is said between the two, which a file keeps where that is wanted; `overwrite` says whether it may take the place of
+    /// another one.
+    pub fn log(&self, overwrite: bool) -> Result<Log, Error> {
         let log = Log::default();
         if let Some(path) = &self.exchange {
             let kept = log.keep(path, overwrite);
@@ -68,6 +69,12 @@ impl SolverArgs {
                 Error::Usage(format!("{}: {how}", path.display()))
             })?;
         }
+        Ok(log)
+    }
+
+    /// Starts it; `overwrite` says whether the exchange may take the place of another file.
+    pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
+        let log = self.log(overwrite)?;
         let attached = Attached::attach(self.start(), log.clone());
         let (scene, attached) = attached.map_err(|fault| Error::Usage(fault.to_string()))?;
         Ok((scene, attached, log))

@@ -8,6 +8,7 @@
 //! Each takes only from those above it:
 //!
 //! - [`broken`]: what is wrong with a file, and where.
+//! - [`seal`]: lines with a digest of themselves.
 //! - [`words`]: words of a text apart by blanks, with their places.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
 //! - [`gmsh`]: meshes of Gmsh.
@@ -31,6 +32,7 @@ pub mod inp;
 pub mod matrix_market;
 pub mod mesh;
 pub mod problem;
+pub mod seal;
 pub mod siconos;
 pub mod vtu;
 pub mod words;

@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 use tempfile::NamedTempFile;
 
 /// Why a file could not be written.
@@ -86,6 +86,11 @@ impl Output {
     /// # Errors
     /// If it cannot be written to the end, or if a file of that name has appeared in the meantime.
     pub fn finish(self) -> Result<(), FileError> {
+        self.ready()?.place()
+    }
+
+    /// Writes it to the disk, so that only its name is missing; a device or a pipe has all then.
+    fn ready(self) -> Result<Ready, FileError> {
         let Output {
             target,
             overwrite,
@@ -96,19 +101,20 @@ impl Output {
             source,
         };
         let file = match to {
-            To::Straight(mut file) => return file.flush().map_err(failed),
-            To::Beside(file) => file.into_inner().map_err(|e| failed(e.into_error()))?,
-        };
-        file.as_file().sync_all().map_err(failed)?;
-        if overwrite {
-            return file.persist(&target).map(drop).map_err(|e| failed(e.error));
-        }
-        file.persist_noclobber(&target).map(drop).map_err(|e| {
-            if e.error.kind() == io::ErrorKind::AlreadyExists {
-                FileError::Exists(target.clone())
-            } else {
-                failed(e.error)
+            To::Straight(mut file) => {
+                file.flush().map_err(failed)?;
+                None
             }
+            To::Beside(file) => {
+                let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
+                file.as_file().sync_all().map_err(failed)?;
+                Some(file)
+            }
+        };
+        Ok(Ready {
+            target,
+            overwrite,
+            file,
         })
     }
 
@@ -138,7 +144,87 @@ fn straight(path: &Path) -> io::Result<File> {
     Ok(open)
 }
 
-/// Writes several files, none of which takes its name before all can.
+/// A file that is written, without its name.
+struct Ready {
+    target: PathBuf,
+    overwrite: bool,
+    /// Nothing where a device or a pipe was written to.
+    file: Option<NamedTempFile>,
+}
+
+impl Ready {
+    fn failed(&self, source: io::Error) -> FileError {
+        FileError::Failed {
+            path: self.target.clone(),
+            source,
+        }
+    }
+
+    /// What has the name now, under another one; nothing where nothing has it.
+    fn former(&self) -> Result<Option<NamedTempFile>, FileError> {
+        if self.file.is_none() || !self.overwrite || !self.target.is_file() {
+            return Ok(None);
+        }
+        let kept = |path: &Path| {
+            // Some file systems have no second names.
+            std::fs::hard_link(&self.target, path)
+                .or_else(|_| std::fs::copy(&self.target, path).map(drop))?;
+            File::open(path)
+        };
+        let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
+        let former = builder().make_in(folder(&self.target), kept);
+        let former = former.map_err(|source| self.failed(source))?;
+        let _ = flock(former.as_file(), FlockOperation::NonBlockingLockExclusive);
+        Ok(Some(former))
+    }
+
+    /// Gives it its name.
+    fn place(self) -> Result<(), FileError> {
+        let Some(file) = self.file else {
+            return Ok(());
+        };
+        let placed = match self.overwrite {
+            true => file.persist(&self.target),
+            false => file.persist_noclobber(&self.target),
+        };
+        placed.map(drop).map_err(|e| match e.error.kind() {
+            io::ErrorKind::AlreadyExists if !self.overwrite => FileError::Exists(self.target),
+            _ => FileError::Failed {
+                path: self.target,
+                source: e.error,
+            },
+        })
+    }
+}
+
+/// Finishes several files, all or none: none takes its name before all are on the disk, and where one cannot take its name,
+/// those that have taken theirs give them back. A device or a pipe keeps what it was given.
+///
+/// # Errors
+/// As [`Output::finish`].
+pub fn finish_all(outputs: Vec<Output>) -> Result<(), FileError> {
+    let ready: Result<Vec<Ready>, FileError> = outputs.into_iter().map(Output::ready).collect();
+    let ready = ready?;
+    let formers: Result<Vec<_>, FileError> = ready.iter().map(Ready::former).collect();
+    let mut placed: Vec<(PathBuf, Option<NamedTempFile>)> = Vec::new();
+    for (file, former) in ready.into_iter().zip(formers?) {
+        let target = file.file.is_some().then(|| file.target.clone());
+        if let Err(error) = file.place() {
+            for (target, former) in placed {
+                // What cannot be undone is told by the error that it comes from.
+                let _ = match former {
+                    Some(former) => former.persist(&target).map(drop).map_err(|e| e.error),
+                    None => std::fs::remove_file(&target),
+                };
+            }
+            return Err(error);
+        }
+        placed.extend(target.map(|target| (target, former)));
+    }
+    Ok(())
+}
+
+/// Writes several files, all or none.
 ///
 /// # Errors
 /// As [`Output::create`] and [`Output::finish`].
@@ -151,7 +237,7 @@ pub fn write_all(files: &[(PathBuf, impl AsRef<[u8]>)], overwrite: bool) -> Resu
             .map_err(|e| output.failed(e))?;
         outputs.push(output);
     }
-    outputs.into_iter().try_for_each(Output::finish)
+    finish_all(outputs)
 }
 
 /// Refuses what exists and is no regular file: whoever must not wait cannot write there.
@@ -191,26 +277,32 @@ static MAKING: Mutex<()> = Mutex::new(());
 
 /// A nameless file in the target's directory, so that it can take the target's name in one step.
 fn beside(target: &Path) -> io::Result<NamedTempFile> {
-    let directory = match target.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    };
+    let directory = folder(target);
     if target.file_name().is_none() {
         return Err(io::Error::other("it is no name of a file"));
     }
-    let prefix = format!("{PREFIX}{}-", std::process::id());
-    let mut builder = tempfile::Builder::new();
-    // Temporary files are private unless told otherwise; results are as public as other files are.
-    builder
-        .prefix(&prefix)
-        .suffix(SUFFIX)
-        .permissions(PermissionsExt::from_mode(0o666));
     let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
     sweep(directory);
-    let made = builder.tempfile_in(directory)?;
+    // Temporary files are private unless told otherwise; results are as public as other files are.
+    let public = PermissionsExt::from_mode(0o666);
+    let made = builder().permissions(public).tempfile_in(directory)?;
     // Where a file system knows no locks, the process's number has to do.
     let _ = flock(made.as_file(), FlockOperation::NonBlockingLockExclusive);
     Ok(made)
+}
+
+/// The folder of a file.
+fn folder(target: &Path) -> &Path {
+    let parent = target.parent().filter(|parent| *parent != Path::new(""));
+    parent.unwrap_or(Path::new("."))
+}
+
+/// What makes temporary files.
+fn builder() -> tempfile::Builder<'static, 'static> {
+    static NAME: LazyLock<String> = LazyLock::new(|| format!("{PREFIX}{}-", std::process::id()));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&*NAME).suffix(SUFFIX);
+    builder
 }
 
 /// Removes what killed runs have left in a directory: temporary files of processes that are no more, and that nobody holds.
@@ -316,6 +408,37 @@ mod tests {
         write(&path, "whole", false).unwrap();
         assert_eq!(names(directory.path()), ["a.csv"]);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "whole");
+    }
+
+    #[test]
+    fn several_files_appear_all_or_none_and_what_was_there_is_there_again() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let outputs = |overwrite: bool| {
+            let made = ["a", "b", "c"].map(|name| {
+                let mut output = Output::create(&at(name), overwrite).unwrap();
+                output.write_all(b"new").unwrap();
+                output
+            });
+            Vec::from(made)
+        };
+        let all = outputs(false);
+        std::fs::write(at("c"), "somebody else's").unwrap();
+        assert!(matches!(finish_all(all), Err(FileError::Exists(path)) if path == at("c")));
+        assert_eq!(names(directory.path()), ["c"]);
+        std::fs::write(at("a"), "old").unwrap();
+        let all = outputs(true);
+        std::fs::remove_file(at("c")).unwrap();
+        std::fs::create_dir(at("c")).unwrap();
+        assert!(finish_all(all).is_err());
+        assert_eq!(std::fs::read_to_string(at("a")).unwrap(), "old");
+        assert!(!at("b").exists());
+        std::fs::remove_dir(at("c")).unwrap();
+        finish_all(outputs(true)).unwrap();
+        let mut left = names(directory.path());
+        left.sort();
+        assert_eq!(left, ["a", "b", "c"]);
+        assert_eq!(std::fs::read_to_string(at("a")).unwrap(), "new");
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! A text file of RON, one entry a line. The first line is the [`Header`] with the scene whole, so that the file stands
 //! alone; then comes an [`Entry`] for every command that changed something or moved the cursor, with a digest of the
 //! state after it, and before a motion that solves a line that says so. Entries that changed something are synced to
-//! the disk, moves of the cursor only handed to the system: a kill loses neither, a power cut the latter.
+//! the disk (fdatasync), and so is the folder when a journal begins; moves of the cursor are only handed to the system. A kill loses
+//! neither, a power cut the latter.
 //! A last line without its end is what a kill leaves of an entry; it is dropped, and told.
 
 use crate::format::kind::{FileKind, mistaken};
@@ -15,12 +16,13 @@ use crate::scene::Scene;
 use crate::step::state::State;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fmt::{self, Write as _};
-use std::fs::File;
+use std::fmt::Write as _;
+use std::fs::{File, Metadata};
 use std::io::{self, Write};
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
+use stickslip_exchange::seal::Digest;
 
 /// The format that this program writes, and the only one that it reads.
 pub const FORMAT: u32 = 1;
@@ -197,7 +199,10 @@ impl Journal {
             whole: 0,
         };
         match journal.open_with(scene, done) {
-            Ok(()) => Ok(journal),
+            Ok(()) => {
+                sync_folder(path);
+                Ok(journal)
+            }
             Err(error) => {
                 // It is ours, and of no use to anybody.
                 let _ = std::fs::remove_file(path);
@@ -276,6 +281,13 @@ impl Journal {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Whether what is written can be found under its name: the file was neither deleted nor replaced.
+    pub(crate) fn is_there(&self) -> bool {
+        let at = |found: Metadata| (found.dev(), found.ino());
+        let named = std::fs::metadata(&self.path).map(at);
+        matches!((named, self.file.metadata().map(at)), (Ok(named), Ok(own)) if named == own)
     }
 
     /// Takes the file for this session, until the process ends.
@@ -478,6 +490,12 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
     }
 }
 
+/// Syncs the name of a new file. Some file systems sync no folders: the file's own bytes are synced in any case.
+fn sync_folder(file: &Path) {
+    let folder = file.parent().filter(|folder| *folder != Path::new(""));
+    let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
+}
+
 /// Whether a file's name says that it is a journal.
 pub fn is_named_so(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending == EXTENSION)
@@ -521,21 +539,11 @@ pub fn newest() -> Result<PathBuf, JournalError> {
     newest.map(|(_, path)| path).ok_or_else(none)
 }
 
-/// A digest of a state's bits: FNV-1a with 64 bits, over its text in RON, in which floats are exact.
+/// A digest of a state's bits, over its text in RON, in which floats are exact.
 pub fn digest(state: &State) -> String {
-    /// FNV-1a.
-    struct Hash(u64);
-    impl fmt::Write for Hash {
-        fn write_str(&mut self, text: &str) -> fmt::Result {
-            for byte in text.bytes() {
-                self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-            }
-            Ok(())
-        }
-    }
-    let mut hash = Hash(0xcbf2_9ce4_8422_2325);
-    match notation::line_to(&mut hash, state) {
-        Ok(()) => format!("{:016x}", hash.0),
+    let mut digest = Digest::default();
+    match notation::line_to(&mut digest, state) {
+        Ok(()) => digest.to_string(),
         // No state is known that RON cannot take; a digest that equals no other says so.
         Err(error) => format!("none: {error}"),
     }
@@ -591,6 +599,34 @@ pub(super) fn date(seconds: u64) -> [u64; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rustix::fs::{CWD, Mode, mkfifoat};
+
+    /// A pipe takes bytes and refuses to be synced, so that a sync that is asked of the system shows as an error.
+    #[test]
+    fn what_changed_something_is_synced_and_a_move_of_the_cursor_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("a.journal");
+        mkfifoat(CWD, &pipe, Mode::RUSR | Mode::WUSR).unwrap();
+        let _both = File::options().read(true).write(true).open(&pipe).unwrap();
+        let mut journal = Journal::open(&pipe).unwrap();
+        let entry = Entry {
+            at: 0,
+            command: Command::Goto { step: 0 },
+            solved: 0,
+            accepted: 0,
+            branch: 0,
+            cursor: 0,
+            digest: String::new(),
+            said: String::new(),
+        };
+        journal.begun(&entry.command).unwrap();
+        journal.done(entry.clone(), false).unwrap();
+        let refused = journal.done(entry, true).unwrap_err();
+        let JournalError::File { source, .. } = &refused else {
+            panic!("{refused:?}");
+        };
+        assert_eq!(source.kind(), io::ErrorKind::InvalidInput, "{refused}");
+    }
 
     #[test]
     fn dates_are_those_of_the_calendar() {

@@ -82,6 +82,28 @@ impl Diary {
         }
     }
 
+    /// Writes the journal again where its file was deleted, and says so.
+    pub fn renew(&mut self, scene: &Scene) {
+        let Kept::Open(journal) = &self.at else {
+            return;
+        };
+        if journal.is_there() {
+            return;
+        }
+        let path = journal.path().to_owned();
+        match Journal::create(&path, scene, &self.entries) {
+            Ok(journal) => {
+                self.at = Kept::Open(journal);
+                self.trouble = format!(
+                    "; {} was deleted, and is written again with all {} entries",
+                    path.display(),
+                    self.entries.len()
+                );
+            }
+            Err(error) => self.lose("the journal was deleted or replaced", &error),
+        }
+    }
+
     /// Notes what a command led to; `changes` where it changed something.
     pub fn done(&mut self, scene: &Scene, entry: Entry, changes: bool) {
         self.entries.push(entry.clone());

@@ -490,6 +490,7 @@ impl Session {
 
     /// Notes in the journal that a motion begins to solve.
     fn begin(&mut self, command: &Command) {
+        self.diary.renew(&self.scene);
         if matches!(self.task, Some(Task::Run)) {
             let scene = &self.scene;
             self.diary.write(scene, |journal| journal.begun(command));
@@ -498,6 +499,7 @@ impl Session {
 
     /// Notes in the journal what a command led to.
     fn note(&mut self, command: Command, Reply(said): Reply) -> Reply {
+        self.diary.renew(&self.scene);
         if command.is_look() || !self.diary.is_kept() {
             return Reply(said + &self.diary.take_trouble());
         }

@@ -2,7 +2,7 @@
 
 use super::chart_file::{Chart, Series, Truth};
 use super::figure::name;
-use super::log::LogError;
+use super::log::{LogError, ResultKind};
 use super::merge::{Cells, Keeping, Kept, Reading, same};
 use super::plan::{Case, Plan};
 use super::read::Study;
@@ -30,6 +30,11 @@ pub struct Timed {
 }
 
 impl Timed {
+    /// Whether its numbers are finite, as those of every run are.
+    fn is_sound(&self) -> bool {
+        self.seconds.is_finite() && self.run.is_sound()
+    }
+
     /// What two runs of one cell come to: they must be the same but for their times. That which was repeated more
     /// often counts, and of equals the shorter time.
     fn join(one: &Timed, other: &Timed) -> Option<Timed> {
@@ -139,7 +144,10 @@ pub fn open(
         },
     };
     let reading = Reading {
-        most: MOST_LINE,
+        kind: ResultKind {
+            most: MOST_LINE,
+            is_sound: Timed::is_sound,
+        },
         join: Timed::join,
     };
     let input = || {

@@ -4,6 +4,9 @@
 //! and a result as RON; the key is a hash of all that the result depends on, so that whatever is asked for next time, what
 //! is there already is not computed again. A line whose key is `input` tells what the results are of ([`Input`]). A line that
 //! a kill has cut off has no end, and is taken away, or passed over where the file is only read.
+//!
+//! Each line ends with a digest of itself ([`stickslip_exchange::seal`]); one that does not match refuses the file. Earlier
+//! versions wrote none: such lines are read, but not after a line that has one.
 
 use super::origin;
 use super::shard::Key;
@@ -19,6 +22,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use stickslip_exchange::seal::{Seal, opened as unsealed, sealed};
 
 /// Why results could not be kept, or taken up.
 #[derive(Debug, thiserror::Error)]
@@ -73,6 +77,9 @@ pub enum LogError {
     /// Two results of one cell are not the same.
     #[error(transparent)]
     Disagree(#[from] Box<Disagreement>),
+    /// A result is none that can be kept.
+    #[error("{}: a result has a number that is not finite, and cannot be kept", .0.display())]
+    Unsound(PathBuf),
     /// A line of it cannot be read.
     #[error("{}:{line}:{column}: this result cannot be read: {message}", path.display())]
     Broken {
@@ -105,8 +112,22 @@ pub struct Disagreement {
 
 /// Most bytes of a file that is taken up.
 const MOST_BYTES: u64 = 2 << 30;
+/// What is wrong with a line whose digest is not its own.
+const CHANGED: &str = "the line was changed after it was written (its digest differs); without the line, the result is computed again";
 /// What stands before a line that tells what results are of.
 const INPUT: &str = "input";
+
+/// What is wrong with a result that no run can have.
+const UNSOUND: &str = "the result has a number that is not finite, which no run has; without the line, it is computed again";
+
+/// A kind of results.
+#[derive(Debug)]
+pub struct ResultKind<T> {
+    /// Most bytes of one of them in a file.
+    pub most: usize,
+    /// Whether a run can have it: its numbers are finite wherever those of a run are.
+    pub is_sound: fn(&T) -> bool,
+}
 
 /// Where results are kept.
 #[derive(Debug)]
@@ -143,6 +164,8 @@ struct Lines<'a> {
     number: usize,
     /// Bytes of all whole lines so far.
     whole: u64,
+    /// Whether a line had a digest.
+    are_sealed: bool,
 }
 
 impl Lines<'_> {
@@ -197,7 +220,15 @@ impl Lines<'_> {
                 false => Err(broken("the line is longer than any result")),
             };
         }
-        let text = String::from_utf8(bytes).map_err(|_| broken("it is not text in UTF-8"))?;
+        let mut text = String::from_utf8(bytes).map_err(|_| broken("it is not text in UTF-8"))?;
+        match unsealed(&text) {
+            Seal::Whole(line) => {
+                text.truncate(line.len());
+                self.are_sealed = true;
+            }
+            Seal::Missing if !self.are_sealed => {}
+            Seal::Broken | Seal::Missing => return Err(broken(CHANGED)),
+        }
         self.number += 1;
         self.whole += length as u64;
         Ok(Some(text))
@@ -262,7 +293,7 @@ fn head() -> String {
 fn content<T: DeserializeOwned>(
     file: &File,
     path: &Path,
-    most: usize,
+    kind: &ResultKind<T>,
     ours: Option<&Input>,
 ) -> Result<(Content<T>, u64), LogError> {
     let failed = |source| LogError::File {
@@ -284,9 +315,10 @@ fn content<T: DeserializeOwned>(
     let mut lines = Lines {
         from: BufReader::new(file),
         path,
-        most,
+        most: kind.most,
         number: 0,
         whole: 0,
+        are_sealed: false,
     };
     let mut content = Content {
         inputs: Vec::new(),
@@ -308,6 +340,14 @@ fn content<T: DeserializeOwned>(
                 }
                 content.inputs.push(input);
             }
+            Entry::Result(_, value) if !(kind.is_sound)(&value) => {
+                return Err(LogError::Broken {
+                    path: path.to_owned(),
+                    line: lines.number,
+                    column: 1,
+                    message: UNSOUND.to_owned(),
+                });
+            }
             Entry::Result(key, value) => {
                 let line = lines.number;
                 content.results.push((key, Found { line, value }));
@@ -325,28 +365,27 @@ fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogEr
     })
 }
 
-/// Reads a file of results, which may be written to at the same time, and leaves it as it is; no line of it has more than `most`
-/// bytes.
+/// Reads a file of results of a kind, which may be written to at the same time, and leaves it as it is.
 ///
 /// # Errors
 /// If it cannot be read, or is of something else.
 pub fn read<T: DeserializeOwned>(
     path: &Path,
-    most: usize,
+    kind: &ResultKind<T>,
     ours: &Input,
 ) -> Result<Content<T>, LogError> {
     let file = opened(path, File::options().read(true))?;
-    Ok(content(&file, path, most, Some(ours))?.0)
+    Ok(content(&file, path, kind, Some(ours))?.0)
 }
 
 impl Log {
-    /// Opens a file of results, or begins one, and reads what is there; no line has more than `most` bytes.
+    /// Opens a file of results of a kind, or begins one, and reads what is there.
     ///
     /// # Errors
     /// If it cannot be read or written, if it is something else, or if another run has it open.
     pub fn open<T: DeserializeOwned>(
         path: &Path,
-        most: usize,
+        kind: &ResultKind<T>,
         ours: Option<&Input>,
     ) -> Result<(Log, Content<T>), LogError> {
         let failed = |source| LogError::File {
@@ -361,7 +400,7 @@ impl Log {
         {
             return Err(LogError::Busy(path.to_owned()));
         }
-        let (found, whole) = content(&file, path, most, ours)?;
+        let (found, whole) = content(&file, path, kind, ours)?;
         file.set_len(whole).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
         if whole == 0 {
@@ -401,7 +440,7 @@ impl Log {
             source,
         };
         let value = notation::strict_line(value).map_err(|e| failed(io::Error::other(e)))?;
-        let line = format!("{key}\t{value}\n");
+        let line = sealed(&format!("{key}\t{value}")) + "\n";
         let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
         file.write_all(line.as_bytes()).map_err(failed)
     }
@@ -411,30 +450,96 @@ impl Log {
 mod tests {
     use super::*;
 
-    const MOST: usize = 1 << 10;
+    const KIND: ResultKind<Vec<f64>> = ResultKind {
+        most: 1 << 10,
+        is_sound: |values| values.iter().all(|value| !value.is_nan()),
+    };
+
+    /// What is wrong with a file of results, and in which line.
+    fn refused(path: &Path) -> (usize, String) {
+        match Log::open(path, &KIND, None) {
+            Err(LogError::Broken { line, message, .. }) => (line, message),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_changed_digit_refuses_the_file_and_names_its_line() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.log");
+        let (log, _) = Log::open(&path, &KIND, None).unwrap();
+        for key in ["a", "b", "c"] {
+            log.keep(Key::of([key]), &vec![0.125, 7.0]).unwrap();
+        }
+        drop(log);
+        let whole = std::fs::read_to_string(&path).unwrap();
+        let (head, rest) = whole.split_once('\n').unwrap();
+        for (place, letter) in rest.char_indices().filter(|(_, c)| c.is_ascii_digit()) {
+            let mut changed = rest.as_bytes().to_vec();
+            changed[place] = if letter == '3' { b'4' } else { b'3' };
+            let changed = String::from_utf8(changed).unwrap();
+            std::fs::write(&path, format!("{head}\n{changed}")).unwrap();
+            let line = 2 + rest[..place].matches('\n').count();
+            assert_eq!(refused(&path), (line, CHANGED.to_owned()), "{changed}");
+        }
+        // Without the line, all else is there.
+        let left: Vec<&str> = rest.lines().skip(1).collect();
+        std::fs::write(&path, format!("{head}\n{}\n", left.join("\n"))).unwrap();
+        let (_, found) = Log::open(&path, &KIND, None).unwrap();
+        assert_eq!(found.results.len(), 2);
+    }
+
+    #[test]
+    fn results_without_digests_are_read_but_not_behind_one_that_has_one() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.log");
+        let of = |key: &str| format!("{}\t[1.0]", Key::of([key]));
+        let old = format!("{}\n{}\n{}\n", head(), of("a"), of("b"));
+        std::fs::write(&path, &old).unwrap();
+        let (log, found) = Log::open(&path, &KIND, None).unwrap();
+        assert_eq!(found.results.len(), 2);
+        log.keep(Key::of(["c"]), &vec![2.0]).unwrap();
+        drop(log);
+        let (_, found) = Log::open(&path, &KIND, None).unwrap();
+        assert_eq!(found.results.len(), 3);
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, text + &of("d") + "\n").unwrap();
+        assert_eq!(refused(&path), (5, CHANGED.to_owned()));
+    }
+
+    #[test]
+    fn a_number_that_no_run_has_is_refused_without_a_digest_too() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.log");
+        for number in ["NaN", "-NaN"] {
+            let line = format!("{}\t[1.0,{number}]", Key::of(["a"]));
+            std::fs::write(&path, format!("{}\n{line}\n", head())).unwrap();
+            assert_eq!(refused(&path), (2, UNSOUND.to_owned()));
+        }
+    }
 
     #[test]
     fn results_are_there_again_and_a_cut_line_is_not() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
-        let (log, found) = Log::open::<Vec<f64>>(&path, MOST, None).unwrap();
+        let (log, found) = Log::open(&path, &KIND, None).unwrap();
         assert!(found.results.is_empty());
         log.keep(Key::of(["a"]), &vec![0.1, f64::INFINITY]).unwrap();
         log.keep(Key::of(["b"]), &vec![1e-300]).unwrap();
         assert!(matches!(
-            Log::open::<Vec<f64>>(&path, MOST, None),
+            Log::open(&path, &KIND, None),
             Err(LogError::Busy(_))
         ));
         drop(log);
         let whole = std::fs::read(&path).unwrap();
         for cut in 0..whole.len() {
             std::fs::write(&path, &whole[..cut]).unwrap();
-            let (log, found) = Log::open::<Vec<f64>>(&path, MOST, None).unwrap();
+            let (log, found) = Log::open(&path, &KIND, None).unwrap();
             let lines = whole[..cut].iter().filter(|&&b| b == b'\n').count();
             assert_eq!(found.results.len(), lines.saturating_sub(1), "cut at {cut}");
             log.keep(Key::of(["c"]), &vec![2.0]).unwrap();
             drop(log);
-            let (_, found) = Log::open::<Vec<f64>>(&path, MOST, None).unwrap();
+            let (_, found) = Log::open(&path, &KIND, None).unwrap();
             let last = found.results.last().unwrap();
             assert_eq!((last.0, &last.1.value[..]), (Key::of(["c"]), &[2.0][..]));
         }
@@ -446,7 +551,7 @@ mod tests {
         let path = directory.path().join("a.csv");
         for text in ["a,b\n1,2\n", "a,b"] {
             std::fs::write(&path, text).unwrap();
-            let refused = Log::open::<f64>(&path, MOST, None);
+            let refused = Log::open(&path, &KIND, None);
             assert!(matches!(refused, Err(LogError::Foreign { .. })), "{text}");
             assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
         }

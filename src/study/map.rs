@@ -7,7 +7,7 @@
 //! that went to the end counts as converged, and the table says that it was not compared.
 
 use super::figure::{label, name, short_names};
-use super::log::LogError;
+use super::log::{LogError, ResultKind};
 use super::merge::{Cells, Keeping, Kept, Reading, same};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
@@ -136,6 +136,13 @@ impl Ended {
         })
     }
 
+    /// Whether its numbers are finite, as those of every run are.
+    fn is_sound(&self) -> bool {
+        let failed = self.failed.is_none_or(|(_, _, load)| load.is_finite());
+        let mut monitors = self.monitors.iter();
+        failed && monitors.all(|seen| seen.end.is_finite() && seen.largest.is_finite())
+    }
+
     /// Largest difference of a monitor's end to that of a reference, over the largest value of its kind in the
     /// reference's run; infinite where something is no number.
     pub fn difference(&self, reference: &Ended) -> f64 {
@@ -191,7 +198,10 @@ pub fn open(plan: &Plan, keeping: &Keeping) -> Result<Kept<Ended>, LogError> {
         name: &|k| name(plan, k),
     };
     let reading = Reading {
-        most: MOST_LINE,
+        kind: ResultKind {
+            most: MOST_LINE,
+            is_sound: Ended::is_sound,
+        },
         join: same,
     };
     Kept::open(keeping, || Input::new("map", plan.input()), cells, &reading)

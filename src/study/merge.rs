@@ -39,8 +39,8 @@ pub struct Cells<'a> {
 
 /// How the results of one kind of sweep are read.
 pub struct Reading<T> {
-    /// Most bytes of one of them in a file.
-    pub most: usize,
+    /// What they are in a file.
+    pub kind: log::ResultKind<T>,
     /// What two results of one cell come to; `None` where they contradict each other.
     pub join: fn(&T, &T) -> Option<T>,
 }
@@ -58,6 +58,7 @@ pub struct Kept<T> {
     unit: &'static str,
     found: HashMap<Key, Found<T>>,
     log: Option<Log>,
+    is_sound: fn(&T) -> bool,
     /// What is computed here; nothing where files are put together.
     shard: Option<Shard>,
     /// The files that were put together, each with the shards that it is of.
@@ -91,6 +92,7 @@ impl<T: Serialize + DeserializeOwned + Clone> Kept<T> {
             unit: cells.unit,
             found: HashMap::new(),
             log: None,
+            is_sound: reading.kind.is_sound,
             shard: Some(Shard::WHOLE),
             files: Vec::new(),
             machines: BTreeSet::new(),
@@ -98,13 +100,13 @@ impl<T: Serialize + DeserializeOwned + Clone> Kept<T> {
         match keeping {
             Keeping::Nowhere => {}
             Keeping::Beside(path) => {
-                let (log, content) = Log::open(path, reading.most, None)?;
+                let (log, content) = Log::open(path, &reading.kind, None)?;
                 kept.found = content.results.into_iter().collect();
                 kept.log = Some(log);
             }
             Keeping::Shard(path, shard) => {
                 let input = input().with(*shard);
-                let (log, content) = Log::open(path, reading.most, Some(&input))?;
+                let (log, content) = Log::open(path, &reading.kind, Some(&input))?;
                 if !content.inputs.contains(&input) {
                     log.name(&input)?;
                 }
@@ -130,7 +132,7 @@ impl<T: Serialize + DeserializeOwned + Clone> Kept<T> {
         let numbers: HashMap<Key, usize> = cells.keys.iter().copied().zip(0..).collect();
         let mut places: HashMap<Key, usize> = HashMap::new();
         for (file, path) in paths.iter().enumerate() {
-            let content = log::read::<T>(path, reading.most, input)?;
+            let content = log::read::<T>(path, &reading.kind, input)?;
             let others = content.inputs.is_empty();
             for (key, found) in content.results {
                 let Some(&number) = numbers.get(&key) else {
@@ -203,9 +205,13 @@ impl<T: Serialize + DeserializeOwned + Clone> Kept<T> {
     /// Keeps a result.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If it cannot be written, or no file with it could be read again.
     pub fn keep(&self, key: Key, value: &T) -> Result<(), LogError> {
-        self.log.as_ref().map_or(Ok(()), |log| log.keep(key, value))
+        match &self.log {
+            None => Ok(()),
+            Some(log) if (self.is_sound)(value) => log.keep(key, value),
+            Some(log) => Err(LogError::Unsound(log.path().to_owned())),
+        }
     }
 
     /// What is wrong with a result that was found.

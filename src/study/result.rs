@@ -93,6 +93,13 @@ impl Run {
         self.rows.last().unwrap_or(&self.start)
     }
 
+    /// Whether its numbers are finite, as those of every run are.
+    pub fn is_sound(&self) -> bool {
+        let mut rows = std::iter::once(&self.start).chain(&self.rows);
+        let failed = self.failed().is_none_or(|failed| failed.load.is_finite());
+        failed && rows.all(|row| row.load.is_finite() && row.monitors.iter().all(|x| x.is_finite()))
+    }
+
     /// Whether it ended by itself, and not because somebody wanted it to.
     pub fn is_over(&self) -> bool {
         matches!(self.end, CaseEnd::Finished | CaseEnd::Failed(_))

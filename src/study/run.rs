@@ -1,6 +1,6 @@
 //! The cases of a plan, side by side: each on one thread, so that its bits are those of a run alone.
 
-use super::log::LogError;
+use super::log::{LogError, ResultKind};
 use super::merge::{Cells, Keeping, Kept, Reading, same};
 use super::plan::{Case, Plan};
 use super::reason::Reason;
@@ -95,7 +95,10 @@ pub fn open(plan: &Plan, keeping: &Keeping) -> Result<Kept<Run>, LogError> {
         name: &|k| super::figure::name(plan, k),
     };
     let reading = Reading {
-        most: MOST_LINE,
+        kind: ResultKind {
+            most: MOST_LINE,
+            is_sound: Run::is_sound,
+        },
         join: same,
     };
     Kept::open(

@@ -5,7 +5,7 @@
 //! added; and every cell that failed, by its number.
 
 use super::csv::{comments, field};
-use super::log::LogError;
+use super::log::{LogError, ResultKind};
 use super::merge::{Cells, Keeping, Kept, Reading, same};
 use super::run::{RunError, Watch, pool};
 use super::shard::Key;
@@ -95,6 +95,16 @@ impl Count {
 }
 
 impl Sums {
+    /// Whether runs can have its numbers: errors are from 0 to infinity.
+    fn is_sound(&self) -> bool {
+        let worst = self.counts.values().filter_map(|count| count.worst);
+        let failing = self.failing.iter().filter_map(|run| run.error);
+        worst
+            .map(|(error, _)| error)
+            .chain(failing)
+            .all(|error| error >= 0.0)
+    }
+
     /// Counts a run of a cell.
     pub fn count(&mut self, cell: u64, outcome: Outcome) {
         let Outcome {
@@ -255,7 +265,10 @@ impl Large<'_> {
             },
         };
         let reading = Reading {
-            most: MOST_LINE,
+            kind: ResultKind {
+                most: MOST_LINE,
+                is_sound: Sums::is_sound,
+            },
             join: same,
         };
         let input = || {

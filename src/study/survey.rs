@@ -1,6 +1,6 @@
 //! All random problems of a population with all variants: run, counted, and as a table.
 
-use super::log::LogError;
+use super::log::{LogError, ResultKind};
 use super::merge::{Cells, Keeping, Kept, Reading, same};
 use super::origin;
 use super::random::Population;
@@ -77,7 +77,10 @@ pub fn open(
         name: &|k| format!("problem {k} of {}", population.name()),
     };
     let reading = Reading {
-        most: MOST_LINE,
+        kind: ResultKind {
+            most: MOST_LINE,
+            is_sound: Judged::is_sound,
+        },
         join: same,
     };
     let input = || Input::new("map --random", input(population, variants));

@@ -70,6 +70,16 @@ pub struct Trial {
 }
 
 impl Judged {
+    /// Whether a run can have its numbers: a violation is infinite where there is no end, and none that is right.
+    pub(super) fn is_sound(&self) -> bool {
+        let right = |trial: &Trial| trial.verdict == RunVerdict::Right;
+        let mut trials = self.trials.iter();
+        trials.all(|trial| match right(trial) {
+            true => trial.violation <= TOLERANCE,
+            false => !trial.violation.is_nan(),
+        })
+    }
+
     /// Whether the problem has an answer: by census, or since a run found one where the census has none (where assumptions
     /// have a whole line of solutions, which it does not look into).
     pub fn solvable(&self) -> bool {

@@ -4,6 +4,7 @@ use super::program::{code, err, out, program};
 use super::served::{start, stickslip};
 use super::side::Rude;
 use libtest_mimic::Trial;
+use stickslip::attach::Log;
 use stickslip::attach::check::{Report, Verdict, check};
 
 pub fn tests() -> Vec<Trial> {
@@ -11,6 +12,7 @@ pub fn tests() -> Vec<Trial> {
         our_own_solver_passes_every_check,
         each_wrong_is_found_by_its_check,
         the_command_line_tells_it_and_ends_with_1,
+        a_check_keeps_the_exchange_of_every_start_in_the_file_that_is_named,
     ]
 }
 
@@ -30,7 +32,7 @@ fn our_own_solver_passes_every_check() {
             ("osc-three10", "none"),
         ] {
             scope.spawn(move || {
-                let report = check(&start(name, restore, ""));
+                let report = check(&start(name, restore, ""), &Log::default());
                 assert_eq!(report.failed(), 0, "{name}: {}", report.text());
                 for what in [
                     "step",
@@ -134,7 +136,7 @@ fn each_wrong_is_found_by_its_check() {
         for &(how, what, told) in WRONGS {
             scope.spawn(move || {
                 let rude = Rude::new(how);
-                let report = check(&rude.start);
+                let report = check(&rude.start, &Log::default());
                 let Verdict::Fails(mend) = verdict(&report, what) else {
                     panic!("{how}: {}", report.text());
                 };
@@ -155,7 +157,10 @@ fn each_wrong_is_found_by_its_check() {
             ("deaf", "increment", "`load` is the factor"),
         ] {
             scope.spawn(move || {
-                let report = check(&start("02-two-cantilevers-rough", "any", how));
+                let report = check(
+                    &start("02-two-cantilevers-rough", "any", how),
+                    &Log::default(),
+                );
                 let Verdict::Fails(mend) = verdict(&report, what) else {
                     panic!("{how}: {}", report.text());
                 };
@@ -190,4 +195,32 @@ fn the_command_line_tells_it_and_ends_with_1() {
         "{}",
         out(&output)
     );
+}
+
+fn a_check_keeps_the_exchange_of_every_start_in_the_file_that_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |options: &[&str]| {
+        let solver = ["--", stickslip(), "serve", "osc-lag4"];
+        let arguments = [
+            &["attach", "--check", "--exchange", "kept.exchange"],
+            options,
+            &solver,
+        ]
+        .concat();
+        program(folder.path(), &arguments).output().unwrap()
+    };
+    let output = run(&[]);
+    assert_eq!((code(&output), err(&output).as_str()), (0, ""));
+    let text = std::fs::read_to_string(folder.path().join("kept.exchange")).unwrap();
+    let lines = stickslip_exchange::attach::Kept::read(&text).unwrap();
+    let started = lines
+        .iter()
+        .filter(|kept| kept.text.starts_with("started: "));
+    assert!(started.count() > 10, "{} lines", lines.len());
+    let last = lines.iter().rfind(|kept| kept.text.contains("\"type\""));
+    assert!(last.is_some());
+    let again = run(&[]);
+    assert_eq!(code(&again), 2);
+    assert!(err(&again).contains("--force"), "{}", err(&again));
+    assert_eq!(code(&run(&["--force"])), 0);
 }

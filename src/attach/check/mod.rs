@@ -15,17 +15,18 @@ mod trial;
 
 use super::fault::Fault;
 use super::link::Start;
+use super::log::Log;
 pub use report::{Checked, Report, Verdict};
 use stickslip_exchange::attach::message::State;
 use trial::{Trial, millis};
 
-/// Tries a solver.
-pub fn check(start: &Start) -> Report {
+/// Tries a solver; the log has all that is said, of one start after the other.
+pub fn check(start: &Start, log: &Log) -> Report {
     let mut report = Report {
         name: start.typed(),
         checks: Vec::new(),
     };
-    let first = match Trial::begin(start) {
+    let first = match Trial::begin(start, log) {
         Ok(trial) => trial,
         Err(fault) => {
             report.ends("start", &fault);
@@ -55,7 +56,9 @@ pub fn check(start: &Start) -> Report {
         ("wrong requests", manners::wrong_requests),
     ];
     for (what, of) in checks {
-        if let Err(fault) = Trial::begin(start).and_then(|trial| of(&mut report, trial, &states)) {
+        if let Err(fault) =
+            Trial::begin(start, log).and_then(|trial| of(&mut report, trial, &states))
+        {
             report.ends(what, &fault);
         }
     }
@@ -63,7 +66,9 @@ pub fn check(start: &Start) -> Report {
         ("bye", manners::bye as Of),
         ("end of input", manners::end_of_input),
     ] {
-        if let Err(fault) = Trial::begin(start).and_then(|trial| of(&mut report, trial, &states)) {
+        if let Err(fault) =
+            Trial::begin(start, log).and_then(|trial| of(&mut report, trial, &states))
+        {
             report.ends(what, &fault);
         }
     }

@@ -22,27 +22,29 @@ pub struct Trial {
     /// How long its start took.
     pub began: Duration,
     start: Start,
+    log: Log,
     asks: Arc<AtomicUsize>,
     until: Instant,
 }
 
 impl Trial {
-    /// Starts it.
+    /// Starts it; the log has what is said.
     ///
     /// # Errors
     /// The fault by which it ends.
-    pub fn begin(start: &Start) -> Result<Trial, Fault> {
+    pub fn begin(start: &Start, log: &Log) -> Result<Trial, Fault> {
         let began = Instant::now();
         let asks = Arc::new(AtomicUsize::new(0));
         let Met {
             link, hello, scene, ..
-        } = meet(start, &Log::default(), &asks)?;
+        } = meet(start, log, &asks)?;
         Ok(Trial {
             link,
             hello,
             scene,
             began: began.elapsed(),
             start: start.clone(),
+            log: log.clone(),
             asks,
             until: Instant::now() + BUDGET,
         })
@@ -54,7 +56,7 @@ impl Trial {
     /// The fault by which it ends.
     pub fn again(&mut self) -> Result<(), Fault> {
         let until = self.until;
-        *self = Trial::begin(&self.start)?;
+        *self = Trial::begin(&self.start, &self.log)?;
         self.until = until;
         Ok(())
     }

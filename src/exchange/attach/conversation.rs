@@ -1,13 +1,20 @@
 //! A kept exchange: every line that went between debugger and solver, in order.
 //!
-//! The first line of such a file is [`HEAD`]; each other one begins with a sign that says where it went, and a blank: `>` to
-//! the solver, `<` from it, `!` what it wrote to its standard error, `#` what happened besides (it was started, it ended).
-//! Messages stand there as they went, so that the file can be read by eye, by a script, and by [`Kept::read`].
+//! The first line of such a file is [`SEALED_HEAD`]; each other one begins with a sign that says where it went, and a blank: `>`
+//! to the solver, `<` from it, `!` what it wrote to its standard error, `#` what happened besides (it was started, it ended).
+//! Messages stand there as they went, so that the file can be read by eye, by a script, and by [`Kept::read`]. Behind each stands
+//! its digest ([`crate::seal`]); files of earlier versions begin with [`HEAD`] alone and have none.
 
 use crate::broken::Broken;
+use crate::seal::{self, Seal};
 
-/// The first line.
+/// How the first line begins.
 pub const HEAD: &str = "# stickslip exchange 1";
+/// The first line of a file whose lines have digests.
+pub const SEALED_HEAD: &str = "# stickslip exchange 1, each line with its digest";
+
+/// What is wrong with a line whose digest is not its own.
+const CHANGED: &str = "the line was changed after it was written (its digest differs)";
 
 /// Where a line went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,29 +59,26 @@ impl Kept {
     /// The line of a file, with its end; several where the text has several.
     pub fn line(side: Side, text: &str) -> String {
         let text = text.trim_end_matches(['\n', '\r']);
-        let mut whole = String::with_capacity(text.len() + 3);
-        for line in text.split('\n') {
-            whole.extend([side.sign(), ' ']);
-            whole += line;
-            whole.push('\n');
-        }
-        whole
+        let lines = text.split('\n');
+        let sealed = lines.map(|line| seal::sealed(&format!("{} {line}", side.sign())) + "\n");
+        sealed.collect()
     }
 
     /// Whether a text is a kept exchange.
     pub fn is_one(text: &str) -> bool {
-        text.lines().next() == Some(HEAD)
+        matches!(text.lines().next(), Some(HEAD | SEALED_HEAD))
     }
 
     /// Reads a file. A last line that is torn (the writer was killed) is left out.
     ///
     /// # Errors
-    /// If it is no kept exchange, or a line has no sign.
+    /// If it is no kept exchange, a line has no sign, or one was changed after it was written.
     pub fn read(text: &str) -> Result<Vec<Kept>, Broken> {
         if !Kept::is_one(text) {
-            let message = format!("the first line of a kept exchange is {HEAD:?}");
+            let message = format!("the first line of a kept exchange begins with {HEAD:?}");
             return Err(Broken::at(1, 1, message));
         }
+        let are_sealed = text.starts_with(SEALED_HEAD);
         let whole = match text.rfind('\n') {
             Some(end) => &text[..end],
             None => text,
@@ -82,6 +86,11 @@ impl Kept {
         let lines = whole.lines().enumerate().skip(1);
         lines
             .map(|(number, line)| {
+                let line = match seal::opened(line) {
+                    _ if !are_sealed => line,
+                    Seal::Whole(line) => line,
+                    Seal::Broken | Seal::Missing => return Err(Broken::at(number + 1, 1, CHANGED)),
+                };
                 let (sign, text) = line.split_at_checked(1).unwrap_or((line, ""));
                 let side = Side::ALL
                     .iter()
@@ -109,7 +118,7 @@ mod tests {
             (Side::Answered, "{\"type\":\"ok\"}"),
             (Side::Logged, "Intel MKL FATAL ERROR"),
         ];
-        let mut text = format!("{HEAD}\n");
+        let mut text = format!("{SEALED_HEAD}\n");
         lines
             .iter()
             .for_each(|(side, line)| text += &Kept::line(*side, line));
@@ -124,8 +133,26 @@ mod tests {
     }
 
     #[test]
+    fn a_changed_digit_is_noticed_and_a_file_without_digests_is_read() {
+        let answer = "{\"type\":\"state\",\"f_n\":1.25}";
+        let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Answered, answer));
+        assert_eq!(Kept::read(&text).expect("sound")[0].text, answer);
+        let broken = Kept::read(&text.replace("1.25", "1.35")).expect_err("changed");
+        assert_eq!(broken.at, Some((2, 1)));
+        let bare = format!("{SEALED_HEAD}\n< {answer}\n");
+        assert!(Kept::read(&bare).is_err());
+        let old = Kept::read(&format!("{HEAD}\n< {answer}\n! a\t0123456789abcdef\n"));
+        let texts: Vec<String> = old
+            .expect("sound")
+            .into_iter()
+            .map(|kept| kept.text)
+            .collect();
+        assert_eq!(texts, [answer, "a\t0123456789abcdef"]);
+    }
+
+    #[test]
     fn every_line_of_a_text_has_its_sign() {
-        let text = format!("{HEAD}\n{}", Kept::line(Side::Noted, "lost:\nall\n"));
+        let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Noted, "lost:\nall\n"));
         let read = Kept::read(&text).expect("sound");
         let texts: Vec<&str> = read.iter().map(|kept| kept.text.as_str()).collect();
         assert_eq!(texts, ["lost:", "all"]);

@@ -1,0 +1,116 @@
+//! Lines of a file that carry a digest of themselves, so that a changed character is noticed when they are read.
+//!
+//! A sealed line is its text, a tab, and 16 hexadecimal digits: FNV-1a with 64 bits over the bytes of the text. The digest finds
+//! accidents; it is no signature.
+
+use std::fmt;
+
+/// FNV-1a with 64 bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Digest(u64);
+
+impl Default for Digest {
+    fn default() -> Self {
+        Digest(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Digest {
+    /// The digest of a text.
+    pub fn of(text: &str) -> Digest {
+        let mut digest = Digest::default();
+        digest.add(text);
+        digest
+    }
+
+    /// Adds more text.
+    pub fn add(&mut self, text: &str) {
+        for byte in text.bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+impl fmt::Write for Digest {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.add(text);
+        Ok(())
+    }
+}
+
+impl fmt::Display for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
+
+/// What a line says of itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seal<'a> {
+    /// The text, which has the digest that stands behind it.
+    Whole(&'a str),
+    /// The digest is that of another text.
+    Broken,
+    /// The line has no digest.
+    Missing,
+}
+
+/// A text of one line with its digest, without an end.
+pub fn sealed(text: &str) -> String {
+    format!("{text}\t{}", Digest::of(text))
+}
+
+/// Checks the digest of a line that has no end.
+pub fn opened(line: &str) -> Seal<'_> {
+    let is_digest = |word: &str| {
+        word.len() == 16
+            && word
+                .bytes()
+                .all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b))
+    };
+    match line.rsplit_once('\t') {
+        Some((text, word)) if is_digest(word) => match Digest::of(text).to_string() == word {
+            true => Seal::Whole(text),
+            false => Seal::Broken,
+        },
+        _ => Seal::Missing,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_changed_byte_of_a_sealed_line_is_noticed() {
+        let line = sealed("key\t(end: 1.25e-3, name: \"u_x\")");
+        assert_eq!(
+            opened(&line),
+            Seal::Whole("key\t(end: 1.25e-3, name: \"u_x\")")
+        );
+        for place in 0..line.len() {
+            for by in [b'0', b'1', b'9', b'a', b' ', b'\t'] {
+                let mut bytes = line.clone().into_bytes();
+                if bytes[place] == by {
+                    continue;
+                }
+                bytes[place] = by;
+                let changed = String::from_utf8(bytes).unwrap();
+                assert!(!matches!(opened(&changed), Seal::Whole(_)), "{changed}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_digest_is_that_of_fnv_1a() {
+        assert_eq!(Digest::of("").to_string(), "cbf29ce484222325");
+        assert_eq!(Digest::of("a").to_string(), "af63dc4c8601ec8c");
+        assert_eq!(Digest::of("foobar").to_string(), "85944171f73967e8");
+    }
+
+    #[test]
+    fn a_line_without_a_digest_is_told_from_one_with_a_wrong_one() {
+        assert_eq!(opened("key\tvalue"), Seal::Missing);
+        assert_eq!(opened("key\tvalue\t0123456789abcdef"), Seal::Broken);
+    }
+}
