@@ -70,7 +70,8 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
         .nodes
         .iter()
         .position(|node| node.name == word)
-        .or(alias);
+        .or(alias)
+        .or_else(|| respelled(word, model));
     if let Some(slave) = model
         .contacts
         .iter()
@@ -83,6 +84,17 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
         true => Misread::NoSlave { word, slaves },
         false => Misread::NoNode { word, slaves },
     })
+}
+
+/// The one node whose name differs from a word only by dots and dashes: earlier versions called node.1 node-1 in places.
+fn respelled(word: &str, model: &Model) -> Option<usize> {
+    let plain = |name: &str| name.replace('-', ".");
+    let nodes = model.nodes.iter().enumerate();
+    let mut called = nodes.filter(|(_, node)| plain(&node.name) == plain(word));
+    called
+        .next()
+        .filter(|_| called.next().is_none())
+        .map(|(node, _)| node)
 }
 
 /// Slave nodes apart by blanks or commas, ascending and each once: by name, or, where no node is called so, by the place in

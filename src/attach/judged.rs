@@ -11,13 +11,33 @@ use crate::model::{Mode, Model};
 /// solvers stop where their own criterion is met, which is often a thousandth, or meet the laws on the average of an element.
 pub(super) const ALLOWED: f64 = 1e-2;
 
-/// The law that an accepted state is furthest from; `moved` is the largest displacement (length).
-pub fn broken(model: &Model, nodes: &[ContactRecord], moved: f64) -> Option<Finding> {
+/// Forces below this part of what the solver measures its residual by are round-off, or not worth a word.
+pub(super) const ROUND_OFF: f64 = 1e-6;
+
+/// What amounts are compared with.
+pub struct Sizes {
+    /// The largest force of a contact on the way to the state: where all have opened again, what is left is round-off.
+    pub force: f64,
+    /// The largest displacement (length).
+    pub length: f64,
+}
+
+/// The largest force of the contacts in a state.
+pub fn largest_force(nodes: &[ContactRecord]) -> f64 {
     let forces = nodes.iter().flat_map(|node| [node.f_n, node.f_t]);
-    let force = forces
+    forces
         .filter(|f| f.is_finite())
-        .fold(0.0, |most: f64, f| most.max(f.abs()));
-    let length = if moved > 0.0 { moved } else { model.length };
+        .fold(0.0, |most: f64, f| most.max(f.abs()))
+}
+
+/// The law that an accepted state is furthest from.
+pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Option<Finding> {
+    let force = sizes.force;
+    let length = if sizes.length > 0.0 {
+        sizes.length
+    } else {
+        model.length
+    };
     let found = nodes.iter().enumerate().flat_map(|(slave, node)| {
         let bond = &model.contacts[slave].bond;
         of_node(node, bond.is_hard(), bond.is_tied(), force, length).map(move |(law, amount)| {

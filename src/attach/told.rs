@@ -5,7 +5,7 @@
 //! on the projections), so that the user sees where the two differ.
 
 use super::fault::Fault;
-use super::judged;
+use super::judged::{self, Sizes};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::table2::{Decision, Entry, Numbers, Rule, Test, Tested, Ties, decide};
@@ -80,9 +80,18 @@ impl Frame<'_> {
             }
             nodes.push(record);
         }
+        let before = from
+            .outside
+            .as_ref()
+            .map_or(0.0, |outside| outside.largest_force);
+        let force = before.max(judged::largest_force(&nodes));
         let mut outcome = outcome(told);
         if let Outcome::Increment { marked, .. } = &mut outcome {
-            *marked = judged::broken(self.model, &nodes, largest(told.displacements.as_deref()));
+            let sizes = Sizes {
+                force: force.max(judged::ROUND_OFF * told.residual.scale.unwrap_or(0.0)),
+                length: largest(told.displacements.as_deref()),
+            };
+            *marked = judged::broken(self.model, &nodes, &sizes);
         }
         let event = Event {
             position: at,
@@ -94,10 +103,14 @@ impl Frame<'_> {
             words: Arc::new(words),
             outcome,
         };
+        let mut state = self.next(from, told, &event);
+        if let Some(outside) = &mut state.outside {
+            outside.largest_force = force;
+        }
         let monitors = self.model.monitors.iter().enumerate();
         let monitor = |(k, _)| told.monitors.get(k).copied().flatten().unwrap_or(f64::NAN);
         Ok(Led {
-            state: self.next(from, told, &event),
+            state,
             monitors: monitors.map(monitor).collect(),
             event,
         })

@@ -13,11 +13,12 @@ use crate::explain::names;
 use crate::explain::number::six;
 use crate::explain::page;
 use crate::explain::report;
+use crate::explain::touch::TouchWatch;
 use crate::history::rounds::{self, Watch};
 use crate::history::strip::Strip;
 use crate::linear::norms::Norms;
 use crate::linear::stability::Stability;
-use crate::model::Model;
+use crate::model::{Control, Model, Touch};
 use crate::outside::files::Output;
 use crate::outside::shown;
 use crate::record::snapshot::Snapshot;
@@ -228,6 +229,8 @@ struct Tally<'a> {
     /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
+    /// Where `touch: auto` decides something.
+    touch: Option<TouchWatch>,
 }
 
 /// How a run ended; it is stopped where nobody reads on, and lost where an attached solver cannot go on.
@@ -242,8 +245,13 @@ enum Closed {
 }
 
 impl<'a> Run<'a> {
-    fn new(scene: &'a Scene, solver: Box<dyn Solver>, args: &Args) -> Self {
+    fn new(scene: &'a Scene, mut solver: Box<dyn Solver>, args: &Args) -> Self {
         let quiet = args.quiet;
+        let (model, spec) = (&scene.model, &scene.spec);
+        let chosen = spec.settings.touch == Touch::Auto && model.settings.touch == Touch::Ratio;
+        let watched = chosen && model.control != Control::Arc && !quiet;
+        let stepper = solver.stepper().filter(|_| watched);
+        let touch = stepper.map(|stepper| TouchWatch::new(stepper.state()));
         Run {
             solver,
             tally: Tally {
@@ -265,6 +273,7 @@ impl<'a> Run<'a> {
                 stability: args.stability.then(Stretches::default),
                 monitors: Vec::new(),
                 slaves: Vec::new(),
+                touch,
             },
         }
     }
@@ -323,6 +332,11 @@ impl<'a> Run<'a> {
             if self.tally.scene.model.monitors.is_empty() {
                 self.tally.tell_slaves();
             }
+        }
+        if let Some(touch) = self.tally.touch.as_ref().filter(|_| !interrupt.came())
+            && let Some(difference) = touch.measure(self.solver.model())
+        {
+            tell(&format!("note: {}", difference.words()));
         }
         let name = &self.tally.scene.name;
         let end = match end {
@@ -405,6 +419,9 @@ impl Tally<'_> {
             grids.see(stepper)?;
         }
         let event = solver.event();
+        if let Some(touch) = &mut self.touch {
+            touch.see(event, solver.state());
+        }
         (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
         self.progress.show(event, self.steps);
         let sent = send(&mut outputs.trace, || {

@@ -64,19 +64,13 @@ pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
     }
 }
 
-/// The name of a contact in such a scene, with - for what no id may have in it.
+/// The id of a contact in such a scene: its name, as far as that can be one.
 fn id(name: &str, place: usize) -> String {
-    let plain = |c: char| {
-        if c.is_alphanumeric() || c == '_' {
-            c
-        } else {
-            '-'
+    match limits::node_id_of(name, limits::NAME - 8) {
+        name if name.is_empty() || name.split('.').next() == Some("floor") => {
+            format!("contact-{}", place + 1)
         }
-    };
-    let name: String = name.chars().map(plain).take(limits::NAME - 8).collect();
-    match name.as_str() {
-        "" | "floor" => format!("contact-{}", place + 1),
-        _ => name,
+        name => name,
     }
 }
 

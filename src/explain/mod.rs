@@ -9,6 +9,7 @@
 //! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
 //! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
 //!   where nothing holds it; [`reach`]: up to which load there is an answer; [`finer`]: whether a finer mesh has one.
+//! - [`touch`]: how much it matters where nodes are held that touch.
 //! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
 //! - [`attached`]: the same of a solver of another's, from the problem that it offers; [`pushes_told`]: who pushed whom there.
 //! - [`past`]: a run of another program that is over: what cycled in it, and who chattered.
@@ -41,3 +42,4 @@ pub mod remedy;
 pub mod report;
 pub mod round_off;
 pub mod smaller;
+pub mod touch;

@@ -7,7 +7,8 @@
 //! [`BUDGET`] bytes allows; beyond it frames are thinned: first those inside major iterations, far from the cursor
 //! before near, then ends of majors, then every second end of an increment. A thinned frame keeps its place, its
 //! intervention and its monitors, and is computed again from the nearest whole one before it when it is wanted.
-//! The root, the cursor's frame and the tip of every branch are always whole.
+//! The root, the cursor's frame and the tip of every branch are always whole; with the strips, these are bounded by
+//! [`BRANCH_BUDGET`], beyond which no branch begins.
 
 use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
@@ -23,6 +24,8 @@ use std::sync::Arc;
 
 /// Most bytes that whole frames may take.
 pub const BUDGET: usize = 256 << 20;
+/// Most bytes of what is never thinned, the tips of all branches and the strips of all points, at which a branch may begin.
+pub const BRANCH_BUDGET: usize = 256 << 20;
 /// Once over the budget, frames are thinned until this part of it is used, so that it is not done at every iteration.
 const AFTER_THINNING: f64 = 0.75;
 
@@ -157,6 +160,16 @@ impl Tree {
     /// Bytes that whole frames take now.
     pub fn bytes(&self) -> usize {
         self.ledger.bytes
+    }
+
+    /// Bytes of what is never thinned: the place and the strip of every point, and a whole frame at the tip of every branch.
+    /// They depend on the tree alone, so that a replay comes to the same.
+    pub fn kept(&self) -> usize {
+        let away: usize = self.branches.iter().map(|branch| branch.away.len()).sum();
+        let strip = Strip::BYTES_PER_ITERATION + self.model.contacts.len() * Strip::BYTES_PER_NODE;
+        let point = size_of::<Frame>() + strip;
+        let tip = self.line.frames.last().map_or(0, whole_bytes);
+        (self.line.len() + away) * point + self.branches.len() * tip
     }
 
     /// Adds a point to the tip, to be looked at from now on.
@@ -436,6 +449,13 @@ impl Ledger {
             }
         });
     }
+}
+
+/// What a whole frame takes that shares nothing.
+fn whole_bytes(frame: &Frame) -> usize {
+    let mut bytes = size_of_val(&frame.state.nodes[..]);
+    each_shared(frame, &mut |_, part| bytes += part);
+    bytes
 }
 
 /// The parts of a frame that others may share: address and bytes.

@@ -107,6 +107,28 @@ pub(crate) fn element_nodes(path: &Path, total: usize, setting: Option<f64>) -> 
     })
 }
 
+/// The id of a single node that is called so elsewhere: its name, as long as that may be, with - for what no id may have.
+pub(crate) fn node_id_of(name: &str, most: usize) -> String {
+    let letters: Vec<char> = name.chars().take(most).collect();
+    let is_letter = |k: Option<usize>| k.and_then(|k| letters.get(k)).is_some_and(|c| *c != '.');
+    let usable = |(k, c): (usize, &char)| match c {
+        // Dots stand between other letters.
+        '.' if is_letter(k.checked_sub(1)) && is_letter(Some(k + 1)) => '.',
+        '_' => '_',
+        c if c.is_alphanumeric() => *c,
+        _ => '-',
+    };
+    letters.iter().enumerate().map(usable).collect()
+}
+
+/// Refuses ids of single nodes as [`id`] does; they may have dots between other letters, as the names of a chain's nodes have.
+pub(crate) fn node_id(path: &Path, node: &str) -> Result<(), Fault> {
+    match node.split('.').all(|part| !part.is_empty()) {
+        true => id(path, &node.replace('.', "_")),
+        false => id(path, node),
+    }
+}
+
 /// Refuses names that could not be told apart in a command line, a CSV column or a message.
 pub(crate) fn id(path: &Path, id: &str) -> Result<(), Fault> {
     let wrong = if id.is_empty() {

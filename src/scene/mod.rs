@@ -33,6 +33,7 @@ use crate::format::kind;
 use crate::format::paths::Override;
 use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read};
 use crate::model::Model;
+use crate::outside::input;
 pub use problems::siconos;
 use stickslip_exchange::attach::message;
 
@@ -88,6 +89,28 @@ impl Scene {
             error
         })?;
         Scene::from_text(name, &text, overrides)
+    }
+
+    /// What [`Scene::open`] takes for a scene that the file `own` names: a file beside that one or in a folder below, as for the
+    /// files that scenes and decks name, or a built-in scene.
+    ///
+    /// # Errors
+    /// A message that says why there is none.
+    pub fn named_in(own: &str, named: &str) -> Result<String, String> {
+        let own = std::path::Path::new(own);
+        let found = match input::beside(own, named.trim_start_matches("./")) {
+            Ok(path) if path.is_file() => return Ok(path.to_string_lossy().into_owned()),
+            Ok(_) => "it is no file".to_owned(),
+            Err(why) => why,
+        };
+        if builtin::find(named).is_some() {
+            return Ok(named.to_owned());
+        }
+        let names = builtin::list().iter().map(|scene| scene.name);
+        let (quoted, meant) = (error::quoted(named), error::did_you_mean(named, names));
+        Err(format!(
+            "no scene {quoted} beside this file or in a folder below, and none is built in{meant}: {found}"
+        ))
     }
 
     /// Reads a scene from a text, or what [`condensed`] and [`problems`] make one of; `name` is what messages call it, and the

@@ -37,6 +37,9 @@ impl Session {
         self.offers
             .check(&intervention)
             .map_err(Refusal::Intervention)?;
+        if self.cursor + 1 < self.frames().len() {
+            self.check_room()?;
+        }
         let mut state = self.frame().state.clone();
         state
             .intervene(self.model(), &intervention)
@@ -73,12 +76,22 @@ impl Session {
         Ok(Reply(told))
     }
 
+    /// Refuses another branch where there is no memory for one.
+    fn check_room(&self) -> Result<(), Refusal> {
+        let (taken, most) = (self.tree.kept(), self.branch_budget);
+        match taken < most {
+            true => Ok(()),
+            false => Err(Refusal::NoRoom { taken, most }),
+        }
+    }
+
     /// Takes given steps from the cursor, in a branch of their own.
     pub(super) fn follow(
         &mut self,
         label: String,
         steps: Vec<Option<Intervention>>,
     ) -> Result<Reply, Refusal> {
+        self.check_room()?;
         self.tree.fork(self.cursor);
         self.tree.rename(shown::line(&label).into_owned(), false);
         self.take_steps(steps);

@@ -59,6 +59,8 @@ pub struct Session {
     /// What the start gaps are, and what is doubtful about them.
     start: (String, Vec<String>),
     pub(super) tree: Tree,
+    /// Most bytes of the branches at which another one may begin.
+    pub(super) branch_budget: usize,
     pub(super) cursor: usize,
     pub(super) worker: Worker,
     pub(super) task: Option<Task>,
@@ -118,6 +120,11 @@ impl Session {
         Session::begun(scene, model, start, (worker, background), bytes)
     }
 
+    /// Lets branches begin as long as all of them take less than so many bytes ([`tree::BRANCH_BUDGET`] for others).
+    pub fn limit_branches(&mut self, bytes: usize) {
+        self.branch_budget = bytes;
+    }
+
     /// A session with a solver of another's, at the start of the scene that it told.
     pub fn attached(scene: Scene, solver: Box<dyn Solver>, log: Log) -> Self {
         let (model, start) = (solver.model().clone(), solver.state().clone());
@@ -151,6 +158,7 @@ impl Session {
             start: (gaps::words(&model).join(", "), gaps::warnings(&model)),
             scene,
             tree: Tree::new(model.clone(), start, bytes),
+            branch_budget: tree::BRANCH_BUDGET,
             cursor: 0,
             worker,
             task: None,

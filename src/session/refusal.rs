@@ -57,6 +57,17 @@ pub enum Refusal {
     /// There is one branch only.
     #[error("there is no other branch; an intervention before the tip starts one")]
     OneBranch,
+    /// The branches that there are take all memory that they may.
+    #[error(
+        "no new branch: those that there are take {} of at most {} MB; steps from the tip of a branch start none",
+        taken >> 20, most >> 20
+    )]
+    NoRoom {
+        /// Bytes that they take.
+        taken: usize,
+        /// Most bytes that they may take when one begins.
+        most: usize,
+    },
     /// A name that is empty, or not one line.
     #[error("a branch's name is one line of text")]
     NoName,

@@ -148,12 +148,12 @@ impl Benchmarks {
             return Ok(None);
         }
         let mut list = Benchmarks::from_text(name, &text)?;
-        for benchmark in &mut list.list {
-            // Scenes that lie beside the file are found from everywhere.
-            let beside = path.with_file_name(&benchmark.scene);
-            if beside.is_file() {
-                benchmark.scene = beside.to_string_lossy().into_owned();
-            }
+        for (k, benchmark) in list.list.iter_mut().enumerate() {
+            benchmark.scene =
+                Scene::named_in(name, &benchmark.scene).map_err(|why| SceneError {
+                    path: format!("benchmarks[{k}].scene"),
+                    ..SceneError::whole(name, why)
+                })?;
         }
         Ok(Some(list))
     }

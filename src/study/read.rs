@@ -20,6 +20,7 @@ use crate::format::kind::FileKind;
 use crate::format::locate::{locate, too_deep};
 use crate::format::notation;
 use crate::format::read::{or_mistaken, path_of, plainly, shallow, text};
+use crate::scene::Scene;
 use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
@@ -177,7 +178,7 @@ impl Study {
         if std::path::Path::new(name).exists() {
             let text = text(name)?;
             return if is_study(&text) {
-                Study::from_text(name, &text).map(|study| study.beside(name))
+                Study::from_text(name, &text)?.beside(name)
             } else {
                 Ok(Study::of_scene(name))
             };
@@ -229,17 +230,12 @@ impl Study {
         }
     }
 
-    /// Scenes that lie beside the study's file are found from everywhere.
-    fn beside(mut self, file: &str) -> Study {
-        if let Some(folder) = std::path::Path::new(file).parent() {
-            for scene in &mut self.scenes {
-                let path = folder.join(&*scene);
-                if path.is_file() {
-                    *scene = path.to_string_lossy().into_owned();
-                }
-            }
+    /// The study of a file, with its scenes as they are opened from here ([`Scene::named_in`]).
+    fn beside(mut self, file: &str) -> Result<Study, SceneError> {
+        for scene in &mut self.scenes {
+            *scene = Scene::named_in(file, scene).map_err(|why| SceneError::whole(file, why))?;
         }
-        self
+        Ok(self)
     }
 }
 

@@ -231,8 +231,10 @@ fn scene(name: &str, text: &str, spec: &LessonSpec) -> Result<Scene, SceneError>
     let at = |path: Path, message: String| placed(name, text, &[], Fault::new(path, message));
     let mut scene = match &spec.scene {
         SceneSpec::Scene(spec) => Scene::within(name, text, &at!["scene"], (**spec).clone())?,
-        SceneSpec::Name(scene) => Scene::open(&beside(name, scene), &[])
-            .map_err(|error| at(at!["scene"], error.to_string()))?,
+        SceneSpec::Name(scene) => {
+            let scene = Scene::named_in(name, scene).map_err(|why| at(at!["scene"], why))?;
+            Scene::open(&scene, &[]).map_err(|error| at(at!["scene"], error.to_string()))?
+        }
     };
     for (index, (path, value)) in spec.set.iter().enumerate() {
         scene = scene
@@ -257,15 +259,6 @@ fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
     let over = over.collect::<Result<Vec<_>, Fault>>()?;
     let runs = Runs::new(scene.name.clone(), over, spec.set.clone());
     Ok(Some(Arc::new(runs)))
-}
-
-/// A scene's file as seen from the lesson's, if there is one; else the name as it is.
-fn beside(lesson: &str, scene: &str) -> String {
-    let folder = std::path::Path::new(lesson).parent();
-    let file = folder
-        .map(|folder| folder.join(scene))
-        .filter(|file| file.is_file());
-    file.map_or(scene.to_owned(), |file| file.to_string_lossy().into_owned())
 }
 
 /// Reads steps against a scene.

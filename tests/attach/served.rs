@@ -16,6 +16,7 @@ use stickslip::step::Status;
 pub fn tests() -> Vec<Trial> {
     crate::tests![
         every_quick_scene_writes_the_same_trace_and_table,
+        round_off_of_an_end_without_forces_is_no_finding_and_a_pull_is_one,
         sessions_with_interventions_are_the_same_frame_by_frame,
         a_snapshot_of_an_attached_solver_is_equal_when_replayed_against_it,
         what_is_not_offered_is_refused_with_the_reason,
@@ -46,6 +47,25 @@ fn every_quick_scene_writes_the_same_trace_and_table() {
             scope.spawn(move || part.iter().for_each(|name| same_tables(folder, name)));
         }
     });
+}
+
+/// Problem 01 ends unloaded: what is left of its contact forces is 1e-12 of what they were.
+fn round_off_of_an_end_without_forces_is_no_finding_and_a_pull_is_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |solver: &[String]| {
+        let command: Vec<&str> = solver.iter().map(String::as_str).collect();
+        let arguments = [&["run", "--"], &command[..]].concat();
+        let output = program(folder.path(), &arguments).output().unwrap();
+        (code(&output), err(&output))
+    };
+    let (code, err) = run(&start("01-pinned-beam-rough-floor", "any", "").command);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        err.contains("contact_y") && !err.contains("warning"),
+        "{err}"
+    );
+    let (_, err) = run(&start("01-pinned-beam-rough-floor", "any", "upside-down").command);
+    assert!(err.contains("the surface pulls"), "{err}");
 }
 
 /// Runs a scene by itself and attached, and compares the bytes of what is written.

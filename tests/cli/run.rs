@@ -526,3 +526,69 @@ fn journals_of_an_earlier_revision_lead_to_the_same_bits() {
         assert_eq!(code(&output), 0, "{}: {}", journal.display(), err(&output));
     }
 }
+
+/// The increment in which nodes touched is solved here from the same state with `touch: start`, in a session.
+#[test]
+fn a_run_tells_what_one_step_of_coulombs_law_makes_of_the_increment_in_which_nodes_touched() {
+    use stickslip::model::Touch;
+    use stickslip::step::event::Outcome;
+    use stickslip::step::stepper::Stepper;
+
+    const SCENE: &str = "bench-mindlin";
+    let output = ran(&["run", SCENE]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let told = err(&output);
+    let note = told
+        .lines()
+        .find(|line| line.starts_with("note: with touch: start"));
+    let note = note.unwrap_or_else(|| panic!("{told}"));
+    let between = |before: &str, after: &str| {
+        let (_, rest) = note.split_once(before).unwrap();
+        rest.split_once(after).unwrap().0.to_owned()
+    };
+    let increment: u32 = between("increment ", " ").parse().unwrap();
+    let percent: f64 = between("differ by ", " %").parse().unwrap();
+
+    let model = std::sync::Arc::new(stickslip::scene::Scene::open(SCENE, &[]).unwrap().model);
+    let forces = |stepper: &mut Stepper| loop {
+        let event = stepper.step().expect("more increments").clone();
+        if matches!(event.outcome, Outcome::Increment { .. }) {
+            let forces: Vec<[f64; 2]> = event.nodes.iter().map(|r| [r.f_n, r.f_t]).collect();
+            return forces;
+        }
+    };
+    let (mut ours, mut theirs) = (Stepper::new(model.clone()), Stepper::new(model));
+    for _ in 1..increment {
+        forces(&mut ours);
+    }
+    theirs.restore(ours.state());
+    let mut settings = ours.state().controls.settings;
+    settings.touch = Touch::Start;
+    theirs
+        .intervene(&stickslip::step::intervene::Intervention::Settings(
+            settings,
+        ))
+        .unwrap();
+    let (ours, theirs) = (forces(&mut ours), forces(&mut theirs));
+    let size = |f: &[f64; 2]| f[0].hypot(f[1]);
+    let largest = ours.iter().map(size).fold(0.0, f64::max);
+    let apart = ours
+        .iter()
+        .zip(&theirs)
+        .map(|(a, b)| size(&[a[0] - b[0], a[1] - b[1]]));
+    let wanted = 100.0 * apart.fold(0.0, f64::max) / largest;
+    // The normals of the two ends differ a little.
+    assert!(
+        (percent / wanted - 1.0).abs() < 0.02,
+        "{percent} % told, {wanted} % found"
+    );
+
+    for quiet in [
+        &["run", SCENE, "--set", "settings.touch=start"][..],
+        &["run", SCENE, "--set", "settings.touch=ratio"],
+        &["run", SCENE, "--quiet"],
+        &["run", "02-two-cantilevers-smooth"],
+    ] {
+        assert!(!err(&ran(quiet)).contains("touch: start"), "{quiet:?}");
+    }
+}

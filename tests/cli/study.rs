@@ -367,6 +367,66 @@ fn a_study_file_and_the_scene_beside_it_are_found_and_arguments_go_over_it() {
 }
 
 #[test]
+fn a_study_writes_all_of_its_files_or_none() {
+    let directory = tempfile::tempdir().unwrap();
+    let run = |svg: &str| {
+        let arguments = [
+            OSC,
+            "--vary",
+            "history.increment=0.05",
+            "--csv",
+            "a.csv",
+            "--svg",
+            svg,
+            "--png",
+            "a.png",
+            "--force",
+        ];
+        ran_in(directory.path(), &arguments)
+    };
+    std::fs::write(directory.path().join("a.csv"), "old").unwrap();
+    let output = run("/dev/full");
+    assert_eq!(code(&output), 2, "{}", err(&output));
+    assert!(err(&output).contains("/dev/full"), "{}", err(&output));
+    assert_eq!(names(directory.path()), ["a.csv"]);
+    let text = || std::fs::read_to_string(directory.path().join("a.csv")).unwrap();
+    assert_eq!(text(), "old");
+    assert_eq!(code(&run("a.svg")), 0);
+    assert_eq!(names(directory.path()), ["a.csv", "a.png", "a.svg"]);
+    assert_ne!(text(), "old");
+}
+
+#[test]
+fn what_a_study_names_lies_beside_it_or_below_or_is_built_in() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path().join("mine");
+    std::fs::create_dir(&folder).unwrap();
+    let scene = stickslip::scene::builtin::find(ROUGH).unwrap().text();
+    std::fs::write(folder.join("scene.ron"), &*scene).unwrap();
+    // What lies where the program runs is not what the study means.
+    std::fs::write(directory.path().join("other.ron"), &*scene).unwrap();
+    let named = |scene: &str| {
+        let text = format!("(title: \"T\", scene: {scene:?}, vary: [(\"increment\", [1.25])])");
+        std::fs::write(folder.join("study.ron"), text).unwrap();
+        let output = ran_in(directory.path(), &["mine/study.ron", "--csv", "-"]);
+        (code(&output), err(&output))
+    };
+    for sound in ["scene.ron", "./scene.ron", ROUGH] {
+        let (code, err) = named(sound);
+        assert_eq!(code, 0, "{sound}: {err}");
+    }
+    let absolute = folder.join("scene.ron").display().to_string();
+    for refused in ["other.ron", "../other.ron", "mine/scene.ron", &absolute] {
+        let (code, err) = named(refused);
+        assert_eq!(code, 2, "{refused}: {err}");
+        assert!(
+            err.starts_with("mine/study.ron") && err.contains("beside"),
+            "{refused}: {err}"
+        );
+    }
+}
+
+#[test]
 fn a_star_sets_all_that_fit_and_several_scenes_have_a_column() {
     let mut both = study(ROUGH, &[("materials.*.EA", &["90", "110"])]);
     both.scenes.push("02-two-cantilevers-smooth".to_owned());

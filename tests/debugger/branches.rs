@@ -365,6 +365,38 @@ fn a_session_with_hardly_any_memory_does_the_same() {
     assert_eq!(verdicts(&roomy).len(), 2);
 }
 
+#[test]
+fn a_branch_that_does_not_fit_is_refused_and_the_others_go_on() {
+    let mut session = session("osc-lag4");
+    forward(&mut session, Unit::Increment, 2);
+    let one = session.tree().kept();
+    session.limit_branches(2 * one);
+    let mut begun = 0;
+    let refused = loop {
+        submit(&mut session, Command::Goto { step: 1 });
+        let force = Command::Force {
+            slave: 0,
+            mode: Mode::Sliding,
+            hold: false,
+        };
+        match session.submit(force) {
+            Ok(_) => begun += 1,
+            Err(why) => break why.to_string(),
+        }
+        assert!(begun < 10_000, "no bound");
+    };
+    assert!(
+        begun > 0 && refused.starts_with("no new branch"),
+        "{refused}"
+    );
+    // One branch more than fits is what the last one may take.
+    assert!(session.tree().kept() >= 2 * one && session.tree().kept() < 3 * one);
+    let count = verdicts(&session).len();
+    branch(&mut session, "b1");
+    forward(&mut session, Unit::Minor, 1);
+    assert_eq!(verdicts(&session).len(), count);
+}
+
 /// Node 7 of the block stands on a vertex of the bent column, where a smooth contact that nobody holds would slide.
 #[test]
 fn a_mode_that_is_held_is_that_of_every_solve_at_a_vertex_too() {

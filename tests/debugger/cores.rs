@@ -336,7 +336,9 @@ fn the_command_writes_a_core_whole_once_and_says_where_there_is_none() {
     let (code, out, err) = ran(&["core", "osc-drag65"]);
     assert_eq!((code, err.as_str()), (0, ""));
     assert!(
-        out.starts_with("// The core of a cycle") && out.contains("beam-5 is beam.5"),
+        out.starts_with("// The core of a cycle")
+            && out.contains("(id: \"beam.5\"")
+            && !out.contains("beam-5"),
         "{out}"
     );
     assert!(

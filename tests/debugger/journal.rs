@@ -134,6 +134,51 @@ fn an_interrupted_run_replays_as_far_as_it_came() {
 }
 
 #[test]
+fn a_journal_deleted_under_the_session_is_written_again_whole_and_the_user_is_told() {
+    let mut kept = kept(OSCILLATES);
+    type_lines(&mut kept.session, &["step 3"]);
+    std::fs::remove_file(&kept.path).expect("deleted");
+    let force = Command::Force {
+        slave: 0,
+        mode: stickslip::model::Mode::Fixed,
+        hold: false,
+    };
+    let reply = kept.session.submit(force).expect("forced").0;
+    let told = format!("{} was deleted, and is written again", kept.path.display());
+    assert!(reply.contains(&told), "{reply}");
+    type_lines(&mut kept.session, &["step 2"]);
+    let record = Record::read(&kept.path).expect("a journal");
+    assert_eq!(record.entries.len(), 3);
+    let replayed = record.replay().unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(all(&replayed), all(&kept.session));
+
+    // Another file in its place is not ours to write to.
+    std::fs::write(kept.directory.path().join("b"), "mine").expect("a file");
+    std::fs::rename(kept.directory.path().join("b"), &kept.path).expect("renamed");
+    let reply = kept
+        .session
+        .submit(Command::Goto { step: 1 })
+        .expect("gone")
+        .0;
+    assert!(
+        reply.contains("deleted or replaced") && reply.contains(":journal FILE"),
+        "{reply}"
+    );
+    assert!(kept.session.lost_journal().is_some());
+    assert_eq!(std::fs::read_to_string(&kept.path).expect("there"), "mine");
+    let other = kept.directory.path().join("c.journal");
+    type_lines(
+        &mut kept.session,
+        &[&format!("journal {}", other.display())],
+    );
+    let replayed = Record::read(&other).expect("a journal").replay();
+    assert_eq!(
+        all(&replayed.unwrap_or_else(|e| panic!("{e}"))),
+        all(&kept.session)
+    );
+}
+
+#[test]
 fn a_journal_that_goes_on_replays_as_a_whole() {
     let Kept {
         mut session,

@@ -103,6 +103,123 @@ fn clockwise_elements_are_turned_and_a_node_of_no_element_is_on_no_body() {
     );
 }
 
+/// Corners and middles of sides of a quadrilateral and of a triangle, from node 1 anticlockwise, and the same clockwise. No two
+/// sides are bent alike, so that a middle on a wrong side shows.
+const WALKS: [(&str, [&str; 2], i32); 2] = [
+    (
+        "quad8",
+        ["1, 2, 3, 4, 5, 6, 7, 8", "1, 4, 3, 2, 8, 7, 6, 5"],
+        16,
+    ),
+    ("triangle6", ["1, 2, 4, 5, 9, 8", "1, 4, 2, 8, 9, 5"], 9),
+];
+const BENT: [[f64; 2]; 9] = [
+    [0.0, 0.0],
+    [1.0, 0.0],
+    [1.0, 1.0],
+    [0.0, 1.0],
+    [0.5, -0.02],
+    [1.03, 0.5],
+    [0.5, 1.04],
+    [-0.01, 0.5],
+    [0.49, 0.5],
+];
+
+/// The nodes of the one element of a scene, as the model has them.
+fn walked(scene: &Scene) -> Vec<[f64; 2]> {
+    let BodyKind::Solid(body) = &scene.model.bodies[0].kind else {
+        panic!("no solid")
+    };
+    let nodes = body.elements[0].nodes.iter();
+    nodes.map(|&n| scene.model.nodes[n].at).collect()
+}
+
+fn body(nodes: &str, part: &str) -> String {
+    format!(
+        "(title: \"t\", nodes: [{nodes}], materials: [Elastic(id: \"e\", E: 100, nu: 0.3)],
+        bodies: [Solid(id: \"b\", mesh: \"{part}\", material: \"e\")],
+        history: (path: [0, 1], increment: 1))"
+    )
+}
+
+#[test]
+fn clockwise_second_order_elements_of_scenes_turn_their_middle_nodes_as_well() {
+    let listed = |k: usize| format!("({}, {:?}, {:?})", k + 1, BENT[k][0], BENT[k][1]);
+    let all: Vec<String> = (0..BENT.len()).map(listed).collect();
+    for (kind, walks, _) in WALKS {
+        let [anticlockwise, clockwise] = walks.map(|nodes| {
+            let given = format!(
+                "Given(id: \"m\", nodes: [{}], elements: [(part: \"p\", kind: {kind}, nodes: [[{nodes}]])])",
+                all.join(", ")
+            );
+            Scene::from_text("t.ron", &body(&given, "m.p"), &[]).unwrap_or_else(|e| panic!("{e}"))
+        });
+        let wanted = walks[0]
+            .split(", ")
+            .map(|n| BENT[n.parse::<usize>().unwrap() - 1]);
+        assert_eq!(walked(&anticlockwise), wanted.collect::<Vec<_>>(), "{kind}");
+        assert_eq!(walked(&clockwise), walked(&anticlockwise), "{kind}");
+    }
+}
+
+#[test]
+fn clockwise_second_order_elements_of_gmsh_turn_their_middle_nodes_as_well() {
+    let folder = tempfile::tempdir().unwrap();
+    let nodes: Vec<String> = BENT
+        .iter()
+        .zip(1..)
+        .map(|([x, y], k)| format!("{k} {x:?} {y:?} 0"))
+        .collect();
+    for (kind, walks, number) in WALKS {
+        let [anticlockwise, clockwise] = walks.map(|walk| {
+            let mesh = format!(
+                "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"p\"\n$EndPhysicalNames\n\
+                 $Nodes\n9\n{}\n$EndNodes\n$Elements\n1\n1 {number} 2 1 1 {}\n$EndElements\n",
+                nodes.join("\n"),
+                walk.replace(',', "")
+            );
+            std::fs::write(folder.path().join("a.msh"), mesh).unwrap();
+            let name = folder.path().join("a.ron").display().to_string();
+            let text = body("Import(id: \"m\", file: \"a.msh\")", "m.p");
+            Scene::from_text(&name, &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+        });
+        assert_eq!(walked(&anticlockwise).len(), walks[0].split(", ").count());
+        assert_eq!(walked(&clockwise), walked(&anticlockwise), "{kind}");
+    }
+}
+
+/// The load is on the side between nodes 1 and 4, which is the last one anticlockwise and the first one clockwise.
+#[test]
+fn clockwise_second_order_elements_of_decks_turn_their_middle_nodes_and_keep_their_sides() {
+    let nodes: Vec<String> = BENT
+        .iter()
+        .zip(1..)
+        .map(|([x, y], k)| format!("{k}, {x:?}, {y:?}"))
+        .collect();
+    for ((kind, walks, _), (element, last)) in WALKS.iter().zip([("CPE8", 4), ("CPE6", 3)]) {
+        let solved = |walk: &str, side: i32| {
+            let deck = format!(
+                "*NODE\n{}\n*ELEMENT, TYPE={element}, ELSET=P\n1, {walk}\n*MATERIAL, NAME=M\n*ELASTIC\n100., 0.3\n\
+                 *SOLID SECTION, ELSET=P, MATERIAL=M\n1.\n*BOUNDARY\n1, 1, 2\n2, 2, 2\n*STEP\n*STATIC, DIRECT\n1., 1.\n\
+                 *DLOAD\n1, P{side}, 2.\n*END STEP\n",
+                nodes.join("\n")
+            );
+            let scene = Scene::from_text("job.inp", &deck, &[]).unwrap_or_else(|e| panic!("{e}"));
+            let places = walked(&scene);
+            let mut stepper = Stepper::new(scene.model.into());
+            let end = stepper.drive(Until::end(), |_| std::ops::ControlFlow::<()>::Continue(()));
+            assert!(matches!(end, RunEnd::Finished), "{kind}");
+            (places, stepper.state().u.clone())
+        };
+        let anticlockwise = solved(walks[0], last);
+        assert!(
+            anticlockwise.1.iter().any(|u| u.abs() > 1e-3),
+            "{kind}: nothing moved"
+        );
+        assert_eq!(solved(walks[1], 1), anticlockwise, "{kind}");
+    }
+}
+
 #[test]
 fn sides_are_walked_with_the_body_on_the_left_and_pieces_are_surfaces_of_their_own() {
     let scene = two("surfaces: [(id: \"s\", along: \"m.both\"), (id: \"r\", along: \"m.around\"), (id: \"b\", along: \"m.master\", reverse: true)]").unwrap();

@@ -22,6 +22,39 @@ fn nodes_have_the_names_that_the_format_promises() {
     }
 }
 
+/// Exported interface problems have the nodes of chains as single nodes, which keep their names.
+#[test]
+fn a_single_node_may_be_called_as_a_node_of_a_chain_is_and_dashes_for_dots_are_read() {
+    let nodes = |id: &str| format!("{LINE}, Node(id: {id:?}, at: (4, 1))");
+    let scene = small(
+        &nodes("p.12"),
+        SLAVE_P.replace("\"p\"", "\"p.12\"").as_str(),
+    )
+    .unwrap();
+    assert_eq!(scene.model.nodes[5].name, "p.12");
+    for name in ["p.12", "p-12"] {
+        assert_eq!(scene.node(name), Ok(5), "{name}");
+    }
+    assert_eq!(scene.node("b-2"), scene.node("b.2"));
+    assert!(scene.with("nodes.p.12.at.y", "2").is_ok());
+    let dashed = small(
+        &nodes("p-12"),
+        SLAVE_P.replace("\"p\"", "\"p.12\"").as_str(),
+    )
+    .unwrap();
+    assert_eq!(dashed.node("p.12"), Ok(5));
+    assert_eq!(dashed.model.nodes[5].name, "p-12");
+    for (id, told) in [
+        ("b.7", "would be a name of a node of"),
+        (".p", "made of letters"),
+        ("p.", "made of letters"),
+        ("p..1", "made of letters"),
+    ] {
+        let refused = small(&nodes(id), "").unwrap_err().to_string();
+        assert!(refused.contains(told), "{id}: {refused}");
+    }
+}
+
 #[test]
 fn a_block_and_its_edges_have_the_names_that_the_format_promises() {
     let scene = solid(BLOCK, ELASTIC, SOLID, "").unwrap();

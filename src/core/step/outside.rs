@@ -17,6 +17,7 @@ impl Outside {
             place,
             asked: Vec::new(),
             set: self.set.clone(),
+            largest_force: self.largest_force,
         }
     }
 }

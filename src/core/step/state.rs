@@ -101,6 +101,9 @@ pub struct Outside {
     pub asked: Vec<Intervention>,
     /// What its parameters were set to up to here, by name, where that is not what it began with.
     pub set: Vec<(String, Value)>,
+    /// The largest force of a contact on the way here. It is found again on that way, so it is not written.
+    #[serde(skip)]
+    pub largest_force: f64,
 }
 
 /// Whether the solver can go on.

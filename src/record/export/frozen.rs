@@ -532,21 +532,11 @@ fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
 
 /// Ids for the nodes: their names, with - for what no id may have in it, each once.
 fn ids(model: &Model, problem: &InterfaceProblem) -> Vec<String> {
-    let plain = |c: char| {
-        if c.is_alphanumeric() || c == '_' {
-            c
-        } else {
-            '-'
-        }
-    };
     let mut ids: Vec<String> = Vec::new();
     for node in &problem.nodes {
-        let name: String = names::slave(model, node.slave)
-            .chars()
-            .map(plain)
-            .take(limits::NAME - 6)
-            .collect();
-        let taken = |id: &str| id == "floor" || ids.iter().any(|other| other == id);
+        let name = limits::node_id_of(names::slave(model, node.slave), limits::NAME - 6);
+        let taken =
+            |id: &str| id.split('.').next() == Some("floor") || ids.iter().any(|other| other == id);
         let again = (2..).map(|k| format!("{name}-{k}"));
         let free = std::iter::once(name.clone())
             .chain(again)

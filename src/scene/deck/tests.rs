@@ -209,6 +209,63 @@ fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
     }
 }
 
+/// OP=NEW takes back what the steps before have prescribed: what it does not give again would be free, which is refused.
+#[test]
+fn a_new_boundary_that_gives_all_again_is_a_changed_one_and_one_that_frees_a_node_is_refused() {
+    let all = "GROUND, 1, 2\nTOP, 2, 2, -0.02\n";
+    let card = |op: &str, lines: &str| {
+        but(
+            BLOCK,
+            "*BOUNDARY, AMPLITUDE=FORTH\n",
+            &format!("*BOUNDARY{op}\n{lines}*BOUNDARY, AMPLITUDE=FORTH\n"),
+        )
+    };
+    let spec = |text: &str| {
+        format!(
+            "{:?} {:?}",
+            scene(text).spec.loads,
+            scene(text).spec.supports
+        )
+    };
+    assert_eq!(spec(&card(", OP=NEW", all)), spec(&card("", all)));
+    for (missing, freed) in [
+        ("GROUND, 1, 2\n", "node 101"),
+        ("TOP, 2, 2, -0.02\n", "y of node 4"),
+    ] {
+        let told = refusal(&card(", OP=NEW", &but(all, missing, "")));
+        assert!(
+            told.contains("OP=NEW sets the ") && told.contains(freed),
+            "{told}"
+        );
+    }
+}
+
+#[test]
+fn a_new_pressure_takes_back_those_of_the_steps_before() {
+    let first = but(
+        BLOCK,
+        "TOP, 2, 2, -0.02\n",
+        "TOP, 2, 2, -0.02\n*DLOAD\n1, P4, 7.\n",
+    );
+    let second = |op: &str| {
+        let text = but(
+            &first,
+            "*BOUNDARY, AMPLITUDE",
+            &format!("*DLOAD{op}\n2, P2, 5.\n*BOUNDARY, AMPLITUDE"),
+        );
+        let loads = scene(&text).spec.loads;
+        let scales = loads.iter().filter_map(|load| match load {
+            LoadSpec::Pressure { value, scale, .. } => {
+                Some((*value, scale.last().map(|last| last.1)))
+            }
+            _ => None,
+        });
+        scales.collect::<Vec<_>>()
+    };
+    assert_eq!(second(""), [(7.0, Some(1.0)), (5.0, Some(1.0))]);
+    assert_eq!(second(", OP=NEW"), [(7.0, Some(0.0)), (5.0, Some(1.0))]);
+}
+
 #[test]
 fn included_files_must_lie_beside_the_deck() {
     for outside in ["../mesh.inp", "/etc/passwd", "a/../../b"] {

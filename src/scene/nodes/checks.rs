@@ -11,15 +11,41 @@ pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
     if spec.nodes.is_empty() {
         return Err(Fault::new(at!["nodes"], "the scene has no nodes"));
     }
-    unique("nodes", spec.nodes.iter().map(Nodes::id))
+    for (k, nodes) in spec.nodes.iter().enumerate() {
+        let here = at!["nodes", k, "id"];
+        let Nodes::Node { id, .. } = nodes else {
+            limits::id(&here, nodes.id())?;
+            continue;
+        };
+        limits::node_id(&here, id)?;
+        // What stands before a dot could be a chain that has this node.
+        let mut dots = id.match_indices('.').map(|(at, _)| &id[..at]);
+        let is_chain = |chain: &&str| {
+            let named = spec.nodes.iter().find(|other| other.id() == *chain);
+            named.is_some_and(|other| !matches!(other, Nodes::Node { .. }))
+        };
+        if let Some(chain) = dots.find(is_chain) {
+            let message = format!("the id {id:?} would be a name of a node of {chain:?}");
+            return Err(Fault::new(here, message));
+        }
+    }
+    once("nodes", spec.nodes.iter().map(Nodes::id))
 }
 
 /// Refuses unusable ids and second ones of the entries of a list.
 pub(crate) fn unique<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
+    let ids: Vec<&str> = ids.collect();
+    for (k, id) in ids.iter().enumerate() {
+        limits::id(&at![list, k, "id"], id)?;
+    }
+    once(list, ids.into_iter())
+}
+
+/// Refuses second ones of the ids of a list.
+fn once<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
     let mut seen = HashMap::new();
     for (k, id) in ids.enumerate() {
         let here = at![list, k, "id"];
-        limits::id(&here, id)?;
         if let Some(first) = seen.insert(id, k) {
             return Err(Fault::new(
                 here,

@@ -182,6 +182,19 @@ impl Names {
     }
 
     fn split(&self, name: &str) -> Result<(&Entry, Selector), String> {
+        if self.entry_of(name).is_none() {
+            // Problems written by earlier versions call beam.5 beam-5.
+            let other = |from: char, to: &str| {
+                let at = name.rfind(from)?;
+                let other = format!("{}{to}{}", &name[..at], &name[at + 1..]);
+                self.entry_of(&other).is_some().then_some(other)
+            };
+            let known = other('-', ".").or_else(|| other('.', "-"));
+            return match known {
+                Some(known) => self.split(&known),
+                None => Err(self.unknown(name)),
+            };
+        }
         let Some((entry, selector)) = self.entry_of(name) else {
             return Err(self.unknown(name));
         };
@@ -214,6 +227,10 @@ impl Names {
             let rest = name.get(start..).unwrap_or_default();
             rest.find(['.', '@']).map_or(name.len(), |k| start + k)
         };
+        // A single node's id may have dots.
+        if let Some(&k) = self.index.get(name) {
+            return Some((&self.entries[k], ""));
+        }
         let first = cut_from(0);
         let second = cut_from(first + 1);
         let found = |cut: usize| {
