@@ -383,9 +383,10 @@ fn rule(name: &str) -> Option<Rule> {
 }
 
 /// What is compared, by its name in messages.
-pub(super) const TESTED: [(Tested, &str); 10] = [
+pub(super) const TESTED: [(Tested, &str); 11] = [
     (Tested::NormalForce, "normal-force"),
     (Tested::ShearForce, "shear-force"),
+    (Tested::LeastFriction, "least-friction"),
     (Tested::Slip, "slip"),
     (Tested::Room, "room"),
     (Tested::Gap, "gap"),

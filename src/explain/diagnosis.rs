@@ -235,7 +235,7 @@ fn push(
         Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
             i.f_n
         }
-        Tested::ShearForce | Tested::Drag => i.f_t,
+        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => i.f_t,
         Tested::Slip | Tested::Room => i.slip,
     };
     let most = all
@@ -254,6 +254,7 @@ fn fired(rule: Rule) -> Option<Tested> {
     match rule {
         Rule::FixedOpens | Rule::SlidingOpens | Rule::CornerOpens => Some(Tested::NormalForce),
         Rule::FixedSlides | Rule::CornerSlides => Some(Tested::ShearForce),
+        Rule::CornerReleases => Some(Tested::LeastFriction),
         Rule::FixedDragged => Some(Tested::Slip),
         Rule::SlidingSticks => Some(Tested::Slip),
         Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(Tested::Gap),
@@ -484,7 +485,7 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
         Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
             ("ΔF_n", from.f_n)
         }
-        Tested::ShearForce | Tested::Drag => ("ΔF_t", from.f_t),
+        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => ("ΔF_t", from.f_t),
         Tested::Slip | Tested::Room => ("Δslip", from.slip),
     };
     let whom = if from.from == push.node {

@@ -50,7 +50,9 @@ const NEWTON: [[&str; 2]; 3] = [
 pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
     match rule {
         Rule::NewtonOpens | Rule::NewtonSticks | Rule::NewtonSlides => [NEWTON; 3],
-        Rule::Pivots | Rule::Sweeps | Rule::Found | Rule::Theirs => [[["", ""]; 3]; 3],
+        Rule::CornerReleases | Rule::Pivots | Rule::Sweeps | Rule::Found | Rule::Theirs => {
+            [[["", ""]; 3]; 3]
+        }
         Rule::FreeEnters => {
             let mut table = TABLE_2;
             table[2] = [["", ""], ["g < 0", ""], ["g > 0", ""]];
@@ -74,6 +76,7 @@ pub fn rule(rule: Rule) -> &'static str {
         Rule::CornerStays => "corner-stays",
         Rule::CornerSlides => "corner-slides",
         Rule::CornerOpens => "corner-opens",
+        Rule::CornerReleases => "corner-releases",
         Rule::FreeSticks => "free-sticks",
         Rule::FreeSlides => "free-slides",
         Rule::FreeStays => "free-stays",

@@ -310,9 +310,11 @@ fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
 fn scale_of(tested: crate::contact::table2::Tested, stepper: &Stepper, event: &Event) -> f64 {
     use crate::contact::table2::Tested;
     match tested {
-        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
-            event.before.scale
-        }
+        Tested::NormalForce
+        | Tested::ShearForce
+        | Tested::LeastFriction
+        | Tested::Pressure
+        | Tested::Drag => event.before.scale,
         Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
         Tested::Cover | Tested::Change | Tested::Own => 1.0,
     }

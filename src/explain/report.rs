@@ -44,6 +44,9 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
             "Two sides → sliding along one: F_t is more than both together can carry."
         }
         Rule::CornerOpens => "Two sides → free: they would have to pull.",
+        Rule::CornerReleases => {
+            "Two sides → sliding along the one it came along: it slid into the corner, and F_t opposes that slip by less than friction must."
+        }
         Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
         Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
         Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
@@ -192,6 +195,10 @@ pub fn outcome(model: &Model, event: &Event) -> String {
                 "minors settled"
             } else {
                 "minors cut off unsettled"
+            };
+            let how = match released(model, event).as_str() {
+                "" => how.to_owned(),
+                names => format!("{how}; {names} slid into a corner and leaves it again"),
             };
             format!(
                 "{at}: {how}; residual {:.3e}, wanted {:.1e}",
@@ -348,6 +355,15 @@ fn changes(model: &Model, event: &Event) -> String {
             n - 2
         ),
     }
+}
+
+/// The nodes that leave a corner at the end of the major iteration.
+fn released(model: &Model, event: &Event) -> String {
+    let leaves = |s: &usize| event.nodes[*s].decision.rule == Rule::CornerReleases;
+    let names = (0..event.nodes.len())
+        .filter(leaves)
+        .map(|s| slave(model, s));
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// What the user did.

@@ -607,6 +607,10 @@ fn compared(decision: &Decision) -> String {
             Tested::NormalForce => ("F_n", "0".into()),
             Tested::ShearForce => ("|F_t|", format!("|T_max| = {}", four(test.bound))),
             Tested::Slip => ("slip·sgn T_max", "0".into()),
+            Tested::LeastFriction => (
+                "F_t against the slip",
+                format!("the least friction, {}", four(test.bound)),
+            ),
             Tested::Room => ("way", format!("the room, {}", four(test.bound))),
             Tested::Gap => ("g", "0".into()),
             Tested::Pressure => ("F_n − k·g", "0".into()),

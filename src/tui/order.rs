@@ -54,9 +54,11 @@ fn margin(slave: usize, view: &View) -> Option<f64> {
     let (event, record) = (view.event()?, view.record(slave)?);
     let tests = record.decision.tests.iter().flatten();
     let size = |tested| match tested {
-        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => {
-            event.before.scale
-        }
+        Tested::NormalForce
+        | Tested::ShearForce
+        | Tested::LeastFriction
+        | Tested::Pressure
+        | Tested::Drag => event.before.scale,
         Tested::Slip | Tested::Room | Tested::Gap => view.model.length,
         Tested::Cover | Tested::Change | Tested::Own => 1.0,
     };

@@ -5,10 +5,16 @@
 //! S* of the first state to that of the second. Forces are those on the slave node: F_n = F · n presses where it is positive,
 //! and friction opposes slip where F_t has the other sign.
 //!
-//! A node within the tolerance of a border between two elements may be on either of them, or on the vertex. What only a
-//! vertex explains is counted apart.
+//! A node within the tolerance of a border between two elements may be on either of them, or on the vertex; so may one that
+//! touches two surfaces. What only a vertex explains is counted apart.
+//!
+//! In a concave corner, with half the angle h between the normals and forces about their mean, a node that did not slip is
+//! held up to the angle φ + h. One that slid there has come with the friction of the side that it slid on, at φ − h against the
+//! slip, and what loads it further turns its force towards φ + h, at which it slides on along the other side. The cohesion c is
+//! that of one side, or of the other. On a convex vertex nothing stays that slid there, but at the limit of one of the sides.
 
 use super::chain::{At, Chain, Place, Point, Seen as Sight, cross, dot, norm};
+use std::f64::consts::FRAC_PI_2;
 use stickslip::model::{Friction, Model, Surface};
 
 /// Lengths that are no larger than this part of the scene's extent are nothing.
@@ -204,6 +210,19 @@ struct Found {
     unexplained: bool,
 }
 
+/// A node as it stands on one element.
+#[derive(Debug, Clone, Copy)]
+struct Stand {
+    surface: usize,
+    /// ξ of the end of its chain, if the node is there.
+    end: Option<f64>,
+    n: Point,
+    t: Point,
+    slip: f64,
+    /// Whether it touched in the state before, too.
+    touched: bool,
+}
+
 /// A surface, and a material point of it.
 type On = (usize, Place);
 
@@ -255,51 +274,88 @@ impl Sides<'_> {
         closest.and_then(|(_, gap)| gap)
     }
 
-    /// Everything that the node may be doing: it stands on an element, on either of two, or on a vertex.
+    /// Everything that the node may be doing: it stands on an element, on either of two, on a vertex, or between two surfaces.
     fn explanations(&self, node: &Node) -> Vec<Found> {
-        let mut all = Vec::new();
+        let near = LENGTH * self.scales.length;
+        let (mut stands, mut pairs) = (Vec::new(), Vec::new());
         for &surface in self.surfaces {
-            let touching = self.now[surface].sites(node.now);
-            for site in touching {
-                if site.distance > LENGTH * self.scales.length {
-                    continue;
-                }
+            let sites = self.now[surface].sites(node.now);
+            let touching = || sites.iter().filter(|site| site.distance <= near);
+            let end = touching().find_map(|site| match site.at {
+                At::End(place) => Some(place.xi),
+                _ => None,
+            });
+            for site in touching() {
+                let mut stand = |place: Place| {
+                    stands.push(self.stand((surface, place), end, node));
+                    stands.len() - 1
+                };
                 match site.at {
-                    At::Inside(place) | At::End(place) => all.push(self.on((surface, place), node)),
-                    At::Border(one, other) => {
-                        all.push(self.on((surface, one), node));
-                        all.push(self.on((surface, other), node));
-                        all.push(self.on_vertex(surface, one, other, node));
-                    }
+                    At::Inside(place) | At::End(place) => _ = stand(place),
+                    At::Border(one, other) => pairs.push((stand(one), stand(other))),
                 }
             }
         }
+        for one in 0..stands.len() {
+            for other in one + 1..stands.len() {
+                if let Some(first) = first_of(&stands[one], &stands[other]) {
+                    pairs.push(if first { (one, other) } else { (other, one) });
+                }
+            }
+        }
+        // What slid on one surface to where it meets another has slid as far where it stands on that one.
+        for &(first, next) in &pairs {
+            let [a, b] = [stands[first], stands[next]];
+            if a.touched && !b.touched && a.slip > near {
+                (stands[next].slip, stands[next].touched) = (a.slip, true);
+            } else if b.touched && !a.touched && b.slip < -near {
+                (stands[first].slip, stands[first].touched) = (b.slip, true);
+            }
+        }
+        let mut all: Vec<Found> = stands.iter().map(|stand| self.on(stand, node)).collect();
+        all.extend(pairs.into_iter().map(|(one, other)| {
+            let [one, other] = [&stands[one], &stands[other]];
+            if cross(one.t, other.t) > 0.0 {
+                self.on_ridge(one, other, node)
+            } else {
+                self.in_corner(one, other, node)
+            }
+        }));
         all
     }
 
-    /// The node stands on one element.
-    fn on(&self, (surface, place): On, node: &Node) -> Found {
+    /// The node as it stands on one element.
+    fn stand(&self, (surface, place): On, end: Option<f64>, node: &Node) -> Stand {
         let (n, t) = self.now[surface].frame(place);
-        let (f_n, f_t) = (dot(node.force, n), dot(node.force, t));
+        let (slip, touched) = self.slip((surface, place), node);
+        Stand {
+            surface,
+            end,
+            n,
+            t,
+            slip,
+            touched,
+        }
+    }
+
+    /// The node stands on one element.
+    fn on(&self, stand: &Stand, node: &Node) -> Found {
+        let (f_n, f_t) = (dot(node.force, stand.n), dot(node.force, stand.t));
         let limit = node.friction.coefficient() * f_n.max(0.0) + node.friction.cohesion;
         let Scales { length, force } = self.scales;
         let (tiny, short) = (FORCE * force, LENGTH * length);
-        let broken = |law: Law, amount: f64| Found {
-            worst: Some((law, amount)),
-            ..Found::default()
-        };
         if f_n < -tiny {
             return broken(Law::Tension, -f_n / force);
         }
         if f_t.abs() > limit + tiny {
             return broken(Law::Cone, (f_t.abs() - limit) / force);
         }
-        let (slip, touched) = self.slip((surface, place), node);
+        let slip = stand.slip;
         let lacks = limit + f_t * slip.signum();
         if slip.abs() <= short || lacks <= tiny {
             return Found::default();
         }
-        if !touched {
+        if !stand.touched {
             // What it stuck to may be where it is now; what it slid from, anywhere on the way.
             return Found {
                 unexplained: f_t * slip > 0.0 && f_t.abs() >= limit - tiny,
@@ -311,24 +367,53 @@ impl Sides<'_> {
         broken(law, (slip.abs() / length).min(lacks / force))
     }
 
-    /// The node stands where one element ends and another begins. What it slid over on its way there is not asked: a part of
-    /// the increment may have passed since.
-    fn on_vertex(&self, surface: usize, one: Place, other: Place, node: &Node) -> Found {
-        let chain = &self.now[surface];
-        let [(n1, t1), (n2, t2)] = [chain.frame(one), chain.frame(other)];
+    /// The node stands on a convex vertex, between two sides in the order of the walk.
+    fn on_ridge(&self, one: &Stand, other: &Stand, node: &Node) -> Found {
         let (mu, cohesion) = (node.friction.coefficient(), node.friction.cohesion);
-        let excess = if cross(t1, t2) > 0.0 {
-            let side = |n: Point, away: Point| {
-                let (f_n, f_t) = (dot(node.force, n), dot(node.force, away));
-                (-f_n).max(-f_t - mu * f_n - cohesion)
-            };
-            side(n1, [-t1[0], -t1[1]]).max(side(n2, t2))
-        } else {
-            outside([(n1, t1), (n2, t2)], mu, cohesion, node.force)
+        let side = |n: Point, away: Point| {
+            let (f_n, f_t) = (dot(node.force, n), dot(node.force, away));
+            (-f_n).max(-f_t - mu * f_n - cohesion)
         };
-        let excess = excess / self.scales.force;
+        let ahead = side(other.n, other.t);
+        let excess = side(one.n, one.t.map(|x| -x)).max(ahead) / self.scales.force;
+        let slip = one.slip.abs() / self.scales.length;
+        let worst = if excess > FORCE {
+            Some((Law::Cone, excess))
+        } else {
+            (one.touched && slip > LENGTH).then_some((Law::Stuck, slip))
+        };
         Found {
-            worst: (excess > FORCE).then_some((Law::Cone, excess)),
+            worst,
+            vertex: true,
+            unexplained: false,
+        }
+    }
+
+    /// The node is held in a concave corner, between two sides in the order of the walk.
+    fn in_corner(&self, one: &Stand, other: &Stand, node: &Node) -> Found {
+        let Scales { length, force } = self.scales;
+        let short = LENGTH * length;
+        let corner = Corner::new([one, other], &node.friction);
+        let held = corner.beyond_held(node.force) / force;
+        if held > FORCE {
+            return broken(Law::Cone, held);
+        }
+        let slip = if one.touched && one.slip > short {
+            one.slip
+        } else if other.touched && other.slip < -short {
+            other.slip
+        } else {
+            0.0
+        };
+        let against = -slip.signum();
+        let lacks = corner.beyond_slid(node.force, against) / force;
+        let law = if against * dot(node.force, corner.t) < 0.0 {
+            Law::Driven
+        } else {
+            Law::Stuck
+        };
+        Found {
+            worst: (slip != 0.0 && lacks > FORCE).then(|| (law, lacks.min(slip.abs() / length))),
             vertex: true,
             unexplained: false,
         }
@@ -354,30 +439,90 @@ impl Sides<'_> {
     }
 }
 
-/// By how much a force is outside of the sum of two friction cones, which are those of the sides of a concave corner.
-///
-/// The edges of a sum of convex sets are those of either, moved as far as the other reaches that way.
-fn outside(sides: [(Point, Point); 2], mu: f64, cohesion: f64, force: Point) -> f64 {
-    let scale = (1.0 + mu * mu).sqrt();
-    let at = |(n, t): (Point, Point), a: f64, b: f64| [a * n[0] + b * t[0], a * n[1] + b * t[1]];
-    let reach = |side: (Point, Point), d: Point| {
-        let grows = [-mu, mu].iter().any(|&b| dot(d, at(side, 1.0, b)) > 1e-12);
-        if grows {
-            f64::INFINITY
-        } else {
-            cohesion * dot(d, side.1).abs()
-        }
-    };
-    let mut worst = f64::NEG_INFINITY;
-    for side in sides {
-        let edges = [
-            at(side, -1.0, 0.0),
-            at(side, -mu / scale, 1.0 / scale),
-            at(side, -mu / scale, -1.0 / scale),
-        ];
-        for d in edges {
-            worst = worst.max(dot(force, d) - reach(sides[0], d) - reach(sides[1], d));
+/// Whether, of two sides on two surfaces, `one` comes first along the walk: where one surface ends and the other begins; or, where
+/// they cross, into their concave corner. `None` on one surface, and between two that face each other.
+fn first_of(one: &Stand, other: &Stand) -> Option<bool> {
+    let faces = norm([one.t[0] + other.t[0], one.t[1] + other.t[1]]) < 1e-6;
+    if one.surface == other.surface || faces {
+        return None;
+    }
+    Some(match (one.end, other.end) {
+        (Some(a), Some(b)) if a != b => a > b,
+        _ => cross(one.t, other.t) < 0.0,
+    })
+}
+
+fn broken(law: Law, amount: f64) -> Found {
+    Found {
+        worst: Some((law, amount)),
+        ..Found::default()
+    }
+}
+
+/// A concave corner, seen along the mean of its two normals.
+pub struct Corner {
+    n: Point,
+    t: Point,
+    /// Half the angle between the normals.
+    half: f64,
+    /// Friction angle.
+    phi: f64,
+    cohesion: f64,
+}
+
+impl Corner {
+    /// Between two sides in the order of the walk.
+    fn new([one, other]: [&Stand; 2], friction: &Friction) -> Corner {
+        let sum = [one.t[0] + other.t[0], one.t[1] + other.t[1]];
+        let t = sum.map(|x| x / norm(sum));
+        let half = 0.5 * cross(other.t, one.t).atan2(dot(one.t, other.t));
+        Corner::with(t, half, friction)
+    }
+
+    /// With the mean tangent, and half the angle between the normals (radians).
+    pub fn with(t: Point, half: f64, friction: &Friction) -> Corner {
+        Corner {
+            n: [t[1], -t[0]],
+            t,
+            half,
+            phi: friction.angle.to_radians(),
+            cohesion: friction.cohesion,
         }
     }
-    worst
+
+    /// By how much a force is beyond that to which a node is held that did not slip.
+    pub fn beyond_held(&self, force: Point) -> f64 {
+        let edge = self.phi + self.half;
+        // Between such sides a node is jammed whatever pulls at it.
+        if edge >= FRAC_PI_2 {
+            return 0.0;
+        }
+        let over = |against: f64| self.over(edge, against, force);
+        over(1.0).max(over(-1.0)).max(self.pull(force))
+    }
+
+    /// The same for a node that slid there, whose friction is to act in the direction `against` (±1, along t).
+    pub fn beyond_slid(&self, force: Point, against: f64) -> f64 {
+        let (far, near) = (self.phi + self.half, self.phi - self.half);
+        let mut worst = self.over(far, against, force);
+        worst = worst.max(-self.over(near, against, force));
+        if near > 0.0 {
+            // What pulls at the side that it slid on is held by the cohesion of both.
+            worst = worst.max(self.cohesion * self.half.cos() - against * dot(force, self.t));
+        }
+        if far < FRAC_PI_2 {
+            worst = worst.max(self.pull(force));
+        }
+        worst
+    }
+
+    /// How far a force lies beyond the edge at an angle from the mean normal.
+    fn over(&self, edge: f64, against: f64, force: Point) -> f64 {
+        let (f_n, f_t) = (dot(force, self.n), against * dot(force, self.t));
+        edge.cos() * f_t - edge.sin() * f_n - self.cohesion * self.phi.cos()
+    }
+
+    fn pull(&self, force: Point) -> f64 {
+        -dot(force, self.n) - self.cohesion * self.half.sin()
+    }
 }

@@ -27,6 +27,26 @@ impl Row {
         !self.forgiven && !self.trial.wrong.is_empty()
     }
 
+    /// Whether it came to its end, and not only through what it must not accept.
+    pub fn is_finished(&self) -> bool {
+        self.trial.end == End::Finished && !self.is_wrong()
+    }
+
+    /// What became of it, in a word.
+    fn end(&self) -> String {
+        match &self.trial.end {
+            End::Finished if self.is_wrong() => "wrong".into(),
+            End::Finished => "finished".into(),
+            End::Failed { kind, at_vertex } => {
+                let vertex = if *at_vertex { ",vertex" } else { "" };
+                format!("failed[{}{vertex}]", kind.replace(", ", "+"))
+            }
+            End::Endless => "endless".into(),
+            End::Panicked => "panicked".into(),
+            End::Refused => "refused".into(),
+        }
+    }
+
     /// A line: number, family, end, accepted increments, wrong ones, and by which law, at which slave node, when and how much
     /// the first was and the worst is.
     pub fn line(&self) -> String {
@@ -35,7 +55,7 @@ impl Row {
             "{} {} {} increments={} wrong={} vertices={} unexplained={}",
             self.number,
             self.family,
-            end(&trial.end),
+            self.end(),
             trial.increments,
             trial.wrong_increments(),
             trial.vertices,
@@ -68,19 +88,6 @@ impl Row {
             }
         }
         line
-    }
-}
-
-fn end(end: &End) -> String {
-    match end {
-        End::Finished => "finished".into(),
-        End::Failed { kind, at_vertex } => {
-            let vertex = if *at_vertex { ",vertex" } else { "" };
-            format!("failed[{}{vertex}]", kind.replace(", ", "+"))
-        }
-        End::Endless => "endless".into(),
-        End::Panicked => "panicked".into(),
-        End::Refused => "refused".into(),
     }
 }
 
@@ -139,10 +146,11 @@ pub fn tables(rows: &[Row]) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
-        "{:<12} {:>6} {:>9} {:>9} {:>7} {:>6} {:>8} {:>9} {:>7} {:>7} {:>9} {:>11}",
+        "{:<12} {:>6} {:>9} {:>6} {:>9} {:>7} {:>6} {:>8} {:>9} {:>7} {:>7} {:>9} {:>11}",
         "family",
         "scenes",
         "finished",
+        "%",
         "increm.",
         "wrong",
         "%",
@@ -176,8 +184,8 @@ pub fn tables(rows: &[Row]) -> String {
     }
     let _ = writeln!(text, "\nruns that did not finish");
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
-    for row in rows.iter().filter(|r| r.trial.end != End::Finished) {
-        *kinds.entry(end(&row.trial.end)).or_default() += 1;
+    for row in rows.iter().filter(|r| !r.is_finished()) {
+        *kinds.entry(row.end()).or_default() += 1;
     }
     let mut kinds: Vec<_> = kinds.into_iter().collect();
     kinds.sort_by_key(|k| std::cmp::Reverse(k.1));
@@ -191,7 +199,8 @@ fn family_line(name: &str, rows: &[&Row]) -> String {
     let count = |is: &dyn Fn(&Row) -> bool| rows.iter().filter(|r| is(r)).count();
     let sum = |of: &dyn Fn(&Row) -> usize| rows.iter().map(|r| of(r)).sum::<usize>();
     let share = |part: usize, of: usize| 100.0 * part as f64 / of.max(1) as f64;
-    let finished = count(&|r| r.trial.end == End::Finished);
+    let ended = count(&|r| r.trial.end == End::Finished);
+    let finished = count(&Row::is_finished);
     let vertex = count(&|r| matches!(&r.trial.end, End::Failed { at_vertex, .. } if *at_vertex));
     let increments = sum(&|r| r.trial.increments);
     let wrong = sum(&|r| {
@@ -201,15 +210,14 @@ fn family_line(name: &str, rows: &[&Row]) -> String {
             0
         }
     });
-    let wrong_and_done = count(&|r| r.is_wrong() && r.trial.end == End::Finished);
     format!(
-        "{name:<12} {:>6} {:>8.1}% {increments:>9} {wrong:>7} {:>6.2} {:>8} {:>9.2} {:>7} {vertex:>7} {:>9} {:>11}",
+        "{name:<12} {:>6} {finished:>9} {:>6.1} {increments:>9} {wrong:>7} {:>6.2} {:>8} {:>9.2} {:>7} {vertex:>7} {:>9} {:>11}",
         rows.len(),
         share(finished, rows.len()),
         share(wrong, increments),
         count(&|r| r.is_wrong()),
-        share(wrong_and_done, finished),
-        rows.len() - finished - vertex,
+        share(ended - finished, ended),
+        rows.len() - ended - vertex,
         sum(&|r| r.trial.vertices),
         sum(&|r| r.trial.unexplained),
     )

@@ -33,6 +33,8 @@ mod smooth;
 mod pairing;
 // Two sides of a surface at once: corners, vertices, steps.
 mod corners;
+// What a node bears that slid to where two sides meet, as the kink goes to zero.
+mod corner_law;
 // Elements of every kind in whole scenes: patches, closed forms, rates, locking, loads that follow.
 mod elements;
 // Stuck nodes stay where they stuck; without an anchor they drift in third order.

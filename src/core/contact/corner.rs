@@ -9,7 +9,20 @@
 //! |F_t| <= tan(φ + h) F_n + c cos φ / cos(φ + h)
 //! ```
 //!
-//! This holds for φ + h < 90 degrees, and only the side along which the node leaves the corner contributes cohesion. On a
+//! This holds for φ + h < 90 degrees. The two sides share the cohesion c: what they hold without pressure is the convex hull
+//! of their segments ±c t, not the sum, which would be 2 c at a straight border.
+//!
+//! A node that slid along side A into the corner since the last accepted state came with the friction of A at its limit. What
+//! follows turns the force towards the limit of the far side B only, as far as the node would slide out along B. With s = ±1
+//! the direction along t of the friction that opposes the slip:
+//!
+//! ```text
+//! tan(φ − h) F_n + c cos φ / cos(φ − h) <= s F_t <= tan(φ + h) F_n + c cos φ / cos(φ + h)
+//! ```
+//!
+//! and the force lies in the convex hull of what A and B give at that limit, so that s F_t >= c cos h where φ > h. With h → 0
+//! this is Coulomb's law of a sliding node, and the graph from slip to force has no gap: on A the force is at the lower bound,
+//! on B at the upper one. On a
 //! convex vertex the node stays as long as it slides down neither of the two sides, F·n_i >= 0 and F·t_i >= −(tan φ F·n_i +
 //! c) with t_i from the vertex along side i: the same with −h in place of h. Where φ <= h no force does that, and the node
 //! goes on to one of the sides.
@@ -57,37 +70,61 @@ pub fn widened(friction: &Friction, half: f64) -> Friction {
     }
 }
 
-/// By how much a force on the node exceeds what two sides can give together, as a sum of one force from each (force; zero
-/// or negative if they can give it). `mobilised` is, for each side whose friction is at its limit, the direction of that
-/// friction along the side's t (±1).
-pub fn beyond_sum(force: [f64; 2], sides: [&Side; 2], mobilised: [Option<f64>; 2]) -> f64 {
-    let mut rays = [[0.0; 2]; 4];
-    // Segments ±c t, or the point that is left of one.
-    let (mut segments, mut point) = ([[0.0; 2]; 2], [0.0; 2]);
-    for (k, side) in sides.iter().enumerate() {
-        let (n, t) = (side.normal, tangent(side.normal));
-        let edge = |sign: f64| add(n, t, sign * side.coefficient);
-        match mobilised[k] {
-            Some(sign) => {
-                (rays[2 * k], rays[2 * k + 1]) = (edge(sign), edge(sign));
-                point = add(point, t, sign * side.cohesion);
-            }
-            None => {
-                (rays[2 * k], rays[2 * k + 1]) = (edge(1.0), edge(-1.0));
-                segments[k] = [side.cohesion * t[0], side.cohesion * t[1]];
-            }
-        }
-    }
-    let lines = rays.iter().chain(&segments).filter_map(|&line| unit(line));
-    let normals = lines.flat_map(|line| [tangent(line), tangent(line).map(|x| -x)]);
-    let bounds = normals.filter(|&u| {
-        let mut all = rays.iter().filter_map(|&ray| unit(ray));
-        all.all(|ray| dot(u, ray) <= PERPENDICULAR)
-    });
-    let rest = add(force, point, -1.0);
+/// Least friction s F_t against the slip (force) of a node that slid into a corner of `half` (radians) and bears `f_n`: less
+/// lets it slide back along the side that it came along, with the `friction` of that side. F_n and F_t are those about the mean
+/// of the two normals.
+pub fn least_friction(friction: &Friction, half: f64, f_n: f64) -> f64 {
+    let slope = (friction.angle.to_radians() - half).tan();
+    let (sin, cos) = half.sin_cos();
+    let pressed = f_n - friction.cohesion * sin;
+    // Where the side is pulled, the hull of both cohesions ends.
+    let pressed = if slope > 0.0 {
+        pressed.max(0.0)
+    } else {
+        pressed
+    };
+    friction.cohesion * cos + slope * pressed
+}
+
+/// By how much a force on the node exceeds what two sides hold together (force; zero or negative if they hold it): the convex
+/// hull of what each of them can give alone.
+pub fn beyond_corner(force: [f64; 2], sides: [&Side; 2]) -> f64 {
+    beyond_hull(force, sides, &[1.0, -1.0])
+}
+
+/// The same for a node that slid along the first of these sides into the corner: each gives friction at its limit, in the
+/// direction `against` the slip (±1, along t), and that of the first is not less than its limit.
+pub fn beyond_slid(force: [f64; 2], [along, far]: [&Side; 2], against: f64) -> f64 {
+    let [f_n, f_t] = along.components(force);
+    let lacks = along.coefficient * f_n + along.cohesion - against * f_t;
+    let length = (1.0 + along.coefficient * along.coefficient).sqrt();
+    beyond_hull(force, [along, far], &[against]).max(lacks / length)
+}
+
+/// By how much a force is outside of the convex hull of the rays { F_n n + sign (tan φ F_n + c) t : F_n >= 0 } of both sides.
+fn beyond_hull(force: [f64; 2], sides: [&Side; 2], signs: &[f64]) -> f64 {
+    let edges = || {
+        sides
+            .iter()
+            .flat_map(|side| signs.iter().map(move |&sign| (side, sign)))
+    };
+    let rays = || {
+        edges().filter_map(|(side, sign)| {
+            let t = tangent(side.normal);
+            unit(add(side.normal, t, sign * side.coefficient))
+        })
+    };
+    let starts =
+        || edges().map(|(side, sign)| tangent(side.normal).map(|t| sign * side.cohesion * t));
+    // The hull of the starts has edges along the mean normal and across it. A pull shows against it alone where the rays are
+    // nearly parallel.
+    let mean = unit(add(sides[0].normal, sides[1].normal, 1.0));
+    let lines = rays().chain(mean).chain(mean.map(tangent));
+    let bounds = lines.flat_map(|line| [tangent(line), tangent(line).map(|x| -x)]);
+    let bounds = bounds.filter(|&u| rays().all(|ray| dot(u, ray) <= PERPENDICULAR));
     bounds.fold(f64::NEG_INFINITY, |worst, u| {
-        let reach: f64 = segments.iter().map(|&s| dot(u, s).abs()).sum();
-        worst.max(dot(u, rest) - reach)
+        let reach = starts().fold(f64::NEG_INFINITY, |most, start| most.max(dot(u, start)));
+        worst.max(dot(u, force) - reach)
     })
 }
 
@@ -252,10 +289,10 @@ mod tests {
             (39.0, false),
             (141.0, false),
         ] {
-            let beyond = beyond_sum(force(angle, 2.0), [&walls[0], &walls[1]], [None, None]);
+            let beyond = beyond_corner(force(angle, 2.0), [&walls[0], &walls[1]]);
             assert_eq!(beyond <= 0.0, inside, "{angle}: {beyond}");
         }
-        let off = beyond_sum(force(39.0, 2.0), [&walls[0], &walls[1]], [None, None]);
+        let off = beyond_corner(force(39.0, 2.0), [&walls[0], &walls[1]]);
         assert!((off - 2.0 * 1_f64.to_radians().sin()).abs() < 1e-12);
     }
 
@@ -318,19 +355,71 @@ mod tests {
     }
 
     #[test]
-    fn friction_that_is_mobilised_narrows_the_cone_of_its_side() {
-        let mu = 20_f64.to_radians().tan();
-        let walls = [side(60.0, mu, 0.0), side(120.0, mu, 0.0)];
-        // It slid down the wall before the corner along t (210 degrees): friction points to 30, and the force of that wall to
-        // 100 degrees; the corner gives nothing steeper on that side.
-        let beyond = |angle: f64, mobilised: f64| {
-            let both = [&walls[1], &walls[0]];
-            beyond_sum(force(angle, 1.0), both, [Some(mobilised), None])
-        };
-        assert!(beyond(41.0, -1.0) <= 0.0 && beyond(99.0, -1.0) <= 0.0);
-        assert!(beyond(39.0, -1.0) > 0.0 && beyond(101.0, -1.0) > 0.0);
-        // With friction the other way that wall gives 140 degrees.
-        assert!(beyond(101.0, 1.0) <= 0.0 && beyond(139.0, 1.0) <= 0.0 && beyond(141.0, 1.0) > 0.0);
+    fn after_a_slip_the_force_lies_between_the_opposing_edges_of_both_cones() {
+        for (phi, half) in [
+            (20.0, 30.0),
+            (30.0, 5.0),
+            (70.0, 40.0),
+            (31.0, 1e-6),
+            (0.0, 10.0),
+        ] {
+            let mu = f64::to_radians(phi).tan();
+            // Walked from right to left: before, then behind. It came along t, so that friction acts along −t.
+            let [before, behind] = [side(90.0 + half, mu, 0.0), side(90.0 - half, mu, 0.0)];
+            let step = 0.25 * half;
+            for (angle, inside) in [
+                (half - phi - step, true),
+                (-phi, true),
+                (-half - phi + step, true),
+                (half - phi + step, false),
+                (-half - phi - step, false),
+            ] {
+                let whole = force(90.0 + angle, 1.0);
+                let beyond = beyond_slid(whole, [&before, &behind], -1.0);
+                assert_eq!(beyond <= 1e-15, inside, "{phi} {half} {angle}: {beyond}");
+                let mirrored = beyond_slid([-whole[0], whole[1]], [&behind, &before], 1.0);
+                assert!((mirrored - beyond).abs() < 1e-15);
+            }
+            // A pull is one, however straight the two sides meet.
+            for angle in [270.0, 270.0 - phi] {
+                assert!(beyond_slid(force(angle, 1.0), [&before, &behind], -1.0) > 0.3);
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_slip_leaves_is_within_the_least_friction_and_the_bound_of_the_corner() {
+        for (angle, half, cohesion) in [
+            (20.0, 30.0, 0.4),
+            (30.0, 20.0, 0.4),
+            (30.0, 1e-6, 0.4),
+            (0.0, 5.0, 0.2),
+            (12.0, 12.0, 0.0),
+        ] {
+            let (friction, half) = (Friction { angle, cohesion }, f64::to_radians(half));
+            let [before, behind] = Side::pair([0.0, 1.0], half, &friction);
+            let wide = widened(&friction, half);
+            for f_n in [0.0, 0.05, 0.3, 2.0] {
+                let least = least_friction(&friction, half, f_n);
+                let most = wide.coefficient() * f_n + wide.cohesion;
+                // Walked from right to left: t of the mean normal is −x.
+                let beyond = |f_t: f64| beyond_slid([-f_t, f_n], [&before, &behind], -1.0);
+                let off = 1e-9;
+                for (f_t, inside) in [
+                    (least - off, false),
+                    (least + 0.5 * (most - least).min(off), true),
+                    (most - 0.5 * (most - least).min(off), true),
+                    (most + off, false),
+                ] {
+                    let beyond = beyond(-f_t);
+                    assert_eq!(
+                        beyond <= 1e-12,
+                        inside,
+                        "{friction:?} {half} {f_n} {f_t}: {beyond}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]
@@ -378,14 +467,22 @@ mod tests {
         assert_eq!(split(force(121.0, 1.0), [&sides[0], &sides[1]]), None);
     }
 
+    /// Sides that meet straight are one side, with its cohesion once.
     #[test]
-    fn cohesion_of_both_sides_carries_in_a_corner() {
-        let walls = [side(60.0, 0.0, 0.5), side(120.0, 0.0, 0.5)];
-        let pull = add([0.0, 0.0], tangent(walls[0].normal), 0.5);
-        let both = add(pull, tangent(walls[1].normal), 0.5);
-        assert!(beyond_sum(both, [&walls[0], &walls[1]], [None, None]) < 1e-15);
-        let more = add(both, [1.0, 0.0], -0.01);
-        assert!(beyond_sum(more, [&walls[0], &walls[1]], [None, None]) > 1e-3);
+    fn two_sides_share_their_cohesion_in_a_corner() {
+        for half in [0.0, 1e-9, 5.0, 30.0] {
+            let walls = [side(90.0 + half, 0.3, 0.5), side(90.0 - half, 0.3, 0.5)];
+            let edge = tangent(walls[0].normal).map(|t| 0.5 * t);
+            assert!(beyond_corner(edge, [&walls[0], &walls[1]]) < 1e-15);
+            let more = beyond_corner(add(edge, [1.0, 0.0], -0.01), [&walls[0], &walls[1]]);
+            assert!(more > 5e-3, "{half}: {more}");
+            // Where φ > h, also what slid in along the other side may be held by the cohesion of this one alone.
+            let slid = beyond_slid(edge, [&walls[1], &walls[0]], 1.0);
+            assert_eq!(slid < 1e-15, half < 10.0, "{half}: {slid}");
+        }
+        let smooth = [side(90.0 + 1e-8, 0.0, 0.0), side(90.0 - 1e-8, 0.0, 0.0)];
+        let pull = beyond_corner([0.0, -1.0], [&smooth[0], &smooth[1]]);
+        assert!((pull - 1.0).abs() < 1e-12, "{pull}");
     }
 
     #[test]

@@ -81,7 +81,8 @@ pub fn find(
                 dot(out, other) > PARALLEL * length(slopes[k])
             })
     };
-    let half = 0.5 * dot(normals[0], normals[1]).clamp(-1.0, 1.0).acos();
+    let turn = cross(normals[0], normals[1]).abs();
+    let half = 0.5 * turn.atan2(dot(normals[0], normals[1]));
     let is_corner = met && within(0) && within(1) && goes_on(0) && goes_on(1) && half > STRAIGHT;
     is_corner.then(|| Crossing {
         spots: [0, 1].map(|k| SurfacePoint {

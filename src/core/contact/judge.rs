@@ -11,17 +11,20 @@
 //! - where a bond gives way (compliances c_n, c_t), all this holds for a point further out, at x + c_n F_n n: g + c_n F_n = 0 where a
 //!   force acts; and of a net slip, c_t times the change of −F_t is elastic, which friction does not oppose;
 //! - a tied node stays where it is on its surface, whatever its forces are;
-//! - in a corner between two sides the force is a sum of what each of them can give ([`super::corner`]);
+//! - in a corner between two sides the force lies in the hull of what each of them can give; after a slip into it, of what each
+//!   gives with friction at its limit against that ([`super::corner`]);
 //! - every node is in balance, and so are the bodies as a whole with the reactions ([`super::balance`]).
 //!
 //! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, since very stiff
 //! bodies make forces less exact and positions not.
 
-use crate::contact::corner::{Side, beyond_sum, beyond_vertex, half_angle};
+use crate::contact::corner::Side;
 use crate::contact::element::{Element, closed};
 use crate::contact::feet::{self, Foot, direction, place};
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
+use crate::contact::side_laws::{Amounts, Past, Touching};
+use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
 use crate::model::Friction;
 use crate::model::{Contact, Surface};
@@ -126,44 +129,6 @@ impl Stood {
     /// Whether it is this state, seen as sharply.
     fn is(&self, at: &[[f64; 2]], near: f64, slaves: usize) -> bool {
         self.ends.len() == slaves && self.near == near && self.at == at
-    }
-}
-
-/// A side of the master on which a node stands.
-#[derive(Debug, Clone, Copy)]
-struct Touching {
-    spot: SurfacePoint,
-    side: Side,
-    tangent: [f64; 2],
-    past: Past,
-}
-
-/// Where a node was in the last accepted state, seen from where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Past {
-    /// It touched, and has gone this far along t since.
-    Touched(f64),
-    /// It was open, and its foot has gone this far.
-    Open(f64),
-    /// It was over another surface, or over none.
-    Elsewhere,
-}
-
-/// How far a force is from the laws on one side, or in a corner; all relative.
-#[derive(Debug, Clone, Copy, Default)]
-struct Amounts {
-    tension: f64,
-    cone: f64,
-    slip: f64,
-    touch: f64,
-    /// Whether it touched in the last accepted state, too.
-    touched: bool,
-    numbers: Numbers,
-}
-
-impl Amounts {
-    fn worst(&self) -> f64 {
-        self.tension.max(self.cone).max(self.slip).max(self.touch)
     }
 }
 
@@ -380,10 +345,18 @@ impl Judge {
                     (side.spot.surface, side.spot.element) == (spot.surface, spot.element)
                 };
                 if !self.sides.iter().any(known)
-                    && let Some(side) = touching(seen, slave, spot, &self.earlier, near)
+                    && let Some(side) = touching(seen, slave, point, spot, &self.earlier, near)
                 {
                     self.sides.push(side);
                 }
+            }
+        }
+        for k in 0..self.sides.len() {
+            let this = self.sides[k];
+            if let Past::Open(_) | Past::Elsewhere = this.past
+                && let Some(slip) = slip_into(seen.surfaces, &self.sides, &this, near)
+            {
+                self.sides[k].past = Past::Touched(slip);
             }
         }
     }
@@ -391,10 +364,13 @@ impl Judge {
     /// What is least against the laws: the force of one of the sides, or of two together.
     fn least(&self, seen: &Seen, slave: usize) -> Amounts {
         let force = seen.forces[slave];
-        let single = self.sides.iter().map(|side| on_side(seen, force, side));
+        let single = self
+            .sides
+            .iter()
+            .map(|side| on_side(&seen.scales, force, side));
         let pairs = self.sides.iter().enumerate().flat_map(|(k, one)| {
             let rest = self.sides[k + 1..].iter();
-            rest.map(move |other| in_corner(seen, force, one, other))
+            rest.map(move |other| in_corner(seen.surfaces, &seen.scales, force, [one, other]))
         });
         let best = single.chain(pairs).reduce(|best, next| {
             if next.worst() < best.worst() {
@@ -433,10 +409,22 @@ fn through(seen: &Seen, slave: usize, nearest: usize, near: f64, feet: &mut Vec<
     })
 }
 
+/// ξ of the end of a spot's chain at which a point is, to within `near`.
+fn end_at(seen: &Seen, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option<f64> {
+    let surface = &seen.surfaces[spot.surface];
+    let ends = [-1.0, 1.0].into_iter().filter(|_| !surface.endless);
+    ends.filter(|&xi| {
+        let at = place(Element::of(surface, spot.element), seen.now, xi);
+        size([point[0] - at[0], point[1] - at[1]]) <= near
+    })
+    .find(|&xi| beyond_border(seen.surfaces, SurfacePoint { xi, ..spot }).is_none())
+}
+
 /// A side at a spot. `None` where dx/dξ = 0.
 fn touching(
     seen: &Seen,
     slave: usize,
+    point: [f64; 2],
     spot: SurfacePoint,
     earlier: &[Foot],
     near: f64,
@@ -468,131 +456,8 @@ fn touching(
             cohesion: friction.cohesion,
         },
         tangent,
+        end: end_at(seen, point, spot, near),
         past,
-    })
-}
-
-/// The laws on one side alone.
-fn on_side(seen: &Seen, force: [f64; 2], at: &Touching) -> Amounts {
-    let scales = &seen.scales;
-    let numbers = numbers(force, at);
-    let Numbers {
-        f_n,
-        f_t,
-        limit,
-        slip,
-        ..
-    } = numbers;
-    let against = f_t * slip.signum();
-    let slips = slip.abs() > scales.near();
-    let at_limit = limit - f_t.abs() <= scales.forces * scales.force;
-    Amounts {
-        tension: (-f_n).max(0.0) / scales.force,
-        cone: (f_t.abs() - limit).max(0.0) / scales.force,
-        slip: match at.past {
-            Past::Touched(_) if slips => (limit + against).max(0.0) / scales.force,
-            _ => 0.0,
-        },
-        touch: match at.past {
-            Past::Open(_) if slips && at_limit => against.max(0.0) / scales.force,
-            _ => 0.0,
-        },
-        touched: matches!(at.past, Past::Touched(_)),
-        numbers,
-    }
-}
-
-fn numbers(force: [f64; 2], at: &Touching) -> Numbers {
-    let f_n = dot(force, at.side.normal);
-    Numbers {
-        gap: 0.0,
-        f_n,
-        f_t: dot(force, at.tangent),
-        limit: at.side.coefficient * f_n.max(0.0) + at.side.cohesion,
-        slip: match at.past {
-            Past::Touched(slip) | Past::Open(slip) => slip,
-            Past::Elsewhere => 0.0,
-        },
-    }
-}
-
-/// The laws where two sides meet: of a concave corner, or of a convex vertex.
-fn in_corner(seen: &Seen, force: [f64; 2], one: &Touching, other: &Touching) -> Amounts {
-    let scales = &seen.scales;
-    let follows = beyond_border(
-        seen.surfaces,
-        SurfacePoint {
-            xi: 1.0,
-            ..one.spot
-        },
-    );
-    let is = |spot: &SurfacePoint| {
-        (spot.surface, spot.element) == (other.spot.surface, other.spot.element)
-    };
-    let (before, behind) = match follows {
-        Some(next) if is(&next) => (one, other),
-        _ => (other, one),
-    };
-    let meet = (before.spot.surface == behind.spot.surface).then_some(());
-    let numbers = numbers(force, before);
-    let slip = match before.past {
-        Past::Touched(slip) if slip.abs() > scales.near() => slip,
-        _ => 0.0,
-    };
-    if meet.is_some() && half_angle(before.tangent, behind.tangent) <= 0.0 {
-        let beyond = beyond_vertex(force, &before.side, &behind.side);
-        return Amounts {
-            tension: beyond.tension / scales.force,
-            cone: beyond.cone / scales.force,
-            // Where it slid onto the vertex, neither side's friction is at its limit.
-            slip: if slip == 0.0 { 0.0 } else { f64::INFINITY },
-            touch: 0.0,
-            touched: false,
-            numbers,
-        };
-    }
-    let mobilised = match slip {
-        // Only sides of one chain tell along which of them the node came.
-        _ if meet.is_none() => [None, None],
-        slip if slip > 0.0 => [Some(-1.0), None],
-        slip if slip < 0.0 => [None, Some(1.0)],
-        _ => [None, None],
-    };
-    let beyond = |mobilised| {
-        let sides = [&before.side, &behind.side];
-        beyond_sum(force, sides, mobilised).max(0.0) / scales.force
-    };
-    let cone = beyond([None, None]);
-    Amounts {
-        tension: 0.0,
-        cone,
-        slip: beyond(mobilised) - cone,
-        touch: 0.0,
-        touched: false,
-        numbers,
-    }
-}
-
-/// The same point as an end (xi = ±1) of the neighbouring element. `None` at an end of the chain.
-fn beyond_border(surfaces: &[Surface], border: SurfacePoint) -> Option<SurfacePoint> {
-    let surface = &surfaces[border.surface];
-    let count = surface.elements.len();
-    let ahead = border.xi > 0.0;
-    let step = if ahead { 1 } else { count - 1 };
-    let element = (border.element + step) % count;
-    let (own, other) = (
-        Element::of(surface, border.element),
-        Element::of(surface, element),
-    );
-    let (mine, its) = if ahead {
-        (own.last(), other.first())
-    } else {
-        (own.first(), other.last())
-    };
-    (element != border.element && mine == its).then_some(SurfacePoint {
-        element,
-        xi: -border.xi,
-        ..border
     })
 }
 

@@ -10,6 +10,7 @@ pub mod judge;
 pub mod laws;
 pub mod projection;
 pub mod record;
+mod side_laws;
 pub mod smooth;
 pub mod state;
 pub mod stick_point;

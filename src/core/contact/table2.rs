@@ -29,6 +29,9 @@ pub enum Rule {
     CornerSlides,
     /// Where two sides meet: F_n <= 0.
     CornerOpens,
+    /// Where two sides meet, at the end of a major iteration: the node slid there, and F_t opposes that slip by less than the
+    /// least friction ([`crate::contact::corner::least_friction`]); it slides on the side along which it came.
+    CornerReleases,
     /// g < 0, rough interface.
     FreeSticks,
     /// g < 0, smooth interface: straight to sliding.
@@ -70,6 +73,8 @@ pub enum Tested {
     ShearForce,
     /// sgn(T_max) · slip against 0 (length).
     Slip,
+    /// F_t, positive against the slip, against the least friction after it in a corner (force).
+    LeastFriction,
     /// Way along the surface against the room that is left to the end of the side (length).
     Room,
     /// g against 0 (length).
@@ -298,6 +303,25 @@ impl Decision {
             other => other,
         };
         Decision { rule, ..self }
+    }
+
+    /// What takes the place of the decision on a node that stays in a corner, into which it slid, and leaves it at the end of the
+    /// major iteration: friction `opposing` the slip (force) is below the `least`.
+    pub fn released(self, opposing: f64, least: f64) -> Self {
+        let test = Test {
+            tested: Tested::LeastFriction,
+            value: opposing,
+            bound: least,
+            margin: opposing - least,
+            tie: false,
+        };
+        Decision {
+            next: Mode::Sliding,
+            wanted: Mode::Sliding,
+            rule: Rule::CornerReleases,
+            tests: [self.tests[0], Some(test)],
+            ..self
+        }
     }
 
     /// The decision on a node that goes `way` (length, not negative) along its side, of which `room` is left.

@@ -3,7 +3,9 @@
 //! Where two elements meet in a concave corner, a node that comes to rest there may go back and forth between them for
 //! ever. A sliding node that comes back to the element that it had left, and any node that is past both sides, is therefore
 //! held in the corner: it is fixed there, about the mean of the two normals, with the friction that both sides give together ([`crate::contact::corner`]). At the
-//! friction bound it slides out along one side, as out of any fixed mode.
+//! friction bound it slides out along one side, as out of any fixed mode. A node that slid into the corner since the last
+//! accepted state, and whose friction opposes that slip by less than it must ([`corner::least_friction`]), goes back to
+//! sliding on the side that it came along.
 //!
 //! A node that comes down on a convex vertex sticks there about the mean normal, too, with the narrower friction that keeps it
 //! from sliding down either side. Where friction is too weak for that, it stands on one of the sides: a vertex that
@@ -31,6 +33,8 @@ pub struct Ground<'a> {
     pub surfaces: &'a [Surface],
     /// Current positions of all nodes (length).
     pub positions: &'a [[f64; 2]],
+    /// Forces closer than this are the same.
+    pub same_force: f64,
 }
 
 impl Ground<'_> {
@@ -44,10 +48,13 @@ impl Ground<'_> {
         }
         let (previous, force, was_held) = (node.spot, node.force(), node.corner.is_some());
         let (second, mean) = (node.second, node.normal);
+        let mut is_released = false;
         if !slave.bond.is_hard() {
             // What gives way is not held in corners: each law is that of one side.
             node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
-        } else if !self.stays_in_corner(node, friction) {
+        } else if self.stays_in_corner(node, friction) {
+            is_released = self.release(node, friction);
+        } else {
             (node.corner, node.second) = (None, None);
             node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
             if !was_held {
@@ -75,6 +82,9 @@ impl Ground<'_> {
                 if was_held != node.corner.is_some() {
                     let ([c, s], [f_x, f_y]) = (node.normal, force);
                     (node.f_n, node.f_t) = (c * f_x + s * f_y, c * f_y - s * f_x);
+                }
+                if is_released {
+                    node.t_max = t_max(friction, node.f_n, node.sign);
                 }
             }
             None => {
@@ -128,6 +138,48 @@ impl Ground<'_> {
         };
         node.corner = half.filter(still);
         node.corner.is_some()
+    }
+
+    /// Lets a node that slid into a concave corner slide on the side along which it came, if friction opposes that slip by less
+    /// than the least that the corner asks for. Returns whether it does.
+    fn release(&self, node: &mut ContactState, friction: &Friction) -> bool {
+        let Some(half) = node.corner.filter(|half| *half > 0.0 && !node.is_forced()) else {
+            return false;
+        };
+        let Some((side, sign)) = self.came_along(node) else {
+            return false;
+        };
+        let least = corner::least_friction(friction, half, node.f_n);
+        if sign * node.f_t >= least - self.same_force {
+            return false;
+        }
+        (node.spot, node.mode, node.sign) = (Some(side), Mode::Sliding, sign);
+        (node.corner, node.second, node.left) = (None, None, None);
+        true
+    }
+
+    /// The place on the side along which a node slid into the corner that holds it, from its anchor, and the direction (±1, along
+    /// t) of the friction that opposes that slip. `None` where it stood there before.
+    fn came_along(&self, node: &ContactState) -> Option<(SurfacePoint, f64)> {
+        let (anchor, spot) = (node.anchor?, node.spot?);
+        let both = [Some(spot), node.second];
+        let on = both
+            .into_iter()
+            .flatten()
+            .find(|on| on.surface == anchor.surface)?;
+        let surface = &self.surfaces[on.surface];
+        let way = distance(surface, anchor, on, self.positions);
+        if way.abs() <= AT_VERTEX * element_size(surface, on, self.positions) {
+            return None;
+        }
+        let Some(second) = node.second else {
+            return Some((beside(surface, on, way < 0.0), -way.signum()));
+        };
+        let other = if on == second { spot } else { second };
+        let [own, across] =
+            [on, other].map(|at| normal(&self.surfaces[at.surface], at, self.positions));
+        // The side that comes first along the walk leads along t into a concave corner, the other one against t.
+        (corner::cross(own, across) * way < 0.0).then_some((on, -way.signum()))
     }
 
     /// Notes that a node has come to another element, and holds it in the corner where it slides back to the one that it
@@ -302,7 +354,10 @@ impl Ground<'_> {
             }
             return;
         };
-        let anchor = node.anchor.filter(|a| a.surface == spot.surface);
+        // In a corner between two surfaces it may have slid along either.
+        let second = node.second.map(|second| second.surface);
+        let here = |a: &SurfacePoint| a.surface == spot.surface || Some(a.surface) == second;
+        let anchor = node.anchor.filter(here);
         if !free && anchor.is_none() {
             node.anchor_at(Some(spot), give);
         }

@@ -1,11 +1,14 @@
 //! The end of a major iteration: displacements and forces are taken back, the geometry is renewed, and the question is
 //! whether the increment is done.
 
+use crate::contact::corner::least_friction;
+use crate::contact::record::ContactRecord;
+use crate::contact::state::ContactState;
 use crate::interface::method::Searched;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
-use crate::model::{AtLimit, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
+use crate::model::{AtLimit, Friction, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
 use crate::step::event::{Failure, Outcome};
 use crate::step::hold::PATIENCE;
 use crate::step::major_history::{MajorCycle, Scales};
@@ -47,6 +50,12 @@ impl Stepper {
         if let Some(again) = held.and_then(|held| self.hold_back(held)) {
             return again;
         }
+        let state = &self.state;
+        note_releases(
+            &mut self.event.nodes,
+            &state.nodes,
+            &state.controls.friction,
+        );
         self.state.unsettled += u32::from(!settled);
         let Some(after) = norms else {
             return self.fail(Failure::Singular(Singular::Unexplained));
@@ -259,5 +268,16 @@ impl Stepper {
         let (u, friction) = (&self.state.u, &self.state.controls.friction);
         self.source.follow(u, &mut self.state.nodes, friction, anew);
         self.linearised = false;
+    }
+}
+
+/// Marks the records of contacts that stayed in a corner in the last minor iteration, and slide from here on.
+fn note_releases(records: &mut [ContactRecord], nodes: &[ContactState], friction: &[Friction]) {
+    for (record, (node, friction)) in records.iter_mut().zip(nodes.iter().zip(friction)) {
+        let stayed = record.decision.next == Mode::Fixed && node.mode == Mode::Sliding;
+        if let Some(half) = record.corner.filter(|_| stayed) {
+            let least = least_friction(friction, half, record.f_n);
+            record.decision = record.decision.released(node.sign * record.f_t, least);
+        }
     }
 }

@@ -148,7 +148,7 @@ fn pushes(
         Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
             push.influence.f_n
         }
-        Tested::ShearForce | Tested::Drag => push.influence.f_t,
+        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => push.influence.f_t,
         Tested::Slip | Tested::Room => push.influence.slip,
     };
     let symbol = match tested {
@@ -156,7 +156,7 @@ fn pushes(
         Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
             "ΔF_n"
         }
-        Tested::ShearForce | Tested::Drag => "ΔF_t",
+        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => "ΔF_t",
         Tested::Slip | Tested::Room => "Δslip",
     };
     let mut found: Vec<&Push> = found.iter().filter(|push| of(push) != 0.0).collect();
@@ -435,6 +435,7 @@ fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
         Rule::OffSurface
         | Rule::Held
         | Rule::Waits
+        | Rule::CornerReleases
         | Rule::Pivots
         | Rule::Sweeps
         | Rule::Found
@@ -550,6 +551,7 @@ fn inequality(test: &Test, view: &View) -> String {
         Tested::NormalForce => ("F_n", "0".into()),
         Tested::ShearForce => ("|F_t|", format!("|T_max| {}", long(test.bound))),
         Tested::Slip => ("slip·sgn T_max", "0".into()),
+        Tested::LeastFriction => ("F_t against slip", format!("least {}", long(test.bound))),
         Tested::Room => ("way", format!("room {}", long(test.bound))),
         Tested::Gap => ("g", "0".into()),
         Tested::Pressure => ("F_n − k·g", "0".into()),
@@ -566,7 +568,11 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
     let long = |value| view.long(value);
     let round_off = view.round_off();
     let unit = match test.tested {
-        Tested::NormalForce | Tested::ShearForce | Tested::Pressure | Tested::Drag => "force",
+        Tested::NormalForce
+        | Tested::ShearForce
+        | Tested::LeastFriction
+        | Tested::Pressure
+        | Tested::Drag => "force",
         Tested::Slip | Tested::Room | Tested::Gap => "length",
         Tested::Cover | Tested::Change => "(relative)",
         Tested::Own => "",

@@ -1,0 +1,207 @@
+//! The laws on the sides on which a node stands, for the judge: one side alone, or two where they meet.
+
+use crate::contact::corner::{Side, beyond_corner, beyond_slid, beyond_vertex};
+use crate::contact::corner::{cross, dot, half_angle};
+use crate::contact::element::Element;
+use crate::contact::laws::{Numbers, Scales};
+use crate::contact::projection::SurfacePoint;
+use crate::model::Surface;
+
+/// A side of the master on which a node stands.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touching {
+    pub spot: SurfacePoint,
+    pub side: Side,
+    pub tangent: [f64; 2],
+    /// ξ of the end of the chain at which the node is, if any.
+    pub end: Option<f64>,
+    pub past: Past,
+}
+
+/// Where a node was in the last accepted state, seen from where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Past {
+    /// It touched, and has gone this far along t since.
+    Touched(f64),
+    /// It was open, and its foot has gone this far.
+    Open(f64),
+    /// It was over another surface, or over none.
+    Elsewhere,
+}
+
+/// How far a force is from the laws on one side, or in a corner; all relative.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Amounts {
+    pub tension: f64,
+    pub cone: f64,
+    pub slip: f64,
+    pub touch: f64,
+    /// Whether it touched in the last accepted state, too.
+    pub touched: bool,
+    pub numbers: Numbers,
+}
+
+impl Amounts {
+    pub fn worst(&self) -> f64 {
+        self.tension.max(self.cone).max(self.slip).max(self.touch)
+    }
+}
+
+/// The slip along another surface of a node that came along that one to where it meets `this` side. `None` where it did not.
+pub(super) fn slip_into(
+    surfaces: &[Surface],
+    sides: &[Touching],
+    this: &Touching,
+    near: f64,
+) -> Option<f64> {
+    let mut others = sides
+        .iter()
+        .filter(|other| other.spot.surface != this.spot.surface);
+    others.find_map(|other| match other.past {
+        Past::Touched(slip) if comes_first(surfaces, other, this) => (slip > near).then_some(slip),
+        Past::Touched(slip) => (slip < -near).then_some(slip),
+        _ => None,
+    })
+}
+
+/// The laws on one side alone.
+pub(super) fn on_side(scales: &Scales, force: [f64; 2], at: &Touching) -> Amounts {
+    let numbers = numbers(force, at);
+    let Numbers {
+        f_n,
+        f_t,
+        limit,
+        slip,
+        ..
+    } = numbers;
+    let against = f_t * slip.signum();
+    let slips = slip.abs() > scales.near();
+    let at_limit = limit - f_t.abs() <= scales.forces * scales.force;
+    Amounts {
+        tension: (-f_n).max(0.0) / scales.force,
+        cone: (f_t.abs() - limit).max(0.0) / scales.force,
+        slip: match at.past {
+            Past::Touched(_) if slips => (limit + against).max(0.0) / scales.force,
+            _ => 0.0,
+        },
+        touch: match at.past {
+            Past::Open(_) if slips && at_limit => against.max(0.0) / scales.force,
+            _ => 0.0,
+        },
+        touched: matches!(at.past, Past::Touched(_)),
+        numbers,
+    }
+}
+
+fn numbers(force: [f64; 2], at: &Touching) -> Numbers {
+    let f_n = dot(force, at.side.normal);
+    Numbers {
+        gap: 0.0,
+        f_n,
+        f_t: dot(force, at.tangent),
+        limit: at.side.coefficient * f_n.max(0.0) + at.side.cohesion,
+        slip: match at.past {
+            Past::Touched(slip) | Past::Open(slip) => slip,
+            Past::Elsewhere => 0.0,
+        },
+    }
+}
+
+/// The laws where two sides meet: of a concave corner, or of a convex vertex.
+pub(super) fn in_corner(
+    surfaces: &[Surface],
+    scales: &Scales,
+    force: [f64; 2],
+    [one, other]: [&Touching; 2],
+) -> Amounts {
+    let (before, behind) = if comes_first(surfaces, one, other) {
+        (one, other)
+    } else {
+        (other, one)
+    };
+    let near = scales.near();
+    if half_angle(before.tangent, behind.tangent) <= 0.0 {
+        let beyond = beyond_vertex(force, &before.side, &behind.side);
+        let numbers = numbers(force, before);
+        let slid = matches!(before.past, Past::Touched(slip) if slip.abs() > near);
+        return Amounts {
+            tension: beyond.tension / scales.force,
+            cone: beyond.cone / scales.force,
+            // Where it slid onto the vertex, neither side's friction is at its limit.
+            slip: if slid { f64::INFINITY } else { 0.0 },
+            touch: 0.0,
+            touched: false,
+            numbers,
+        };
+    }
+    let [before_side, behind_side] = [&before.side, &behind.side];
+    let cone = beyond_corner(force, [before_side, behind_side]).max(0.0);
+    // Friction opposes the slip.
+    let (came, slid) = match came_along(before, behind, near) {
+        Some(1.0) => (before, beyond_slid(force, [before_side, behind_side], -1.0)),
+        Some(_) => (behind, beyond_slid(force, [behind_side, before_side], 1.0)),
+        None => (before, 0.0),
+    };
+    Amounts {
+        tension: 0.0,
+        cone: cone / scales.force,
+        slip: (slid - cone).max(0.0) / scales.force,
+        touch: 0.0,
+        touched: false,
+        numbers: numbers(force, came),
+    }
+}
+
+/// Whether, of two sides that meet, `one` comes first along the walk. Where they are on two surfaces: where one ends and the other
+/// begins; or, where they cross, into their concave corner.
+fn comes_first(surfaces: &[Surface], one: &Touching, other: &Touching) -> bool {
+    if one.spot.surface != other.spot.surface {
+        return match (one.end, other.end) {
+            (Some(a), Some(b)) if a != b => a > b,
+            _ => cross(one.tangent, other.tangent) < 0.0,
+        };
+    }
+    let end = SurfacePoint {
+        xi: 1.0,
+        ..one.spot
+    };
+    let follows = beyond_border(surfaces, end);
+    follows.is_some_and(|next| next.element == other.spot.element)
+}
+
+/// The direction (±1, along t) in which a node has slid to where two sides meet: along t on the side that comes first, or
+/// against t on the other one. `None` where it did not slide there since the last accepted state.
+fn came_along(before: &Touching, behind: &Touching, near: f64) -> Option<f64> {
+    let slid =
+        |side: &Touching, sign: f64| matches!(side.past, Past::Touched(slip) if sign * slip > near);
+    if slid(before, 1.0) {
+        Some(1.0)
+    } else if slid(behind, -1.0) {
+        Some(-1.0)
+    } else {
+        None
+    }
+}
+
+/// The same point as an end (xi = ±1) of the neighbouring element. `None` at an end of the chain.
+pub(super) fn beyond_border(surfaces: &[Surface], border: SurfacePoint) -> Option<SurfacePoint> {
+    let surface = &surfaces[border.surface];
+    let count = surface.elements.len();
+    let ahead = border.xi > 0.0;
+    let step = if ahead { 1 } else { count - 1 };
+    let element = (border.element + step) % count;
+    let (own, other) = (
+        Element::of(surface, border.element),
+        Element::of(surface, element),
+    );
+    let (mine, its) = if ahead {
+        (own.last(), other.first())
+    } else {
+        (own.first(), other.last())
+    };
+    (element != border.element && mine == its).then_some(SurfacePoint {
+        element,
+        xi: -border.xi,
+        ..border
+    })
+}
