@@ -7,7 +7,9 @@ use crate::contact::laws::Law;
 use crate::explain::audit::{Audit, Found};
 use crate::explain::judged;
 use crate::explain::names;
+use crate::explain::number::four;
 use crate::explain::report;
+use crate::explain::strain;
 use crate::model::Model;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
@@ -108,6 +110,16 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
             Some(found) => row(model, law, found),
         };
     }
+    if let Some(found) = &audit.stretch {
+        text += &format!(
+            "  {:<11}  {:<8}             increment {} (load {}), {}\n",
+            "stretch",
+            four(found.point.stretch),
+            found.increment,
+            found.load_factor,
+            strain::element(model, &found.point)
+        );
+    }
     if *marked > 0 {
         text += "  marked, not counted:\n";
         for found in audit.worst_marked.iter().flatten() {
@@ -130,6 +142,14 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
             "  also: {}: {}\n",
             place(found),
             judged::finding(model, &found.finding)
+        );
+    }
+    if let Some(found) = &audit.outside {
+        text += &format!(
+            "  also: from increment {} (load {}) on: {}\n",
+            found.increment,
+            found.load_factor,
+            strain::left(model, &found.point)
         );
     }
     if let Some(inside) = &audit.inside {

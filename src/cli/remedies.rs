@@ -23,7 +23,8 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
-    let mut stepper = solver(Arc::new(scene.model));
+    let spec = Some(&scene.spec);
+    let mut stepper = solver(Arc::new(scene.model.clone()));
     let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
     let RunEnd::Failed(failure) = end else {
         tell("it converges; there is nothing to remedy");
@@ -42,8 +43,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         tell(&format!("  {line}"));
     }
     let mut trials = Vec::new();
-    for remedy in remedies::all(&mut stepper, &state, &|| false) {
-        trials.extend(remedies::attempt(&mut stepper, &state, &remedy, &|| false));
+    for remedy in remedies::all(&mut stepper, &state, spec, &|| false) {
+        trials.extend(remedies::attempt(&mut stepper, &state, spec, &remedy, &|| false));
     }
     remedies::sort(&mut trials);
     let rows = trials.iter().map(|trial| {

@@ -7,7 +7,8 @@
 //! is 1 where it ends on another branch of equilibrium than it began on, else 0. With `history.jumps: dynamic` there are three
 //! columns more, of the damped motion that a jump is: `let_go`, the load factor of the last equilibrium, `steps`, and
 //! `dissipated`, the work that its viscosity took. With `--stability` that of the accepted state comes last
-//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`. With `history.control: arc` the last
+//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`. In a scene with solids the very last column is
+//! `worst_stretch`, the smallest principal stretch at their integration points ([`crate::fem::deformation`]). With `history.control: arc` the last
 //! monitor is `arc`, the way along the path of equilibrium.
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
@@ -22,6 +23,7 @@
 
 use crate::contact::record::ContactRecord;
 use crate::explain::names;
+use crate::fem::deformation::deformation;
 use crate::linear::stability::Stability;
 use crate::model::{Control, Friction, Jumps, Model, Monitor, ToldKind, Watched};
 use crate::step::event::{Event, Failure, Outcome};
@@ -43,17 +45,21 @@ pub fn csv_header(model: &Model, stability: bool) -> String {
     if stability {
         line.push_str(",stability");
     }
+    if model.has_solids() {
+        line.push_str(",worst_stretch");
+    }
     line.push('\n');
     line
 }
 
-/// The row of an increment that was just accepted.
+/// The row of an increment that was just accepted; `u` are its displacements.
 pub fn csv_row(
     model: &Model,
     event: &Event,
     minors: u64,
     monitors: &[f64],
     stability: Option<Stability>,
+    u: &[f64],
 ) -> String {
     let at = event.position;
     let mut line = format!(
@@ -84,6 +90,9 @@ pub fn csv_row(
     }
     if let Some(stability) = stability {
         let _ = write!(line, ",{stability}");
+    }
+    if let Some(deformation) = deformation(model, u) {
+        let _ = write!(line, ",{:?}", deformation.smallest.stretch);
     }
     line.push('\n');
     line

@@ -6,7 +6,7 @@
 
 use super::remedy::{Kind, Remedy};
 use crate::linear::singular::Singular;
-use crate::model::{AtCycle, BoundUpdate, Geometry, Jumps, Mode, Model, ResidualMethod, Strategy};
+use crate::model::{AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, Strategy};
 use crate::step::event::Failure;
 use crate::step::state::State;
 
@@ -47,10 +47,16 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
             | Failure::Unmoved
     );
     let finer = refines(failure).then_some(Advice::Finer);
-    match scene_first {
+    let law = Remedy::law(model, state, failure);
+    let gaps = [InitialGaps::Ramp, InitialGaps::Adjust]
+        .into_iter()
+        .filter_map(|gaps| Remedy::of(Kind::Gaps(gaps), model, state));
+    let rest: Vec<Advice> = match scene_first {
         true => by_hand.chain(remedies).collect(),
         false => remedies.chain(finer).chain(by_hand).collect(),
-    }
+    };
+    let first = law.into_iter().chain(gaps).map(Advice::Remedy);
+    first.chain(rest).collect()
 }
 
 /// The first of it, for a message of one line.
@@ -146,6 +152,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
         | Failure::Unmoved
         | Failure::Restless { .. }
         | Failure::RoundOff { .. }
+        | Failure::Inverted(_)
         | Failure::OverConstrained { .. } => {}
         // Its method is not ours, and what it takes it says itself.
         Failure::Reported { .. } => {}
@@ -194,6 +201,7 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             "another increment, where the solver takes one",
         ],
         Failure::Refused(_) => &["a smaller history.least"],
+        Failure::Inverted(_) => &["a load or prescribed motion that presses the element less"],
         Failure::Restless { .. } => &["a support, or a surface, that stops what moves"],
         Failure::Leapt { .. } => match model.jumps {
             Jumps::Stop => &[

@@ -7,6 +7,7 @@
 use crate::contact::element::Element;
 use crate::contact::feet::place;
 use crate::contact::laws::{Finding, Law};
+use crate::fem::deformation::{PointDeformation, deformation};
 use crate::model::Model;
 use crate::model::{BodyKind, Solid};
 use crate::step::event::Outcome;
@@ -41,6 +42,17 @@ pub struct Inside {
     pub depth: f64,
 }
 
+/// A point of a solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretched {
+    /// From 1.
+    pub increment: u32,
+    /// λ at the end of the increment.
+    pub load_factor: f64,
+    /// How far it is deformed.
+    pub point: PointDeformation,
+}
+
 /// A history judged.
 #[derive(Debug, Clone, Default)]
 pub struct Audit {
@@ -57,6 +69,10 @@ pub struct Audit {
     pub work: Option<Found>,
     /// The deepest place of a master's node in a slave's body.
     pub inside: Option<Inside>,
+    /// The smallest principal stretch of the solids.
+    pub stretch: Option<Stretched>,
+    /// The first point outside the range of its law.
+    pub outside: Option<Stretched>,
 }
 
 impl Audit {
@@ -84,6 +100,18 @@ impl Audit {
             keep_worse(worst, finding.map(found));
         }
         keep_worse(&mut self.work, verdict.work.map(found));
+        if let Some(found) = deformation(stepper.model(), &state.start.u) {
+            let stretched = |point: PointDeformation| Stretched {
+                increment: event.position.increment,
+                load_factor: event.load_factor,
+                point,
+            };
+            let least = self.stretch.map_or(f64::INFINITY, |known| known.point.stretch);
+            if found.smallest.stretch < least {
+                self.stretch = Some(stretched(found.smallest));
+            }
+            self.outside = self.outside.or(found.outside.map(stretched));
+        }
         let deepest = deepest(stepper.model(), &state.start.u);
         if let Some((node, body, depth)) = deepest
             && self

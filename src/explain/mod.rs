@@ -8,8 +8,9 @@
 //!   it is indefinite by rounding, and what comes of it without.
 //! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
 //! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
-//!   where nothing holds it; [`reach`]: up to which load there is an answer; [`finer`]: whether a finer mesh has one.
-//! - [`touch`]: how much it matters where nodes are held that touch.
+//!   where nothing holds it; [`strain`]: solids outside the range of their law; [`reach`]: up to which load there is an answer;
+//!   [`finer`]: whether a finer mesh has one; [`restart`]: a changed scene, tried from its start.
+//! - [`touch`]: how far the forces depend on where touching nodes are held.
 //! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
 //! - [`attached`]: the same of a solver of another's, from the problem that it offers; [`pushes_told`]: who pushed whom there.
 //! - [`past`]: a run of another program that is over: what cycled in it, and who chattered.
@@ -40,6 +41,8 @@ pub mod reach;
 pub mod remedies;
 pub mod remedy;
 pub mod report;
+pub mod restart;
 pub mod round_off;
 pub mod smaller;
+pub mod strain;
 pub mod touch;

@@ -17,8 +17,9 @@ use super::names;
 use super::number::{four, plain};
 use super::reach::reach;
 use super::remedies::{self, Trial, TrialEnd, attempt};
-use super::remedy::{How, Remedy};
+use super::remedy::{How, Kind, Remedy};
 use super::report::{describe_failure, sound};
+use super::strain::MaterialCause;
 use crate::format::spec::Spec;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
@@ -60,8 +61,12 @@ pub fn page(
     let remedies = page.remedies(stepper.model(), state, failure);
     for remedy in &remedies {
         tell(&page.shown(&format!("trying {} …", remedy.label)));
-        let trial = attempt(stepper, state, remedy, stop)?;
-        page.trials.push((remedy.clone(), trial));
+        match attempt(stepper, state, spec, remedy, stop) {
+            Some(trial) => page.trials.push((remedy.clone(), trial)),
+            // A scene that cannot be changed so is no trial.
+            None if matches!(remedy.how, How::Restart(_)) && !stop() => {}
+            None => return None,
+        }
     }
     if page.refines
         && let Some(spec) = spec
@@ -126,6 +131,9 @@ impl Page {
             finer: None,
             found: Examination::default(),
         };
+        let cause = MaterialCause::of(stepper.model(), state, failure);
+        let cause = cause.map(|cause| cause.words(stepper.model()));
+        page.facts.extend(cause);
         page.explain(stepper, state, failure, stop);
         let model = stepper.model();
         for piece in advice(model, state, failure) {
@@ -243,6 +251,8 @@ impl Page {
                 "why: past the load at which equilibrium ends nothing stops what moves".into(),
             ),
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
+            // The element stands before all else.
+            Failure::Inverted(_) => {}
         }
     }
 
@@ -287,14 +297,18 @@ impl Page {
 
     /// What is tried for the page: the consistent states, and what helps against a failure of the kind.
     fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
+        let law = Remedy::law(model, state, failure);
         let mut all = Remedy::answers(model, &self.found);
         all.truncate(2);
+        if let Some(law) = law {
+            all.insert(0, law);
+        }
         all.extend(
             advice(model, state, failure)
                 .into_iter()
                 .filter_map(|piece| match piece {
-                    Advice::Remedy(remedy) => Some(remedy),
-                    Advice::ByHand(_) | Advice::Finer => None,
+                    Advice::Remedy(remedy) if remedy.kind != Kind::Law => Some(remedy),
+                    Advice::Remedy(_) | Advice::ByHand(_) | Advice::Finer => None,
                 }),
         );
         all.truncate(MOST_TRIED);
@@ -308,6 +322,7 @@ impl Page {
             failure,
             Failure::Singular(Singular::Rigid { .. })
                 | Failure::RoundOff { .. }
+                | Failure::Inverted(_)
                 | Failure::OverConstrained { .. }
         );
         can && !helped
@@ -357,24 +372,27 @@ impl Page {
                 remedy.how,
                 How::Set(..) | How::Increment(_) | How::IncrementOn(..)
             );
-            (!lasts, trial.factorizations, trial.minors)
+            // Only a change of the scene removes a cause that lies in the scene.
+            let scene = matches!(remedy.how, How::Restart(_));
+            (!scene, !lasts, trial.factorizations, trial.minors)
         });
         let helped = trials.iter().map(|(remedy, trial)| {
             let minors = match trial.minors {
                 1 => "1 minor iteration".to_owned(),
                 n => format!("{n} minor iterations"),
             };
-            format!(
-                "{}: {} (tried: it converges, {minors})",
-                remedy.label,
-                remedy.how.typed(),
-            )
+            let from = match remedy.how {
+                How::Restart(_) => "tried from the start: it gets past this load",
+                _ => "tried: it converges",
+            };
+            format!("{}: {} ({from}, {minors})", remedy.label, remedy.how.typed())
         });
-        let finer = self.finer.iter().filter(|finer| finer.failure.is_none());
+        let finer = self.finer.iter();
+        let finer = finer.filter(|finer| finer.run.failure.is_none());
         let finer = finer.map(|finer| {
             format!(
                 "a finer mesh: --set refine={} (tried from the start: it gets past this load, {} minor iterations)",
-                finer.refine, finer.minors
+                finer.refine, finer.run.minors
             )
         });
         let untried = (self.refines && self.finer.is_none()).then(|| FINER.to_owned());
@@ -395,9 +413,9 @@ impl Page {
             })
             .collect();
         vain.extend(self.finer.iter().filter_map(|finer| {
-            let end = match finer.failure.as_ref()? {
+            let end = match finer.run.failure.as_ref()? {
                 Some(failure) => remedies::end_words(&TrialEnd::Failed(failure.clone())),
-                None => format!("{} minors", finer.minors),
+                None => format!("{} minors", finer.run.minors),
             };
             Some(format!("a finer mesh, refine={} ({end})", finer.refine))
         }));

@@ -6,8 +6,11 @@
 use super::advice::{Advice, advice};
 use super::examination::{Examination, frozen};
 use super::remedy::{How, Kind, Remedy};
+use super::restart;
 use crate::contact::laws::Law;
 use crate::contact::record::{ContactRecord, Forced};
+use crate::format::paths;
+use crate::format::spec::Spec;
 use crate::interface::method::NotFound;
 use crate::linear::norms::Norms;
 use crate::model::{Mode, Model, Strategy};
@@ -128,7 +131,12 @@ const KINDS: [Kind; 19] = [
 
 /// All that there is to try from a state: the consistent states, what helps against its failure, and everything else. The
 /// count of states ends where `stop` says so.
-pub fn all(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Vec<Remedy> {
+pub fn all(
+    stepper: &mut Stepper,
+    state: &State,
+    spec: Option<&Spec>,
+    stop: &dyn Fn() -> bool,
+) -> Vec<Remedy> {
     if state.status == Status::Finished {
         return Vec::new();
     }
@@ -147,7 +155,9 @@ pub fn all(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Vec
     }
     if let Status::Failed(failure) = &state.status {
         for advice in advice(model, state, failure) {
-            if let Advice::Remedy(remedy) = advice {
+            if let Advice::Remedy(remedy) = advice
+                && (spec.is_some() || !matches!(remedy.how, How::Restart(_)))
+            {
                 add(remedy);
             }
         }
@@ -208,13 +218,49 @@ pub fn attempt_attached(
     Some(trial)
 }
 
-/// Tries a remedy; `None` if it was stopped.
+/// Tries a remedy that changes the scene from its start; `None` if it was stopped, or there is no such scene.
+fn attempt_restart(
+    spec: &Spec,
+    state: &State,
+    (remedy, changes): (&Remedy, &[(String, &str)]),
+    stop: &dyn Fn() -> bool,
+) -> Option<Trial> {
+    let mut spec = spec.clone();
+    for (path, value) in changes {
+        paths::set(&mut spec, path, value).ok()?;
+    }
+    let mut stepper = restart::changed(spec, state)?;
+    let began = Instant::now();
+    let run = restart::restart(&mut stepper, state, stop)?;
+    let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
+    let mut trial = Trial::new(remedy);
+    trial.seconds = began.elapsed().as_secs_f64();
+    (trial.minors, trial.majors) = (count(run.minors), count(run.majors));
+    trial.factorizations = count(run.factorizations);
+    trial.end = match run.failure {
+        None => TrialEnd::Converged,
+        Some(None) => TrialEnd::Budget,
+        Some(Some(failure)) => TrialEnd::Failed(failure),
+    };
+    if trial.end == TrialEnd::Converged
+        && let Outcome::Increment { after, .. } = &stepper.event().outcome
+    {
+        trial.left = Some(left(&stepper, stepper.event(), after));
+    }
+    Some(trial)
+}
+
+/// Tries a remedy; `None` if it was stopped. `spec` is the scene as its author wrote it, for remedies that change it.
 pub fn attempt(
     stepper: &mut Stepper,
     state: &State,
+    spec: Option<&Spec>,
     remedy: &Remedy,
     stop: &dyn Fn() -> bool,
 ) -> Option<Trial> {
+    if let How::Restart(changes) = &remedy.how {
+        return attempt_restart(spec?, state, (remedy, changes), stop);
+    }
     stepper.restore(state);
     let target = (state.start.leg, state.load_factor);
     let mut trial = Trial::new(remedy);
@@ -379,6 +425,7 @@ pub fn end_words(end: &TrialEnd) -> String {
         TrialEnd::Failed(Failure::Diverged { .. }) => "diverged".into(),
         TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
         TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
+        TrialEnd::Failed(Failure::Inverted(_)) => "inverted".into(),
         TrialEnd::Failed(Failure::Restless { .. }) => "no rest".into(),
         TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
         TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),

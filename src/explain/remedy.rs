@@ -7,11 +7,14 @@
 use super::examination::Examination;
 use super::names;
 use super::number;
+use super::strain::{self, MaterialCause};
 use crate::contact::projection::projection_at;
 use crate::model::{
-    AtCycle, BoundUpdate, Geometry, Mode, Model, ResidualMethod, Settings, Sticking, Strategy,
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Mode, Model, ResidualMethod, Settings, Sticking, Strategy,
     Touch,
 };
+use crate::scene::gaps::{StartGaps, start_gaps};
+use crate::step::event::Failure;
 use crate::step::intervene::{Intervention, Start};
 use crate::step::state::State;
 
@@ -47,6 +50,10 @@ pub enum Kind {
     Start(Mode),
     /// A node keeps its mode while it misses its condition by little.
     Hysteresis,
+    /// What becomes of nodes that start inside their surface; tried from the start of the scene.
+    Gaps(InitialGaps),
+    /// A material law that holds where a solid is outside the range of its own; tried from the start of the scene.
+    Law,
 }
 
 /// What is typed to take a remedy.
@@ -60,6 +67,8 @@ pub enum How {
     IncrementOn(usize, f64),
     /// A consistent state of the census, by its number from 0.
     StartFrom(usize),
+    /// Values of the scene, by path, with which it starts again.
+    Restart(Vec<(String, &'static str)>),
     /// Only from the list of remedies.
     Listed,
 }
@@ -73,6 +82,10 @@ impl How {
                 format!(":increment {}", number::plain(*size))
             }
             How::StartFrom(answer) => format!(":start-from {}", answer + 1),
+            How::Restart(changes) => {
+                let option = |(path, value): &(String, &str)| format!("--set {path}={value}");
+                changes.iter().map(option).collect::<Vec<_>>().join(" ")
+            }
             How::Listed => "r, then Enter on it".into(),
         }
     }
@@ -86,6 +99,10 @@ impl How {
                 "history.increments[{leg}]={}",
                 number::plain(*size)
             )),
+            How::Restart(changes) => {
+                let option = |(path, value): &(String, &str)| format!("{path}={value}");
+                Some(changes.iter().map(option).collect::<Vec<_>>().join(" "))
+            }
             How::StartFrom(_) | How::Listed => None,
         }
     }
@@ -133,7 +150,21 @@ impl Remedy {
             first,
         };
         match kind {
-            Kind::Answer(_) => None,
+            Kind::Answer(_) | Kind::Law => None,
+            Kind::Gaps(gaps) => {
+                // Later increments do not begin with the overlap any more.
+                let starts = state.next.increment == 1;
+                let keeps = model.settings.initial_gaps == InitialGaps::Keep;
+                let inside = |found: &StartGaps| !found.inside.is_empty();
+                let (word, label) = match gaps {
+                    InitialGaps::Adjust => ("adjust", "start gaps: adjust"),
+                    InitialGaps::Ramp => ("ramp", "start gaps: ramp"),
+                    InitialGaps::Keep => return None,
+                };
+                let how = How::Restart(vec![("settings.initial_gaps".to_owned(), word)]);
+                (starts && keeps && start_gaps(model).iter().any(inside))
+                    .then(|| remedy(label, how, Vec::new()))
+            }
             Kind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
             Kind::Part(part) => {
                 let size = state.controls.increment * part;
@@ -162,6 +193,29 @@ impl Remedy {
                     .then(|| remedy(label, How::Set(path, value), first))
             }
         }
+    }
+
+    /// Another law for the materials that are outside the range of their own in a failed state. `None` where none is.
+    pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<Remedy> {
+        let cause = MaterialCause::of(model, state, failure)?;
+        let points = cause.before.into_iter().chain([cause.point]);
+        let mut changes: Vec<(String, &'static str)> = Vec::new();
+        for change in points.filter_map(|point| strain::other_law(model, &point)) {
+            if !changes.contains(&change) {
+                changes.push(change);
+            }
+        }
+        let told = |(path, value): &(String, &str)| {
+            let (_, field) = path.rsplit_once('.').unwrap_or(("", path));
+            format!("{field}: {value}")
+        };
+        let label = changes.first().map(told)?;
+        Some(Remedy {
+            kind: Kind::Law,
+            label,
+            how: How::Restart(changes),
+            first: Vec::new(),
+        })
     }
 
     /// Starting from each consistent state that was found.
@@ -254,7 +308,12 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
             let value = settings.majors.to_string();
             ("ten times the majors", "settings.majors", value)
         }
-        Kind::Answer(_) | Kind::Part(_) | Kind::Start(_) | Kind::Hysteresis => return None,
+        Kind::Answer(_)
+        | Kind::Part(_)
+        | Kind::Start(_)
+        | Kind::Hysteresis
+        | Kind::Gaps(_)
+        | Kind::Law => return None,
     };
     Some(told)
 }

@@ -5,6 +5,7 @@ use crate::explain::advice;
 use crate::explain::judged;
 use crate::explain::names::{mode, position, slave};
 use crate::explain::number::{four, six};
+use crate::explain::strain;
 use crate::interface::census;
 use crate::interface::method::NotFound;
 use crate::interface::minor_history::Cycle;
@@ -290,6 +291,7 @@ pub fn reservations(model: &Model, event: &Event) -> String {
         marked,
         jumped,
         motion,
+        left_range,
         ..
     } = &event.outcome
     else {
@@ -325,6 +327,9 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     }
     if let Some(found) = marked {
         text += &format!(", although {}", judged::finding(model, found));
+    }
+    if let Some(point) = left_range {
+        text += &format!(", although {}", strain::left(model, point));
     }
     if *jumped {
         text += ", jumped: another branch from here";
@@ -498,6 +503,9 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         }
         Failure::Refused(found) => {
             format!("refused, since {}", judged::finding(model, found))
+        }
+        Failure::Inverted(point) => {
+            format!("refused, since {}", strain::inverted(model, point))
         }
         Failure::Restless { steps } => {
             format!("a damped motion of {steps} steps came to no rest")

@@ -305,6 +305,9 @@ fn status(status: &Status) -> String {
         Failure::Diverged { .. } => return "diverged".into(),
         Failure::Leapt { .. } => return "jumps".into(),
         Failure::RoundOff { .. } => return "round-off".into(),
+        Failure::Inverted(point) => {
+            return format!("element {} of body {} inverted", point.element, point.body);
+        }
         Failure::OverConstrained { slave, .. } => Failure::OverConstrained { slave, gap: 0.0 },
         Failure::Singular(Singular::Rigid { motions }) => {
             let motion = |m: &Motion| match m {

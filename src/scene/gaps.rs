@@ -5,6 +5,7 @@ use crate::contact::element::Element;
 use crate::contact::projection::{SurfacePoint, project, projection_at};
 use crate::fem::lagrange;
 use crate::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
+use crate::scene::pressed;
 use std::collections::HashSet;
 
 /// Gaps below this part of the scene's length are none.
@@ -120,6 +121,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
     }
     all.extend(unheld(model));
     all.extend(overlapping(model));
+    all.extend(pressed::warnings(model));
     all
 }
 

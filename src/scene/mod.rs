@@ -6,6 +6,7 @@
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
 //! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
 //! - [`attached`]: scenes that attached solvers told.
+//! - `pressed`: prescribed motions that press a solid out of the range of its law.
 //! - [`problems`]: interface problems that other programs have written.
 //! - [`builtin`]: the scenes that the program carries.
 
@@ -28,6 +29,7 @@ mod compile;
 mod curves;
 mod deck;
 mod geometry;
+mod pressed;
 
 use crate::format::kind;
 use crate::format::paths::Override;

@@ -440,7 +440,10 @@ impl Helper {
                 news.send(Told::Exported(told)).ok()
             }
             Ask::Remedies(state) if self.spec.is_none() => self.try_attached(&state, news, stop),
-            Ask::Remedies(state) => try_remedies(self.solver().0, &state, news, stop),
+            Ask::Remedies(state) => {
+                let (stepper, spec) = self.solver();
+                try_remedies(stepper, spec, &state, news, stop)
+            }
         }
     }
 
@@ -637,12 +640,13 @@ fn examine(
 /// Tries every way out of a state.
 fn try_remedies(
     stepper: &mut Stepper,
+    spec: Option<&Spec>,
     state: &State,
     news: &Sender<Told>,
     stop: &AtomicBool,
 ) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
-    let all = remedies::all(stepper, state, &stopped);
+    let all = remedies::all(stepper, state, spec, &stopped);
     let mut ended = false;
     for remedy in &all {
         let now = remedy.label.clone();
@@ -651,8 +655,9 @@ fn try_remedies(
             now,
         })
         .ok()?;
-        match remedies::attempt(stepper, state, remedy, &stopped) {
+        match remedies::attempt(stepper, state, spec, remedy, &stopped) {
             Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
+            None if !stopped() => {}
             None => {
                 ended = true;
                 break;

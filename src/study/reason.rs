@@ -35,6 +35,8 @@ pub enum Reason {
     Jump,
     /// The way along the path doubles back, or cannot be measured.
     OffPath,
+    /// An element of a solid is inverted.
+    Inverted,
 }
 
 impl Reason {
@@ -53,6 +55,7 @@ impl Reason {
             Reason::Restless => 'w',
             Reason::Jump => 'b',
             Reason::OffPath => 'p',
+            Reason::Inverted => 'i',
         }
     }
 }
@@ -73,6 +76,7 @@ impl From<&Failure> for Reason {
             Failure::Leapt { .. } => Reason::Jump,
             Failure::DoubledBack | Failure::Unmoved => Reason::OffPath,
             Failure::RoundOff { .. } => Reason::RoundOff,
+            Failure::Inverted(_) => Reason::Inverted,
             Failure::LadderEnded { .. } | Failure::NotFound(_) | Failure::Reported { .. } => {
                 Reason::NotFound
             }
@@ -97,6 +101,7 @@ impl fmt::Display for Reason {
             Reason::Restless => "restless",
             Reason::Jump => "jump",
             Reason::OffPath => "off-path",
+            Reason::Inverted => "inverted",
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Panes and what is selected in them: the focus, steps inside a pane, and what is taken from a list.
 
 use crate::action::{Page, Step};
+use crate::explain::remedy::How;
 use crate::history::verdicts::{self, summaries};
 use crate::record::command::{Command, To};
 use crate::tui::app::{App, Effect, PAGE};
@@ -148,6 +149,11 @@ impl App {
                     branch + 1
                 ),
             });
+            return None;
+        }
+        if let How::Restart(_) = &trial.how {
+            let option = trial.how.typed();
+            self.complain(format!("{} changes the scene: start again with {option}", trial.label));
             return None;
         }
         self.zoomed = false;

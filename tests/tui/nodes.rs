@@ -177,6 +177,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
         marked: None,
         jumped: false,
         motion: None,
+        left_range: None,
         last: false,
     };
     assert_eq!(say(done(0)), " ✓ load 0.3 accepted");

@@ -116,6 +116,73 @@ fn states_by<const N: usize, const P: usize>(
     }
 }
 
+/// ∂u/∂X at a point of an element.
+#[derive(Debug, Clone, Copy)]
+pub struct Sampled {
+    /// H, in the plane.
+    pub h: [[f64; 2]; 2],
+    /// u_x over X, the strain around the axis of a body of revolution; 0 on the axis.
+    pub hoop: f64,
+    /// Current place.
+    pub at: [f64; 2],
+    /// Whether it is an integration point; else it is a node.
+    pub integrates: bool,
+}
+
+/// Calls a function with ∂u/∂X at the points of a kind's rule and then at its nodes. `node` gives place and displacement of
+/// node k out of `count`; an element whose count is not that of its kind has no points. A node at which the undeformed
+/// element has no area is left out, as at the corner of a quadrilateral that is drawn as a triangle.
+pub fn sample(
+    kind: ElementKind,
+    count: usize,
+    node: impl Fn(usize) -> ([f64; 2], [f64; 2]),
+    see: impl FnMut(Sampled),
+) {
+    match kind {
+        ElementKind::Triangle3 => {
+            sample_by(&*triangle3::RULE, &triangle3::NODES, count, node, see)
+        }
+        ElementKind::Triangle6 => {
+            sample_by(&*triangle6::RULE, &triangle6::NODES, count, node, see)
+        }
+        ElementKind::Quad4 => sample_by(&*quad4::RULE, &quad4::NODES, count, node, see),
+        ElementKind::Quad8 => sample_by(&*quad8::RULE, &quad8::NODES, count, node, see),
+        ElementKind::Quad8Reduced => sample_by(&*quad8::REDUCED, &quad8::NODES, count, node, see),
+        ElementKind::Quad9 => sample_by(&*quad9::RULE, &quad9::NODES, count, node, see),
+    }
+}
+
+fn sample_by<const N: usize>(
+    rule: &[Parent<N>],
+    nodes: &[Parent<N>; N],
+    count: usize,
+    node: impl Fn(usize) -> ([f64; 2], [f64; 2]),
+    mut see: impl FnMut(Sampled),
+) {
+    if count != N {
+        return;
+    }
+    let (mut at, mut u) = ([[0.0; 2]; N], [[0.0; 2]; N]);
+    for (k, (at, u)) in at.iter_mut().zip(&mut u).enumerate() {
+        (*at, *u) = node(k);
+    }
+    let points = rule.iter().zip(std::iter::repeat(true));
+    for (parent, integrates) in points.chain(nodes.iter().zip(std::iter::repeat(false))) {
+        if let Some(h) = isoparametric::slope_at(parent, &at, &u) {
+            let mean = |of: &[[f64; 2]; N], k: usize| -> f64 {
+                parent.n.iter().zip(of).map(|(n, x)| n * x[k]).sum()
+            };
+            let (x, moved) = (mean(&at, 0), [mean(&u, 0), mean(&u, 1)]);
+            see(Sampled {
+                h,
+                hoop: if x > 0.0 { moved[0] / x } else { 0.0 },
+                at: [x + moved[0], mean(&at, 1) + moved[1]],
+                integrates,
+            });
+        }
+    }
+}
+
 /// How many numbers an element of a kind remembers from increment to increment.
 pub fn history_len(kind: ElementKind, update: Update) -> usize {
     isoparametric::history_len(update, points(kind))

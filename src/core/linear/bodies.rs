@@ -9,6 +9,7 @@ use crate::contact::stick_point::pierced;
 use crate::contact::tracking::Ground;
 use crate::executor::{Executor, InTurn};
 use crate::fem::assembly::history_len;
+use crate::fem::deformation::{Deformation, deformation};
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
@@ -462,6 +463,10 @@ impl Source for Bodies {
             ground.find_anchor(state, contact);
             state.slip = state.drift;
         }
+    }
+
+    fn deformation(&self, u: &[f64]) -> Option<Deformation> {
+        deformation(&self.model, u)
     }
 
     fn damps(&self) -> bool {

@@ -8,6 +8,7 @@
 use crate::contact::laws::Verdict;
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
+use crate::fem::deformation::Deformation;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::InterfaceProblem;
@@ -283,6 +284,11 @@ pub trait Source: Send {
 
     /// Judges a converged state by positions and forces alone ([`crate::contact::judge`]).
     fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict;
+
+    /// How far the solids of a state are deformed. `None` where there are no solids, or that is not known.
+    fn deformation(&self, _u: &[f64]) -> Option<Deformation> {
+        None
+    }
 
     /// Gives contacts that touched in the last accepted state the stick points of there back, so that their net slip
     /// counts. The state has been judged just before.

@@ -91,6 +91,8 @@ pub struct Solid {
     pub elements: Vec<SolidElement>,
     /// What they are made of.
     pub materials: Vec<Elastic>,
+    /// Their names in the scene, in the same order.
+    pub material_names: Vec<String>,
     /// The faces around it ([`boundary`](super::mesh::boundary)).
     pub edges: Vec<Vec<usize>>,
 }
@@ -138,10 +140,10 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Law {
-        /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens and fails under large compression.
+        /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens below a stretch of 1/√3 under compression.
         #[default]
         Svk,
-        /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too.
+        /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too; compression does not soften it.
         NeoHookean,
     }
 }

@@ -223,6 +223,12 @@ impl Model {
         on_leg(&self.increments, self.increment, leg)
     }
 
+    /// Whether any body is a solid.
+    pub fn has_solids(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| matches!(body.kind, BodyKind::Solid(_)))
+    }
+
     /// Whether x is a radius and y the axis: forces are then those of the whole circumference.
     pub fn is_axisymmetric(&self) -> bool {
         self.bodies.iter().any(Body::is_axisymmetric)

@@ -2,6 +2,7 @@
 
 use crate::contact::laws::Finding;
 use crate::contact::record::ContactRecord;
+use crate::fem::deformation::PointDeformation;
 use crate::interface::method::NotFound;
 use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
@@ -154,6 +155,9 @@ pub enum Outcome {
         jumped: bool,
         /// The damped motion that it ends, if any.
         motion: Option<Motion>,
+        /// The worst point where a solid leaves the range of its law in this increment; `None` where all stay inside, or one
+        /// was outside before.
+        left_range: Option<PointDeformation>,
         /// Whether the history ends here.
         last: bool,
     },
@@ -170,6 +174,7 @@ impl Outcome {
             marked: None,
             jumped: false,
             motion: None,
+            left_range: None,
             last,
         }
     }
@@ -296,6 +301,8 @@ pub enum Failure {
     NotFound(NotFound),
     /// Converged, but against a law of contact or balance.
     Refused(Finding),
+    /// An element of a solid is inverted: det F is not positive at one of its points.
+    Inverted(PointDeformation),
     /// Neither a touching node nor its master can move to close the gap.
     #[serde(rename = "Jammed")]
     OverConstrained {

@@ -126,9 +126,11 @@ impl Stepper {
             .is_some_and(|least| rest.section().size() < least);
         let mut by = Detour::after(last, chosen)?;
         let given = self.is_given();
+        let inverted = matches!(why, Failure::Inverted(_));
         let helps = |by: Detour| match by {
-            Detour::Held => self.can_hold(why),
             Detour::Back => last.is_some(),
+            _ if inverted => false,
+            Detour::Held => self.can_hold(why),
             Detour::Section => !given && !too_fine,
             _ => !given,
         };
@@ -237,6 +239,7 @@ impl Stepper {
         let bounded = self.go_along(leg);
         self.settle_contacts();
         let motion = self.state.motion.take();
+        let left_range = self.range_left();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         let turned = leg != start.leg;
@@ -257,6 +260,7 @@ impl Stepper {
             marked,
             jumped,
             motion,
+            left_range,
             last,
         }
     }

@@ -24,6 +24,8 @@ const STILL: f64 = 1e-8;
 const NEAR: f64 = 1e-10;
 /// Part of the out-of-balance force that a major iteration may leave with old factors before they are renewed.
 const ENOUGH: f64 = 0.1;
+/// Major iteration up to which an element may be inverted: the first ones may overshoot, later ones show where they lead.
+const OVERSHOOT: u32 = 8;
 /// Times the major iterations that keep its size after which an increment along the path is lost.
 const LOST: u32 = 2;
 
@@ -77,6 +79,12 @@ impl Stepper {
         if at_limit && bounded && accepts {
             self.state.unsettled += 1;
             return self.finish(after);
+        }
+        if bounded
+            && self.state.next.major >= OVERSHOOT
+            && let Some(point) = self.inverted()
+        {
+            return self.refuse_inverted(point);
         }
         self.renew_factors(asked, before, &after);
         self.next_major();

@@ -5,10 +5,14 @@
 //! another law, cuts the increment, since smaller ones tell a node that truly left and came back from one that only
 //! seemed to. Where it cannot be cut, it fails. What the user asked for is marked and never refused: held modes, readings
 //! of the paper that leave the law, and limits that are to be accepted.
+//!
+//! A state with an inverted element (det F ≤ 0 at an integration point or a node of a solid) is always refused: the increment
+//! is cut, and fails where it cannot be cut. Other readings of contact are not tried against it.
 
 use crate::contact::laws::{Finding, Law, Verdict};
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
+use crate::fem::deformation::PointDeformation;
 use crate::linear::norms::Norms;
 use crate::model::{SlipCount, Sticking, Ties};
 use crate::step::event::{Failure, Outcome};
@@ -19,6 +23,9 @@ impl Stepper {
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
         if let Some(on) = self.turn_to_goal(after) {
             return on;
+        }
+        if let Some(point) = self.inverted() {
+            return self.refuse_inverted(point);
         }
         let verdict = self.source.judge(&self.state.at(), &after);
         if self.state.motion.is_some() {
@@ -53,6 +60,23 @@ impl Stepper {
                 Outcome::Failed(why)
             }),
         }
+    }
+
+    /// The worst point of an inverted element of the present state.
+    pub(super) fn inverted(&self) -> Option<PointDeformation> {
+        self.source.deformation(&self.state.u)?.inverted()
+    }
+
+    /// Cuts an increment that ends with an inverted element, or fails.
+    pub(super) fn refuse_inverted(&mut self, point: PointDeformation) -> Outcome {
+        self.next_major();
+        self.fail(Failure::Inverted(point))
+    }
+
+    /// The worst point outside the range of its law, where none was outside in the last accepted state.
+    pub(super) fn range_left(&self) -> Option<PointDeformation> {
+        let outside = |u: &[f64]| self.source.deformation(u)?.outside;
+        outside(&self.state.u).filter(|_| outside(&self.state.start.u).is_none())
     }
 
     /// Whether states against a law are accepted, since the user asked for what leads to them.

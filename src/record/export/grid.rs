@@ -16,6 +16,8 @@
 //! | `body` | number of the body, from 1; 0 for the lines of surfaces |
 //! | `surface` | number of the master surface, from 1; 0 for what is none |
 //! | `rigid` | 1 for the lines of rigid surfaces |
+//! | `stretch` | of solids: smallest principal stretch at the element's integration points |
+//! | `det_F` | of solids: smallest det F at its integration points and nodes |
 //!
 //! Where there is none of it, a number is NaN. Names stand in `node_names`, `body_names` and `surface_names`, lines of text by
 //! bytes, since readers other than VTK's know no arrays of text. Elements of beams with more than three nodes are lines from
@@ -23,6 +25,7 @@
 
 use super::shown::{NotMade, Shown};
 use crate::contact::record::ContactRecord;
+use crate::fem::deformation;
 use crate::fem::recovery::{self, Configuration};
 use crate::model::{BodyKind, Component, ElementKind, Mode, Model};
 use crate::step::event::{Event, Position};
@@ -51,6 +54,7 @@ pub fn grid(model: &Model, state: &State, event: Option<&Event>, at: Position, l
         ..Grid::default()
     };
     cells(model, &mut grid);
+    deformations(model, state, &mut grid);
     motion(model, state, &mut grid);
     stresses(model, state, &mut grid);
     contacts(model, state, event, &mut grid);
@@ -141,6 +145,27 @@ fn cells(model: &Model, grid: &mut Grid) {
         array("surface", &[], Values::Wholes(surface)),
         array("rigid", &[], Values::Wholes(rigid)),
     ];
+}
+
+/// How far the elements of solids are deformed; the cells of bodies come first, in their order.
+fn deformations(model: &Model, state: &State, grid: &mut Grid) {
+    if !model.has_solids() {
+        return;
+    }
+    let mut numbers = [0, 1].map(|_| vec![f64::NAN; grid.cells.len()]);
+    let found = deformation::by_element(model, &state.u);
+    let found = found.iter().flatten();
+    let of_line =
+        |cell: &Cell| matches!(cell.kind, CellKind::Line2 | CellKind::Line3 | CellKind::Point);
+    let places = (0..grid.cells.len()).filter(|&place| !of_line(&grid.cells[place]));
+    for (place, measures) in places.zip(found) {
+        for (list, value) in numbers.iter_mut().zip(measures) {
+            list[place] = *value;
+        }
+    }
+    for (name, values) in ["stretch", "det_F"].into_iter().zip(numbers) {
+        grid.on_cells.push(array(name, &[], Values::Numbers(values)));
+    }
 }
 
 fn cell_kind(kind: ElementKind) -> CellKind {

@@ -293,6 +293,7 @@ fn solid(
     });
     let mut made = Solid {
         materials: vec![continuum(&here.then("material"), spec, of)?],
+        material_names: vec![of.clone()],
         edges,
         elements: elements.collect(),
     };
@@ -328,6 +329,7 @@ fn apply(
     solid
         .materials
         .push(continuum(&here.then("material"), spec, material)?);
+    solid.material_names.push(material.clone());
     for (corner, at) in [("from", from), ("to", to)] {
         point(&here.then(corner), *at)?;
     }

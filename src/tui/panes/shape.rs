@@ -7,7 +7,9 @@ use crate::contact::element::Element;
 use crate::contact::projection::tangent;
 use crate::explain::examination::Examination;
 use crate::explain::number;
+use crate::explain::strain;
 use crate::explain::outline::{self, Bounds, Point, bounds, curve};
+use crate::fem::deformation::{PointDeformation, deformation};
 use crate::fem::lagrange;
 use crate::model::{BodyKind, Contact, Solid, SolidElement};
 use crate::tui::app::App;
@@ -37,6 +39,8 @@ const MOTION: f64 = 0.15;
 const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
 /// Mark of a node that the diagnosis is about, right of its letter.
 const MARK: &str = "!";
+/// Mark of the worst point of a solid that is outside the range of its law, or inverted.
+const WORST: &str = "◆";
 /// Dots between two normals of an element.
 const SPACING: f64 = 16.0;
 
@@ -64,6 +68,11 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     heads(buffer, &canvas, &tips, app);
     names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
+    if let Some((x, y)) = worst(view).and_then(|point| canvas.cell(window.dot(point.at)))
+        && let Some(cell) = buffer.cell_mut((x, y))
+    {
+        cell.set_symbol(WORST).set_style(app.theme.bad);
+    }
     Some(longest)
 }
 
@@ -358,6 +367,12 @@ fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
     view.examination().flatten().filter(|found| found.fails)
 }
 
+/// The worst point of the solids, where one is outside the range of its law or inverted.
+fn worst(view: &View) -> Option<PointDeformation> {
+    let found = deformation(view.model, &view.frame().state.u)?;
+    found.inverted().or(found.outside)
+}
+
 /// Motions of bodies that nothing holds, as lines; returns their ends, and the directions there.
 fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<[Dot; 2]> {
     let Some(found) = found(view) else {
@@ -439,6 +454,14 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &Ap
     }
     if found(view).is_some_and(|found| !found.nodes.is_empty()) {
         spans.push(Span::styled(format!("   {MARK} diagnosed"), theme.faint));
+    }
+    if let Some(point) = worst(view) {
+        let text = match point.determinant > 0.0 {
+            true => format!("   {WORST} stretch {}", number::four(point.stretch)),
+            false => format!("   {WORST} inverted, det F {}", number::four(point.determinant)),
+        };
+        let element = strain::element(view.model, &point);
+        spans.push(Span::styled(format!("{text}, {element}"), theme.text));
     }
     if app.camera != Camera::ALL {
         spans.push(Span::styled(

@@ -38,6 +38,9 @@ mod tests;
 /// as a multiple of the first one, less one; in axisymmetry σ33. All zero before the first increment.
 pub const MEMORY: usize = 4;
 
+/// Part of the square of the largest ∂X/∂ξ below which an element has no area at a point.
+const FLAT: f64 = 1e-9;
+
 /// An element of N nodes and P points, of a plane body or (`HOOP`) of a body of revolution: its undeformed shape and what it
 /// is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,6 +112,25 @@ fn slope<const N: usize>(grad: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> [[f64; 2]; 
         }
     }
     h
+}
+
+/// H at a point of the parent element. `None` where the undeformed element has no area.
+pub(super) fn slope_at<const N: usize>(
+    parent: &Parent<N>,
+    at: &[[f64; 2]; N],
+    u: &[[f64; 2]; N],
+) -> Option<[[f64; 2]; 2]> {
+    let (by_x, by_u) = (slope(&parent.d, at), slope(&parent.d, u));
+    let det = by_x[0][0] * by_x[1][1] - by_x[0][1] * by_x[1][0];
+    let size = by_x.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let inverse = [
+        [by_x[1][1] / det, -by_x[0][1] / det],
+        [-by_x[1][0] / det, by_x[0][0] / det],
+    ];
+    let row = |by_u: [f64; 2]| {
+        [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b])
+    };
+    (det > FLAT * size * size).then(|| by_u.map(row))
 }
 
 /// Green-Lagrange strain E11, E22, 2 E12.

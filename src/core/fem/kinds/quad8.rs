@@ -20,6 +20,10 @@ pub const PLACES: [[f64; 2]; 8] = [
     [-1.0, 0.0],
 ];
 
+/// Its shape functions at its nodes.
+pub static NODES: LazyLock<[Parent<8>; 8]> =
+    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
+
 /// Its full rule.
 pub static RULE: LazyLock<[Parent<8>; 9]> = LazyLock::new(|| parents(square(3), shape));
 

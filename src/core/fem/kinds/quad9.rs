@@ -17,6 +17,10 @@ pub const PLACES: [[f64; 2]; 9] = [
     [0.0, 0.0],
 ];
 
+/// Its shape functions at its nodes.
+pub static NODES: LazyLock<[Parent<9>; 9]> =
+    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
+
 /// Its rule.
 pub static RULE: LazyLock<[Parent<9>; 9]> = LazyLock::new(|| parents(square(3), shape));
 

@@ -9,6 +9,10 @@ use std::sync::LazyLock;
 /// Places of the nodes in the parent triangle.
 pub const PLACES: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
+/// Its shape functions at its nodes.
+pub static NODES: LazyLock<[Parent<3>; 3]> =
+    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
+
 /// Its rule, exact for the stiffness.
 pub static RULE: LazyLock<[Parent<3>; 1]> = LazyLock::new(|| parents(TRIANGLE_1, shape));
 

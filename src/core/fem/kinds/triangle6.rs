@@ -14,6 +14,10 @@ pub const PLACES: [[f64; 2]; 6] = [
     [0.0, 0.5],
 ];
 
+/// Its shape functions at its nodes.
+pub static NODES: LazyLock<[Parent<6>; 6]> =
+    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
+
 /// Its rule, exact for the stiffness where the sides are straight: nine strains for the nine ways to deform.
 pub static RULE: LazyLock<[Parent<6>; 3]> = LazyLock::new(|| parents(TRIANGLE_3, shape));
 

@@ -1,0 +1,207 @@
+//! How far solids are deformed: det F and the principal stretches at the integration points and nodes of every element, and
+//! the range in which each material law describes a material.
+//!
+//! In the plane, with a = |(F11 + F22, F21 − F12)| and b = |(F11 − F22, F12 + F21)|, the principal stretches are (a ± b) / 2;
+//! the smaller one has the sign of det F. Around the axis of a body of revolution the third one is 1 + u_x/X; in plane stress
+//! the thickness counts in det F alone.
+//!
+//! The ranges follow from the nominal stress P of a stretch s:
+//!
+//! - **St Venant-Kirchhoff**: where the compressed directions share one stretch s, and the others are held or free of
+//!   stress, S = K (s² − 1) / 2 with a constant K. That covers compression along one, two or three directions in plane strain,
+//!   plane stress and axisymmetry, for every ν. P = s S then turns at dP/ds = K (3 s² − 1) / 2 = 0: below s = 1/√3 a smaller
+//!   force presses further. Under other ratios of the stretches the limit differs with ν. In tension P rises throughout.
+//! - **neo-Hookean**: μ/2 (I1 − 3) − μ ln J is polyconvex, λ/2 (ln J)² is convex in J while ln J < 1. No compression
+//!   softens it; beyond J = e the volume may.
+//! - **linear elasticity** (`update: small`): never softens. It neglects ε²/2 beside a strain ε, 5 % at ε = 0.1.
+//! - **the updated stress update**: each increment begins with the small-strain moduli, and for small increments P = M (s − 1)
+//!   under uniaxial strain: it does not soften, and has no range of its own; only det F > 0 is required.
+
+use super::continuum::{self, Sampled};
+use super::material::Material;
+use crate::model::{BodyKind, Elastic, Law, Model, Plane, Update};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::E;
+
+/// Stretch below which St Venant-Kirchhoff softens under compression: 1/√3.
+pub const SOFTENING: f64 = 0.577_350_269_189_625_8;
+/// Stretch below which linear elasticity neglects more than 5 % of the strain.
+pub const SMALL: f64 = 0.9;
+
+/// The state of an element at one of its points.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PointDeformation {
+    /// Number of the body.
+    pub body: usize,
+    /// Number of the element in its solid, from 0.
+    pub element: usize,
+    /// Current place of the point.
+    pub at: [f64; 2],
+    /// Smallest principal stretch; negative where the element is inverted in the plane.
+    pub stretch: f64,
+    /// det F.
+    pub determinant: f64,
+}
+
+/// The extremes over all solids of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deformation {
+    /// The smallest principal stretch at an integration point.
+    pub smallest: PointDeformation,
+    /// The smallest det F at an integration point or a node.
+    pub flattest: PointDeformation,
+    /// The integration point that is furthest outside the range of its law. `None` where all are inside.
+    pub outside: Option<PointDeformation>,
+}
+
+impl Deformation {
+    /// The worst point where det F is not positive.
+    pub fn inverted(&self) -> Option<PointDeformation> {
+        let positive = self.flattest.determinant > 0.0;
+        (!positive).then_some(self.flattest)
+    }
+}
+
+/// The range of a material law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Range {
+    /// No principal stretch is smaller.
+    Stretch(f64),
+    /// det F is not larger.
+    Volume(f64),
+    /// It has none.
+    Unlimited,
+}
+
+impl Range {
+    /// The range of a material's law.
+    pub fn of(elastic: &Elastic) -> Range {
+        match (elastic.update, elastic.law) {
+            (Update::Total, Law::Svk) => Range::Stretch(SOFTENING),
+            (Update::Total, Law::NeoHookean) => Range::Volume(E),
+            (Update::Small, _) => Range::Stretch(SMALL),
+            (Update::Updated, _) => Range::Unlimited,
+        }
+    }
+
+    /// How much of the range a point uses; outside it is more than 1.
+    fn used(self, point: &PointDeformation) -> f64 {
+        match self {
+            Range::Stretch(least) if point.stretch > 0.0 => least / point.stretch,
+            Range::Stretch(_) => f64::INFINITY,
+            Range::Volume(most) => point.determinant / most,
+            Range::Unlimited => 0.0,
+        }
+    }
+}
+
+/// The extremes over all solids where the degrees of freedom have these values. `None` in a scene without solids.
+pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
+    let mut worst = None;
+    let mut used = 1.0;
+    each_point(model, u, |elastic, point, integrates| {
+        let worst = worst.get_or_insert(Deformation {
+            smallest: point,
+            flattest: point,
+            outside: None,
+        });
+        if !(point.determinant >= worst.flattest.determinant) {
+            worst.flattest = point;
+        }
+        if !integrates {
+            return;
+        }
+        if !(point.stretch >= worst.smallest.stretch) {
+            worst.smallest = point;
+        }
+        let uses = Range::of(elastic).used(&point);
+        if uses > used {
+            (used, worst.outside) = (uses, Some(point));
+        }
+    });
+    worst
+}
+
+/// Smallest principal stretch at the integration points and smallest det F at all points of each solid element, by body and
+/// element; none of what is no solid.
+pub fn by_element(model: &Model, u: &[f64]) -> Vec<Vec<[f64; 2]>> {
+    let count = |kind: &BodyKind| match kind {
+        BodyKind::Solid(solid) => solid.elements.len(),
+        _ => 0,
+    };
+    let start = |body: &crate::model::Body| vec![[f64::INFINITY; 2]; count(&body.kind)];
+    let mut all: Vec<Vec<[f64; 2]>> = model.bodies.iter().map(start).collect();
+    each_point(model, u, |_, point, integrates| {
+        let [stretch, determinant] = &mut all[point.body][point.element];
+        if integrates {
+            *stretch = stretch.min(point.stretch);
+        }
+        *determinant = determinant.min(point.determinant);
+    });
+    all
+}
+
+/// Calls a function with every point of every solid element, integration points before nodes, and whether it is an
+/// integration point.
+fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&Elastic, PointDeformation, bool)) {
+    for (body, one) in model.bodies.iter().enumerate() {
+        let BodyKind::Solid(solid) = &one.kind else {
+            continue;
+        };
+        for (number, element) in solid.elements.iter().enumerate() {
+            let elastic = &solid.materials[element.material];
+            let node = |k: usize| {
+                let node = element.nodes[k];
+                let first = model.dofs.first[node];
+                (model.nodes[node].at, [u[first], u[first + 1]])
+            };
+            continuum::sample(element.kind, element.nodes.len(), node, |point| {
+                let [stretch, determinant] = measures(elastic, &point);
+                let point_deformation = PointDeformation {
+                    body,
+                    element: number,
+                    at: point.at,
+                    stretch,
+                    determinant,
+                };
+                see(elastic, point_deformation, point.integrates);
+            });
+        }
+    }
+}
+
+/// Smallest principal stretch and det F.
+fn measures(elastic: &Elastic, point: &Sampled) -> [f64; 2] {
+    let [[h11, h12], [h21, h22]] = point.h;
+    let (a, b) = (
+        (2.0 + h11 + h22).hypot(h21 - h12),
+        (h11 - h22).hypot(h12 + h21),
+    );
+    let (smaller, in_plane) = (0.5 * (a - b), 0.25 * (a - b) * (a + b));
+    match (elastic.plane, elastic.update) {
+        (Plane::Axisymmetric, _) => {
+            let hoop = 1.0 + point.hoop;
+            // Turned over in the plane and around the axis is not the right way round.
+            let determinant = match hoop > 0.0 {
+                true => in_plane * hoop,
+                false => -(in_plane * hoop).abs(),
+            };
+            [smaller.min(hoop), determinant]
+        }
+        (Plane::Stress, Update::Total) => [smaller, in_plane * thickness(elastic, point)],
+        _ => [smaller, in_plane],
+    }
+}
+
+/// Stretch of the thickness in plane stress; −1 where the law leaves none.
+fn thickness(elastic: &Elastic, point: &Sampled) -> f64 {
+    let [[h11, h12], [h21, h22]] = point.h;
+    let strain = nalgebra::Vector3::new(
+        h11 + 0.5 * (h11 * h11 + h21 * h21),
+        h22 + 0.5 * (h12 * h12 + h22 * h22),
+        h12 + h21 + h11 * h12 + h21 * h22,
+    );
+    let response = Material::new(elastic).response(&strain);
+    let squared = response.map_or(-1.0, |response| 1.0 + 2.0 * response.thickening);
+    if squared > 0.0 { squared.sqrt() } else { -1.0 }
+}

@@ -1,0 +1,158 @@
+//! Prescribed motions that press a solid out of the range of its law, found before anything is solved.
+//!
+//! Between two points of a solid, one above the other, whose motions along that line are prescribed, the mean stretch along
+//! the line is given: s = (ΔX + Δu) / ΔX. Where lines across it stay across, as under flat plates, no mean of the smallest
+//! principal stretch is larger, whatever happens sideways. A point is held by a support, by a prescribed displacement, or
+//! by a rigid surface that comes towards it by more than its gap.
+
+use crate::contact::projection::{project, projection_at};
+use crate::fem::deformation::{Range, SOFTENING};
+use crate::model::{Body, BodyKind, Model, Solid};
+
+/// Cosine from which on a surface's normal is along an axis.
+const ALONG: f64 = 0.99;
+/// Two points lie above each other within this part of their distance.
+const ABOVE: f64 = 0.1;
+/// Most points of a body that are compared in pairs.
+const MOST: usize = 2000;
+
+/// A point of a solid whose motion along an axis is prescribed.
+struct HeldPoint {
+    at: [f64; 2],
+    /// Motion along the axis (length).
+    motion: f64,
+    node: usize,
+}
+
+/// A sentence for each solid that the prescribed motions press out of the range of St Venant-Kirchhoff's law.
+pub fn warnings(model: &Model) -> Vec<String> {
+    let bodies = model.bodies.iter();
+    let told = bodies.filter_map(|body| match &body.kind {
+        BodyKind::Solid(solid) => told(model, body, solid),
+        _ => None,
+    });
+    told.collect()
+}
+
+fn told(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
+    let softens = |number: &usize| {
+        let elastic = &solid.materials[*number];
+        Range::of(elastic) == Range::Stretch(SOFTENING)
+    };
+    let number = (0..solid.materials.len()).find(softens)?;
+    let motions = Motions::of(model);
+    let mut worst: Option<(f64, f64, [usize; 2])> = None;
+    for load in loads(model) {
+        for axis in 0..2 {
+            let points = held_points(model, body, &motions, (axis, load));
+            let Some((stretch, nodes)) = smallest_stretch(&points, axis) else {
+                continue;
+            };
+            if stretch < worst.map_or(SOFTENING, |(least, ..)| least) {
+                worst = Some((stretch, load, nodes));
+            }
+        }
+    }
+    let (stretch, load, nodes) = worst?;
+    let [a, b] = nodes.map(|node| &model.nodes[node].name);
+    Some(format!(
+        "the motions prescribed up to load {load} press body {} to {stretch:.3} of its length between {a} and {b}, and St Venant-Kirchhoff (law: svk) softens below {SOFTENING:.4}: materials.{}.law=neohookean does not",
+        body.name, solid.material_names[number]
+    ))
+}
+
+/// The load factors at which a prescribed motion may be largest: corners of the path and of the motions' own scales.
+fn loads(model: &Model) -> Vec<f64> {
+    let scales = model.prescribed.iter().flat_map(|p| &p.scale.0);
+    let ends = model.path.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], load| {
+        [low.min(*load), high.max(*load)]
+    });
+    let corners = scales.map(|(load, _)| *load);
+    let corners = corners.filter(|load| (ends[0]..=ends[1]).contains(load));
+    let mut all: Vec<f64> = model.path.iter().copied().chain(corners).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+/// What the degrees of freedom without an equation do.
+struct Motions<'a> {
+    model: &'a Model,
+    /// Number of the prescribed value of each degree of freedom.
+    prescribed: Vec<Option<usize>>,
+}
+
+impl<'a> Motions<'a> {
+    fn of(model: &'a Model) -> Self {
+        let mut prescribed = vec![None; model.dofs.len()];
+        for (number, one) in model.prescribed.iter().enumerate() {
+            prescribed[one.dof] = Some(number);
+        }
+        Motions { model, prescribed }
+    }
+
+    /// Displacement of a node along an axis at a load factor; `None` where it is unknown.
+    fn at(&self, node: usize, axis: usize, load: f64) -> Option<f64> {
+        let dof = self.model.dofs.first[node] + axis;
+        if self.model.dofs.equation.get(dof)?.is_some() {
+            return None;
+        }
+        Some(self.prescribed[dof].map_or(0.0, |number| {
+            let one = &self.model.prescribed[number];
+            one.value * one.scale.at(load)
+        }))
+    }
+}
+
+/// The points of a body whose motion along an axis is prescribed at a load factor.
+fn held_points(
+    model: &Model,
+    body: &Body,
+    motions: &Motions,
+    (axis, load): (usize, f64),
+) -> Vec<HeldPoint> {
+    let point = |node: usize, motion: f64| HeldPoint {
+        at: model.nodes[node].at,
+        motion,
+        node,
+    };
+    let own = body.nodes.iter();
+    let own = own.filter_map(|&node| Some(point(node, motions.at(node, axis, load)?)));
+    let places: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
+    let pushed = model.contacts.iter().filter_map(|contact| {
+        if !body.nodes.contains(&contact.node) || motions.at(contact.node, axis, load).is_some() {
+            return None;
+        }
+        let at = places[contact.node];
+        let spot = project(at, &model.surfaces, &contact.surfaces, &places, None)?;
+        let surface = &model.surfaces[spot.surface];
+        let over = projection_at(&model.surfaces, spot, &places, at);
+        let along = over.normal[axis];
+        let mover = *surface.elements.get(spot.element)?.first()?;
+        if !surface.rigid || along.abs() < ALONG {
+            return None;
+        }
+        let motion = motions.at(mover, axis, load)?;
+        let push = motion * along - over.gap;
+        (push > 0.0).then(|| point(contact.node, push * along.signum()))
+    });
+    own.chain(pushed).take(MOST).collect()
+}
+
+/// The smallest mean stretch between two points of which one lies above the other, and their nodes.
+fn smallest_stretch(points: &[HeldPoint], axis: usize) -> Option<(f64, [usize; 2])> {
+    let mut least: Option<(f64, [usize; 2])> = None;
+    for (k, a) in points.iter().enumerate() {
+        for b in &points[k + 1..] {
+            let apart = [0, 1].map(|axis| b.at[axis] - a.at[axis]);
+            if apart[1 - axis].abs() > ABOVE * apart[axis].abs() || apart[axis] == 0.0 {
+                continue;
+            }
+            let stretch = 1.0 + (b.motion - a.motion) / apart[axis];
+            if least.is_none_or(|(least, _)| stretch < least) {
+                least = Some((stretch, [a.node, b.node]));
+            }
+        }
+    }
+    least
+}
