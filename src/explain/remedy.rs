@@ -76,19 +76,6 @@ impl How {
             How::Listed => "r, then Enter on it".into(),
         }
     }
-
-    /// What the command line's `--set` takes; `None` where that cannot do it.
-    pub fn option(&self) -> Option<String> {
-        match self {
-            How::Set(path, value) => Some(format!("{path}={value}")),
-            How::Increment(size) => Some(format!("history.increment={}", number::plain(*size))),
-            How::IncrementOn(leg, size) => Some(format!(
-                "history.increments[{leg}]={}",
-                number::plain(*size)
-            )),
-            How::StartFrom(_) | How::Listed => None,
-        }
-    }
 }
 
 /// Something to try from a state.
