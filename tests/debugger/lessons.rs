@@ -249,7 +249,7 @@ fn the_force_of_a_stuck_foot_grows_as_the_hint_of_lesson_5_says() {
     let run = common::run(&scene);
     let stuck: Vec<_> = run.accepted[6..8]
         .iter()
-        .map(|a| a.state.nodes[0].clone())
+        .map(|a| a.state.nodes[0])
         .collect();
     assert!(stuck.iter().all(|node| node.mode == Mode::Fixed));
     assert!((stuck[1].f_t - stuck[0].f_t - 0.05).abs() < 1e-9);
