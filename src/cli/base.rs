@@ -105,6 +105,15 @@ fn assignment(text: &str) -> Result<(String, String), NoValue> {
     }
 }
 
+/// A word as a shell reads it.
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
+    match !word.is_empty() && word.chars().all(plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
 /// A message to the user. Unlike `eprintln`, it survives a standard error that nobody reads.
 pub fn tell(message: &str) {
     let _ = writeln!(io::stderr(), "{}", shown::text(message));

@@ -15,7 +15,7 @@ use unicode_width::UnicodeWidthStr;
 pub struct Args {
     /// A lesson file, or a built-in lesson by its name or number; without one, they are listed
     lesson: Option<String>,
-    /// Plays the lesson through with the right keys and answers, and lists these
+    /// Plays the lesson through with the right keys and answers, and lists the questions, answers, replies and hints
     #[arg(long, requires = "lesson")]
     check: bool,
 }
@@ -82,8 +82,8 @@ fn check(lesson: Lesson) -> Result<String, Error> {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "  step {step}: {}\n    → {}",
-            answered.question, answered.answer
+            "  step {step}: {}\n    → {}\n    ✓ {}\n    ✗ {}",
+            answered.question, answered.answer, answered.then, answered.hint
         );
     }
     Ok(text)

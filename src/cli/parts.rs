@@ -1,6 +1,6 @@
 //! A sweep in pieces: `--shard`, `--log` and `--merge`, and what is told of them.
 
-use super::base::{Error, Exit, tell};
+use super::base::{Error, Exit, quoted, tell};
 use super::outputs::OutputArgs;
 use crate::study::log::LogError;
 use crate::study::merge::{Keeping, Kept, Missing};
@@ -185,15 +185,6 @@ fn words(given: &[String]) -> String {
         }
     }
     words.join(" ")
-}
-
-/// A word as a shell reads it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
 }
 
 #[cfg(test)]

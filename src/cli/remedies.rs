@@ -1,11 +1,12 @@
 //! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints what each
 //! costs and leaves.
 
-use super::base::{Error, Exit, SceneArgs, say, tell};
+use super::base::{Error, Exit, SceneArgs, quoted, say, tell};
 use crate::explain::page;
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
 use crate::outside::shown;
+use crate::scene::Scene;
 use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until};
 use std::convert::Infallible;
@@ -19,6 +20,17 @@ Exit codes: 0 some remedy gets the scene past the failure, or nothing fails; 3 n
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
+}
+
+/// The command line that tries the remedies of a scene as it was opened.
+pub fn command(scene: &Scene) -> String {
+    let set = scene.overrides();
+    let set = set.map(|(path, value)| format!(" --set {}", quoted(&format!("{path}={value}"))));
+    format!(
+        "stickslip remedies {}{}",
+        quoted(&scene.name),
+        set.collect::<String>()
+    )
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {

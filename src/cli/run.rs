@@ -4,6 +4,7 @@ use super::base::{Error, Exit, tell};
 use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
 use super::outputs::aligned;
+use super::remedies;
 use super::sink::{Sent, Sink};
 use super::solver::{Subject, SubjectArgs};
 use super::table;
@@ -371,6 +372,7 @@ impl<'a> Run<'a> {
                 tell(&format!("{name}: {told}"));
                 if self.solver.stepper().is_none() {
                     // Why, an attached solver alone knows.
+                    tell("  `stickslip attach` opens it in the debugger; d shows the cause");
                     return Exit::Unconverged;
                 }
                 let (state, model) = (self.solver.state().clone(), self.solver.model().clone());
@@ -378,6 +380,10 @@ impl<'a> Run<'a> {
                 for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
                     tell(&format!("  {line}"));
                 }
+                let remedies = remedies::command(self.tally.scene);
+                tell(&format!(
+                    "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
+                ));
                 Exit::Unconverged
             }
         }

@@ -1,17 +1,13 @@
-//! What to do about a failure: the one place from which `run`'s message, the diagnosis, a session's replies (and so its
-//! story) and the list of remedies take it.
+//! What can help against a failure, best first by what is known of its kind alone: the list of what the diagnosis
+//! ([`super::page`]) and the remedies ([`super::remedies`]) try.
 //!
-//! Advice is what can help against a failure of this kind, best first by what is known of the kind alone. The diagnosis
-//! tries what can be tried ([`super::page`]), and puts first what did help.
+//! Nothing of it is shown as advice before it was tried and helped. What only a person can do is listed as not tried.
 
 use super::remedy::{Kind, Remedy};
 use crate::linear::singular::Singular;
 use crate::model::{AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, Strategy};
 use crate::step::event::Failure;
 use crate::step::state::State;
-
-/// Most pieces of advice in a message of one line.
-const IN_A_LINE: usize = 3;
 
 /// Something to do.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +21,7 @@ pub enum Advice {
 }
 
 /// What a finer mesh is called where it was not tried.
-pub const FINER: &str = "a finer mesh, whose kinks are smaller (refine=2)";
+pub const FINER: &str = "a finer mesh, with smaller kinks (refine=2)";
 
 /// What to do about a failure, best first.
 pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
@@ -57,20 +53,6 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
     };
     let first = law.into_iter().chain(gaps).map(Advice::Remedy);
     first.chain(rest).collect()
-}
-
-/// The first of it, for a message of one line.
-pub fn in_a_line(model: &Model, state: &State, failure: &Failure) -> String {
-    let told = advice(model, state, failure);
-    let words = told.iter().filter_map(|advice| match advice {
-        Advice::ByHand(text) => Some((*text).to_owned()),
-        Advice::Finer => Some(FINER.to_owned()),
-        Advice::Remedy(remedy) => {
-            let option = remedy.how.option()?;
-            Some(format!("{} ({option})", remedy.label))
-        }
-    });
-    words.take(IN_A_LINE).collect::<Vec<_>>().join(", or ")
 }
 
 /// Whether a finer mesh can help against a failure.
@@ -163,22 +145,18 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
 /// What is done in the scene's file, or by hand.
 fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'static str] {
     match failure {
-        Failure::Cycle(_) => &["the debugger, to force one of the nodes to its third mode (m)"],
-        Failure::MinorLimit { .. } => &["the debugger, to see which nodes still change (t)"],
+        Failure::Cycle(_) => &["one of the nodes forced to its third mode (m)"],
         Failure::MajorCycle(_) => &["an arc where the kink is a corner of the body"],
-        Failure::MajorLimit { .. } => {
-            &["the debugger, to see which forces are left (the residuals' pane)"]
-        }
         Failure::NoAnswer { .. } => &[
             "other loads or friction",
             "a prescribed displacement instead of a load",
         ],
-        Failure::LadderEnded { scales: true, .. } => &["the debugger, to see where it stands"],
-        Failure::LadderEnded { .. } => &[
-            "a smaller history.least",
-            "the debugger, to see where it stands",
-        ],
-        Failure::NotFound(_) => &["the debugger, to see where it stands"],
+        Failure::LadderEnded { scales: false, .. } => &["a smaller history.least"],
+        Failure::LadderEnded { scales: true, .. }
+        | Failure::NotFound(_)
+        | Failure::MinorLimit { .. }
+        | Failure::MajorLimit { .. }
+        | Failure::Diverged { .. } => &[],
         Failure::Singular(Singular::Rigid { .. }) => {
             match state.nodes.iter().any(|node| node.mode == Mode::Free) {
                 true => &[
@@ -195,9 +173,8 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
         Failure::Singular(Singular::Unexplained) => {
             &["past a limit point, a prescribed displacement instead of the load"]
         }
-        Failure::Diverged { .. } => &["the debugger, to see what moves"],
         Failure::Reported { .. } => &[
-            "the debugger, to see which nodes still change (t), and to force one (m)",
+            "a node that still changes (t) forced to another mode (m)",
             "another increment, where the solver takes one",
         ],
         Failure::Refused(_) => &["a smaller history.least"],
@@ -222,9 +199,9 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid",
         ],
         Failure::OverConstrained { .. } => &[
-            "to move the node out of the surface",
-            "to free its support",
-            "to turn the surface (reverse)",
+            "the node moved out of the surface",
+            "its support removed",
+            "the surface reversed (reverse)",
         ],
     }
 }

@@ -359,7 +359,7 @@ impl Page {
         }
     }
 
-    /// What to do, best first: what helped, what is done by hand, and what did not help.
+    /// What to do, best first: what was tried and helped, what did not help, and what was not tried.
     fn to_do(&self) -> Vec<String> {
         let mut trials: Vec<&(Remedy, Trial)> = self
             .trials
@@ -395,12 +395,8 @@ impl Page {
                 finer.refine, finer.run.minors
             )
         });
-        let untried = (self.refines && self.finer.is_none()).then(|| FINER.to_owned());
-        let by_hand = self.by_hand.iter().map(|text| (*text).to_owned());
         let mut lines: Vec<String> = helped
             .chain(finer)
-            .chain(untried)
-            .chain(by_hand)
             .enumerate()
             .map(|(k, text)| format!("do: {}. {text}", k + 1))
             .collect();
@@ -420,7 +416,15 @@ impl Page {
             Some(format!("a finer mesh, refine={} ({end})", finer.refine))
         }));
         if !vain.is_empty() {
-            lines.push(format!("tried in vain: {}", vain.join(", ")));
+            lines.push(format!("did not help: {}", vain.join(", ")));
+        }
+        let finer = (self.refines && self.finer.is_none()).then_some(FINER);
+        let untried: Vec<&str> = finer
+            .into_iter()
+            .chain(self.by_hand.iter().copied())
+            .collect();
+        if !untried.is_empty() {
+            lines.push(format!("not tried: {}", untried.join("; ")));
         }
         lines
     }

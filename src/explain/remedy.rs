@@ -89,23 +89,6 @@ impl How {
             How::Listed => "r, then Enter on it".into(),
         }
     }
-
-    /// What the command line's `--set` takes; `None` where that cannot do it.
-    pub fn option(&self) -> Option<String> {
-        match self {
-            How::Set(path, value) => Some(format!("{path}={value}")),
-            How::Increment(size) => Some(format!("history.increment={}", number::plain(*size))),
-            How::IncrementOn(leg, size) => Some(format!(
-                "history.increments[{leg}]={}",
-                number::plain(*size)
-            )),
-            How::Restart(changes) => {
-                let option = |(path, value): &(String, &str)| format!("{path}={value}");
-                Some(changes.iter().map(option).collect::<Vec<_>>().join(" "))
-            }
-            How::StartFrom(_) | How::Listed => None,
-        }
-    }
 }
 
 /// Something to try from a state.

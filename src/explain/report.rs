@@ -1,7 +1,6 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
 use crate::contact::table2::{Decision, Rule, Tested};
-use crate::explain::advice;
 use crate::explain::judged;
 use crate::explain::names::{mode, position, slave};
 use crate::explain::number::{four, six};
@@ -416,21 +415,20 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
     }
 }
 
-/// Where and why a run ended, up to which load it is sound, and what to try. `at` and `load` are those of the minor
-/// iteration that failed, and `state` is what it left.
+/// Where and why a run ended, and up to which load it is sound. `at` and `load` are those of the minor iteration that
+/// failed, and `state` is what it left.
 pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &Failure) -> String {
     let again = match at.attempt {
         0 | 1 => String::new(),
         n => format!(" in attempt {n}"),
     };
     format!(
-        "increment {} (load {load}){again}, major {}, minor {}: {}; {}; try {}",
+        "increment {} (load {load}){again}, major {}, minor {}: {}; {}",
         at.increment,
         at.major,
         at.minor,
         describe_failure(model, failure),
-        sound(at, state),
-        advice::in_a_line(model, state, failure)
+        sound(at, state)
     )
 }
 

@@ -204,6 +204,10 @@ fn inline(text: &str) -> Vec<(Style, String)> {
                 let (_, after) = after.split_once(')')?;
                 Some((Style::Plain, inner, after))
             }),
+            '<' => rest
+                .strip_prefix("<!--")
+                .and_then(|comment| comment.split_once("-->"))
+                .map(|(_, after)| (Style::Plain, "", after)),
             _ => None,
         };
         match found {
@@ -410,8 +414,11 @@ mod tests {
 
     #[test]
     fn code_is_kept_and_comments_are_dropped() {
-        let text = "<!-- keys -->\n```text\na  b\n\n   c\n```\nafter";
-        assert_eq!(shown(text, 80), ["    a  b", "", "       c", "", "after"]);
+        let text = "<!-- keys -->\n```text\na  b\n\n   c\n```\nafter<!-- all --> it";
+        assert_eq!(
+            shown(text, 80),
+            ["    a  b", "", "       c", "", "after it"]
+        );
         assert_eq!(shown("```text\n123456789\n```", 10), [" 123456789"]);
     }
 

@@ -507,7 +507,7 @@ impl Helper {
         let mut lines = known;
         let told: Vec<String> = match &found.census {
             Some(census) if self.offers.force => (1..=census.answers.len().min(2))
-                .map(|n| format!("do: start from a consistent state: :start-from {n}, its modes are sent as forces"))
+                .map(|n| format!("not tried: the consistent state {n} as a start: :start-from {n}, its modes are sent as forces"))
                 .collect(),
             _ => Vec::new(),
         };
@@ -520,7 +520,7 @@ impl Helper {
         lines.extend(found.lines.drain(..).filter(offered));
         lines.extend(told);
         if by_hand {
-            lines.push("do: force one of the nodes that change to another mode (m)".into());
+            lines.push("not tried: one of the nodes that change forced to another mode (m)".into());
         }
         found.lines = lines;
         found

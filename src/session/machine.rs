@@ -15,7 +15,6 @@ use super::diary::Diary;
 use super::refusal::Refusal;
 use super::worker::{Message, Worker};
 use crate::attach::Log;
-use crate::explain::advice;
 use crate::explain::report;
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoint;
@@ -34,7 +33,7 @@ use crate::scene::gaps;
 use crate::scene::solver::solver;
 use crate::step::intervene::Intervention;
 use crate::step::solver::{Offers, Solver};
-use crate::step::state::{State, Status};
+use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use std::path::Path;
 use std::sync::Arc;
@@ -558,14 +557,7 @@ impl Session {
         let frame = self.frame();
         match &frame.event {
             None => "at the start".into(),
-            Some(event) => match &frame.state.status {
-                Status::Failed(failure) => format!(
-                    "{}; try {}",
-                    report::outcome(self.model(), event),
-                    advice::in_a_line(self.model(), &frame.state, failure)
-                ),
-                _ => report::outcome(self.model(), event),
-            },
+            Some(event) => report::outcome(self.model(), event),
         }
     }
 }

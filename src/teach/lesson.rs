@@ -314,11 +314,19 @@ impl Reader<'_> {
                     let message = format!("a question looks ahead by {FARTHEST} at most");
                     return Err(Fault::new(path.then("ahead"), message));
                 }
+                let answer = self.answer(path.then("answer"), answer)?;
+                let hint = self.template(path.then("hint"), hint, LONGEST_REMARK)?;
+                let asked = match &answer {
+                    Answer::Number(quantity, _) if *ahead == 0 => Some(quantity),
+                    _ => None,
+                };
+                hint.check_hint(asked)
+                    .map_err(|why| Fault::new(path.then("hint"), why.to_string()))?;
                 Ok(Step::Ask(Ask {
                     text: text(words)?,
-                    answer: self.answer(path.then("answer"), answer)?,
+                    answer,
                     ahead: *ahead,
-                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
+                    hint,
                     then: self.template(path.then("then"), then, LONGEST_REMARK)?,
                 }))
             }

@@ -3,7 +3,7 @@
 
 use super::lesson::{Lesson, Step};
 use super::refusal::Unplayable;
-use super::tutor::{AnswerKind, Tutor};
+use super::tutor::{AnswerKind, Question, Tutor};
 use crate::action::Action;
 use crate::explain::names;
 use crate::explain::number::four;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Minor iterations within which a step of free mode must find its predictions.
 const MOST_STEPS: u32 = 1000;
 
-/// A question, and the answer that the solver gave.
+/// A question, the answer that the solver gave, and the replies, with their numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answered {
     /// Place of the step, from 0.
@@ -24,6 +24,10 @@ pub struct Answered {
     pub question: String,
     /// The right answer, as one would type it.
     pub answer: String,
+    /// The reply to the right answer.
+    pub then: String,
+    /// The reply to a wrong one.
+    pub hint: String,
 }
 
 /// Plays a lesson with the right keys and answers.
@@ -52,11 +56,13 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
             }
             Step::Ask(_) => {
                 let word = tutor.solution().unwrap_or_default();
-                let question = tutor.text().to_owned();
+                let question = tutor.question();
                 answered.push(Answered {
                     step: at,
-                    question,
+                    question: tutor.text().to_owned(),
                     answer: readable(&tutor, &word),
+                    then: question.map_or(String::new(), Question::reply_to_right),
+                    hint: question.map_or(String::new(), Question::reply_to_wrong),
                 });
                 tutor
                     .answer(&word, 0, session.cursor(), session.frame())

@@ -140,10 +140,15 @@ impl Progress {
 }
 
 impl Reached {
-    /// In a few words: `done, 4/4 right`, or `step 3 of 13`.
+    /// Whether the lesson was taken to its end.
+    pub fn is_done(&self) -> bool {
+        self.ended > 0
+    }
+
+    /// In a few words: `done, 4/4 right`, or `step 3 of 13` for the step that comes next.
     pub fn told(&self) -> String {
         match (self.ended, self.asked) {
-            (0, _) => format!("step {} of {}", self.steps.min(self.of), self.of),
+            (0, _) => format!("step {} of {}", (self.steps + 1).min(self.of), self.of),
             (_, 0) => "done".into(),
             (_, asked) => format!("done, {}/{asked} right", self.right),
         }

@@ -200,6 +200,19 @@ impl LessonQuantity {
         }
     }
 
+    /// Whether it needs more than the shown state: the decision, the verdict, or iterations to come. A hint cannot have it.
+    fn looks_ahead(&self) -> bool {
+        match self {
+            LessonQuantity::Right => true,
+            LessonQuantity::Of(of, _) => matches!(of, Nodal::Lag | Nodal::Next | Nodal::Reason),
+            LessonQuantity::Solve(whole) => matches!(
+                whole,
+                Whole::Answers | Whole::Minors | Whole::Period | Whole::Majors | Whole::Verdict
+            ),
+            LessonQuantity::Run(..) | LessonQuantity::Written(_) | LessonQuantity::Key(_) => false,
+        }
+    }
+
     /// As it stands in a text; `right` is what stands for the right answer.
     fn text(&self, look: &Look, right: &str) -> Result<String, Unknown> {
         match self {
@@ -325,6 +338,21 @@ impl Template {
         }
         pieces.push(Piece::Words(rest.into()));
         Ok(Template(pieces))
+    }
+
+    /// Whether it can be shown as help with a question: it must neither look ahead nor contain `asked`, the answer.
+    ///
+    /// # Errors
+    /// [`Unknown::TellsAnswer`] where it does.
+    pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), Unknown> {
+        let tells = |piece: &Piece| match piece {
+            Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
+            Piece::Words(_) => false,
+        };
+        match self.0.iter().any(tells) {
+            true => Err(Unknown::TellsAnswer),
+            false => Ok(()),
+        }
     }
 
     /// The text with its values.

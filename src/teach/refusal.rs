@@ -105,6 +105,9 @@ pub enum Unknown {
     /// A question with more than one right choice.
     #[error("more than one of the choices is true")]
     SeveralTrue,
+    /// A hint with the answer in it, or with a number of iterations to come.
+    #[error("the hint contains the answer or looks ahead; use numbers of the shown iteration only")]
+    TellsAnswer,
     /// A brace without its end.
     #[error("a brace {{ is not closed by }}")]
     Brace,

@@ -74,7 +74,7 @@ pub enum StepSpec {
         /// Minor iterations that the question looks ahead: 0 asks about the one that is shown.
         #[serde(default)]
         ahead: u32,
-        /// Help after a wrong answer, on top of what the decision's numbers say.
+        /// Help after a wrong answer, in addition to the decision's numbers. Its numbers are those of the shown iteration.
         #[serde(default)]
         hint: String,
         /// What is said once the answer is known. Its numbers are those of the iteration asked about.

@@ -18,6 +18,7 @@ use crate::explain::report;
 use crate::history::frame::Frame;
 use crate::model::Mode;
 use crate::record::command::Command;
+use crate::step::state::Status;
 use std::sync::Arc;
 
 /// Wrong answers after which the right one is told.
@@ -57,8 +58,10 @@ pub struct Question {
     /// What can be chosen, where the answer is a choice.
     pub options: Vec<String>,
     right: Right,
-    /// What was found at the node that is asked about, where there is one.
+    /// The decision at the node that is asked about, where there is one, and whether there is friction.
     node: Option<(usize, Decision, bool)>,
+    /// Whether that decision is one that the user has not reached yet.
+    is_ahead: bool,
     hint: String,
     then: String,
     tries: u32,
@@ -298,9 +301,14 @@ impl Tutor {
                 Some(Step::Predict { right, .. }) => *right,
                 _ => 0,
             };
-            self.done = guess.right >= wanted;
-            let count = format!("({} of {wanted})", guess.right);
-            let text = format!("{} {count}", capital(&text));
+            let enough = guess.right >= wanted;
+            // Past the last iteration nothing is left to predict.
+            let over = frame.state.status == Status::Finished && !guess.is_open(cursor, frame);
+            self.done = enough || over;
+            let mut text = format!("{} ({} of {wanted})", capital(&text), guess.right);
+            if over && !enough {
+                text += " The history ends here, and so do the predictions.";
+            }
             self.remark = Some(Remark { text, good });
             self.given += 1;
             return Ok(());
@@ -315,9 +323,9 @@ impl Tutor {
         self.asked += u32::from(question.tries == 1);
         self.right += u32::from(good && question.tries == 1);
         let text = match (good, self.done) {
-            (true, _) => format!("Right: {}", question.explained()),
+            (true, _) => question.reply_to_right(),
             (false, true) => format!("No. It is {}", question.explained()),
-            (false, false) => format!("No. {}", question.help()),
+            (false, false) => question.reply_to_wrong(),
         };
         self.remark = Some(Remark { text, good });
         self.given += 1;
@@ -337,6 +345,28 @@ impl Tutor {
     /// Whether decisions must not be seen yet, at any node: a question about them is asked, or comes before the next
     /// action.
     pub fn hides(&self) -> bool {
+        self.asks_about(|ask| {
+            let becomes = |(_, truth): &(_, Truth)| matches!(truth, Truth::Becomes(..));
+            let decides = match &ask.answer {
+                Answer::Mode(_) | Answer::Rule(_) => true,
+                Answer::Choice(choices) => choices.iter().any(becomes),
+                Answer::Number(..) => false,
+            };
+            ask.ahead == 0 && decides
+        })
+    }
+
+    /// Whether the judge's verdict must not be seen yet, for the same reasons.
+    pub fn hides_verdict(&self) -> bool {
+        let judges = |(_, truth): &(_, Truth)| matches!(truth, Truth::Obeys | Truth::Breaks(_));
+        self.asks_about(|ask| match &ask.answer {
+            Answer::Choice(choices) => ask.ahead == 0 && choices.iter().any(judges),
+            _ => false,
+        })
+    }
+
+    /// Whether such a question waits for an answer, or comes before the next action.
+    fn asks_about(&self, about: impl Fn(&Ask) -> bool) -> bool {
         if self.done && self.question.is_some() {
             return false;
         }
@@ -344,14 +374,6 @@ impl Tutor {
             Some(Step::Press { .. }) if self.pending => self.at + 1,
             Some(Step::Press { .. } | Step::Predict { .. }) | None => return false,
             Some(_) => self.at,
-        };
-        let about = |ask: &Ask| match &ask.answer {
-            Answer::Mode(_) | Answer::Rule(_) => ask.ahead == 0,
-            Answer::Choice(choices) => {
-                let becomes = |(_, truth): &(_, Truth)| matches!(truth, Truth::Becomes(..));
-                ask.ahead == 0 && choices.iter().any(becomes)
-            }
-            Answer::Number(..) => false,
         };
         self.lesson.steps[begin..]
             .iter()
@@ -413,9 +435,9 @@ impl Tutor {
 }
 
 impl Question {
-    /// Asks the solver for the right answer.
-    fn ask(ask: &Ask, look: &Look) -> Result<Question, Unknown> {
-        let look = look.ahead(ask.ahead)?;
+    /// Asks the solver for the right answer. What is shown before the answer is filled from the present state `now`.
+    fn ask(ask: &Ask, now: &Look) -> Result<Question, Unknown> {
+        let look = now.ahead(ask.ahead)?;
         let found = |slave: usize| -> Result<_, Unknown> {
             let record = look.record(slave)?;
             Ok((slave, record.decision, record.t_max != 0.0))
@@ -454,7 +476,7 @@ impl Question {
                 )
             }
             Answer::Choice(choices) => {
-                let texts = choices.iter().map(|(text, _)| text.fill(&look, "…"));
+                let texts = choices.iter().map(|(text, _)| text.fill(now, "…"));
                 let options = texts.collect::<Result<_, _>>()?;
                 (
                     AnswerKind::Choice,
@@ -469,12 +491,12 @@ impl Question {
             options,
             right,
             node,
-            hint: String::new(),
+            is_ahead: ask.ahead > 0,
+            hint: ask.hint.fill(now, "…")?,
             then: String::new(),
             tries: 0,
         };
         let told = question.told();
-        question.hint = ask.hint.fill(&look, &told)?;
         question.then = ask.then.fill(&look, &told)?;
         Ok(question)
     }
@@ -510,6 +532,16 @@ impl Question {
         }
     }
 
+    /// The reply to the right answer.
+    pub(super) fn reply_to_right(&self) -> String {
+        format!("Right: {}", self.explained())
+    }
+
+    /// The reply to a wrong answer that may be followed by another one.
+    pub(super) fn reply_to_wrong(&self) -> String {
+        format!("No. {}", self.help())
+    }
+
     /// The right answer, and why.
     fn explained(&self) -> String {
         let mut text = self.told() + ".";
@@ -529,12 +561,12 @@ impl Question {
     /// Help without the answer: where to look, with the numbers of the decision.
     fn help(&self) -> String {
         let mut text = match &self.node {
-            Some((_, decision, _)) => format!(
+            Some((_, decision, _)) if !self.is_ahead => format!(
                 "Look at the row {} of Table 2: {}.",
                 names::mode(decision.before),
                 compared(decision)
             ),
-            None => String::new(),
+            _ => String::new(),
         };
         text += if text.is_empty() || self.hint.is_empty() {
             ""

@@ -372,10 +372,19 @@ mod tests {
     }
 
     #[test]
-    fn any_width_shows_something() {
+    fn any_width_shows_all_that_is_typed_and_the_cursor_behind_it() {
         let line = typed("set settings.at_minor_limit accept");
         for width in 0..60 {
-            line.lines(":", width, &Theme::mono());
+            let rows = line.lines(":", width, &Theme::mono());
+            assert!(
+                rows.iter().all(|row| row.width() <= width.max(2)),
+                "{width}"
+            );
+            let cells: Vec<&Span> = rows.iter().flat_map(|row| &row.spans).collect();
+            let text: String = cells.iter().map(|cell| &*cell.content).collect();
+            assert_eq!(text, format!(":{} ", line.text()), "{width}");
+            let reversed = |cell: &&&Span| cell.style.add_modifier.contains(Modifier::REVERSED);
+            assert_eq!(cells.iter().filter(reversed).count(), 1, "{width}");
         }
     }
 }

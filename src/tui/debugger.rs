@@ -1,10 +1,11 @@
 //! The debugger without its terminal: an app, a session, and what waits for the solver. Keys in, screens out.
 
-use crate::action::ChartOf;
+use crate::action::{self, ChartOf};
 use crate::explain::report;
 use crate::outside::shown;
 use crate::record::command::Command;
 use crate::session::{Reply, Session};
+use crate::step::state::Status;
 use crate::study::measuring::Measuring;
 use crate::teach::progress::{self, Keeper, Progress};
 use crate::teach::{Lesson, Tutor};
@@ -380,7 +381,11 @@ impl Debugger {
             None => &text,
         };
         let new = new.trim_start_matches("; ").to_owned();
-        let said = if hidden { String::new() } else { new };
+        let said = match (hidden, new.is_empty()) {
+            (true, _) => String::new(),
+            (false, true) => self.next_step(),
+            (false, false) => new,
+        };
         let idle = self
             .session
             .as_ref()
@@ -390,6 +395,25 @@ impl Debugger {
         }
         self.keep_progress();
         self.app.say(said);
+    }
+
+    /// Where a failure is explained; empty where nothing has failed.
+    fn next_step(&self) -> String {
+        let idle = self
+            .session
+            .as_ref()
+            .filter(|session| !session.is_running());
+        let failed = |session: &Session| matches!(session.frame().state.status, Status::Failed(_));
+        if !idle.is_some_and(failed) {
+            return String::new();
+        }
+        let key = |action: &str| {
+            let entry = action::by_name(action).ok();
+            let key = entry.and_then(|entry| self.app.keymap.keys(entry).next());
+            key.map_or(format!(":{action}"), ToString::to_string)
+        };
+        let (cause, remedies) = (key("diagnosis"), key("remedies"));
+        format!("Press {cause} for the cause, {remedies} to try remedies")
     }
 
     fn chart(&mut self, of: ChartOf) {

@@ -100,14 +100,20 @@ impl App {
         lesson.or(self.guess.as_ref())
     }
 
-    /// Whether any decision of the shown frame must not be seen yet.
+    /// Whether any decision of the shown frame, or the judge's verdict on it, must not be seen yet.
     pub fn hides_any(&self, view: &View) -> bool {
         let frame = view.frame();
+        let lesson = |tutor: &Tutor| tutor.hides() || tutor.hides_verdict();
         view.event().is_some()
-            && (self.lesson.as_ref().is_some_and(Tutor::hides)
+            && (self.lesson.as_ref().is_some_and(lesson)
                 || self
                     .guessing()
                     .is_some_and(|guess| guess.is_open(view.cursor, frame)))
+    }
+
+    /// Whether the judge's verdict must not be seen yet.
+    pub fn hides_verdict(&self) -> bool {
+        self.lesson.as_ref().is_some_and(Tutor::hides_verdict)
     }
 
     /// Whether the decision on this slave node must not be seen yet.

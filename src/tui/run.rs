@@ -9,7 +9,7 @@ use crate::teach::Lesson;
 use crate::tui::debugger::{Debugger, Outside, offers};
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
-use crossterm::event;
+use crossterm::event::{self, Event};
 use ratatui::layout::Rect;
 use signal_hook::consts::SIGHUP;
 use std::io::{self, IsTerminal};
@@ -138,7 +138,9 @@ pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String
 
 /// How long to wait for a key: while the solver is at work the screen follows it.
 pub(super) const IDLE: Duration = Duration::from_millis(100);
-const BUSY: Duration = Duration::from_millis(40);
+pub(super) const BUSY: Duration = Duration::from_millis(40);
+/// crossterm's reader does not look at its input at all when it may wait for no time. Below 1 ms it does not sleep.
+const LEAST_WAIT: Duration = Duration::from_micros(200);
 
 fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     let mut changed = true;
@@ -147,7 +149,9 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         changed |= debugger.advance();
         while let Some(outside) = debugger.outside.pop_front() {
             changed = true;
-            if obey(outside, terminal, signals)? {
+            if obey(outside, terminal, signals, &mut |text| {
+                debugger.app.complain(text)
+            })? {
                 return Ok(());
             }
         }
@@ -165,19 +169,25 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             (false, true) => BUSY,
             (false, false) => IDLE,
         };
-        let mut ready = event::poll(wait)?;
-        while ready {
+        let mut input = next_event(wait)?;
+        while let Some(event) = input {
             changed = true;
-            if let Some(outside) = debugger.event(&event::read()?)
-                && obey(outside, terminal, signals)?
+            if let Some(outside) = debugger.event(&event)
+                && obey(outside, terminal, signals, &mut |text| {
+                    debugger.app.complain(text)
+                })?
             {
                 return Ok(());
             }
             debugger.breathe();
-            ready = event::poll(Duration::ZERO)?;
+            // The screen follows a burst of keys, too.
+            input = match drawn.elapsed() < BUSY {
+                true => next_event(Duration::ZERO)?,
+                false => None,
+            };
         }
         if signals.stop() {
-            suspend(terminal, signals)?;
+            stop(terminal, signals)?;
             changed = true;
         }
         if signals.resumed() {
@@ -188,15 +198,31 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     Ok(())
 }
 
-/// Does what only the event loop can; true for the end.
+/// The next event, if one comes within `wait`. Input that is there already is always found.
+pub(super) fn next_event(wait: Duration) -> io::Result<Option<Event>> {
+    match event::poll(wait.max(LEAST_WAIT))? {
+        true => event::read().map(Some),
+        false => Ok(None),
+    }
+}
+
+/// Carries out what only the event loop can; true for the end. `complain` shows an error.
 pub(super) fn obey(
     outside: Outside,
     terminal: &mut Terminal,
     signals: &Signals,
+    complain: &mut dyn FnMut(&str),
 ) -> io::Result<bool> {
     match outside {
         Outside::Quit => return Ok(true),
-        Outside::Suspend => suspend(terminal, signals)?,
+        Outside::Suspend => {
+            terminal.suspend()?;
+            if !continued(signals) {
+                complain(
+                    "no shell with job control started this program, so it cannot be suspended",
+                );
+            }
+        }
         Outside::Redraw => terminal.forget()?,
         Outside::Copy(text) => terminal.copy(&text)?,
         Outside::Mouse(on) => terminal.heed_mouse(on)?,
@@ -204,12 +230,18 @@ pub(super) fn obey(
     Ok(false)
 }
 
-pub(super) fn suspend(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
-    terminal.suspend()?;
-    signals.resumed();
-    // What the process group was told comes back here too.
-    signals.stop();
+/// Stops the process because another one sent SIGTSTP.
+pub(super) fn stop(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
+    terminal.stop()?;
+    continued(signals);
     Ok(())
+}
+
+/// Whether the process was stopped and continued since this was asked last.
+fn continued(signals: &Signals) -> bool {
+    // The stop signal that the process group was sent arrives here, too.
+    signals.stop();
+    signals.resumed()
 }
 
 /// Loads a scene.

@@ -1,8 +1,9 @@
 //! The real terminal: taken over, and given back whatever happens.
 //!
 //! It is given back when [`Terminal`] is dropped (the end, or an error on its way up), by the panic hook (before the
-//! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP give it back, stop the process as the shell
-//! expects, and take it again with a full redraw when the process goes on.
+//! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP
+//! give it back, stop the process as the shell expects, and take it again with a full redraw when the process continues.
+//! Taking and giving back exclude each other, so that a signal in between cannot leave half of it behind.
 
 use crate::tui::app::App;
 use crate::tui::screen;
@@ -18,19 +19,20 @@ use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
+use rustix::termios::{OptionalActions, SpecialCodeIndex, tcgetattr, tcsetattr};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGTTIN};
 use signal_hook::iterator::Handle;
 use signal_hook::{SigId, flag, low_level};
 use std::fmt;
-use std::io::{self, IsTerminal, Stdout, Write, stdout};
+use std::io::{self, IsTerminal, Stdout, Write, stdin, stdout};
 use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, Once, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Whether the terminal is ours at this moment.
-static TAKEN: AtomicBool = AtomicBool::new(false);
+/// Whether the terminal is ours.
+static OWNERSHIP: Ownership = Ownership(Mutex::new(false));
 /// Whether the mouse is to be heeded whenever the terminal is ours.
 static MOUSE: AtomicBool = AtomicBool::new(false);
 /// What a panic on another thread had to say; the screen is not its to write on.
@@ -117,23 +119,40 @@ impl Terminal {
         self.screen.resize(size.into())
     }
 
-    /// Gives the terminal back, stops the process until it is continued, and takes the terminal again.
+    /// Gives the terminal back, stops the process until it is continued, and takes the terminal again. Returns at once
+    /// where no shell with job control could continue the process.
     ///
-    /// The whole process group is told, as the terminal itself would by Ctrl-Z: a parent such as cargo would go on
-    /// waiting otherwise, and the shell never get its prompt back.
+    /// The signal goes to the whole process group, as the terminal itself does it by Ctrl-Z: a parent such as cargo would
+    /// wait endlessly otherwise, and the shell never get its prompt back. This process catches SIGTSTP, so it stops by
+    /// SIGTTIN: unlike SIGSTOP, the kernel ignores that signal in a process group without a shell above (POSIX: an
+    /// orphaned one), where nobody would continue it.
     pub fn suspend(&mut self) -> io::Result<()> {
+        self.released(|| {
+            rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
+            low_level::raise(SIGTTIN)
+        })
+    }
+
+    /// The same after a SIGTSTP from another process, which can continue this one, too.
+    pub fn stop(&mut self) -> io::Result<()> {
+        self.released(|| {
+            rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
+            low_level::emulate_default_handler(SIGTSTP)
+        })
+    }
+
+    /// Gives the terminal back for as long as `work` takes.
+    fn released(&mut self, work: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
         give_back();
-        rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
-        low_level::emulate_default_handler(SIGTSTP)?;
+        let worked = work();
         take()?;
-        self.forget()
+        self.forget()?;
+        worked
     }
 
     /// Takes the terminal again after somebody else may have changed its settings.
     pub fn retake(&mut self) -> io::Result<()> {
-        give_back();
-        take()?;
-        self.forget()
+        self.released(|| Ok(()))
     }
 }
 
@@ -143,33 +162,77 @@ impl Drop for Terminal {
     }
 }
 
-fn take() -> io::Result<()> {
-    enable_raw_mode()?;
-    TAKEN.store(true, Ordering::SeqCst);
-    let mut entered = execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide);
-    if MOUSE.load(Ordering::SeqCst) {
-        entered = entered.and_then(|()| execute!(stdout(), HeedMouse));
+/// Whether the terminal is ours. Nobody sees a state in between.
+struct Ownership(Mutex<bool>);
+
+impl Ownership {
+    fn lock(&self) -> MutexGuard<'_, bool> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    if entered.is_err() {
-        give_back();
+
+    /// Takes the terminal by `enter`, unless it is ours. What `enter` began before it failed is undone by `leave`.
+    fn take(&self, enter: impl FnOnce() -> io::Result<()>, leave: impl FnOnce()) -> io::Result<()> {
+        let mut taken = self.lock();
+        if *taken {
+            return Ok(());
+        }
+        let entered = enter();
+        match entered {
+            Ok(()) => *taken = true,
+            Err(_) => leave(),
+        }
+        entered
     }
-    entered
+
+    /// Gives the terminal back by `leave`, if it is ours. Nobody can take it before the guard is dropped.
+    fn give_back(&self, leave: impl FnOnce()) -> MutexGuard<'_, bool> {
+        let mut taken = self.lock();
+        if std::mem::take(&mut *taken) {
+            leave();
+        }
+        taken
+    }
 }
 
-/// Gives the terminal back, if it is ours. Errors are of no use here: there may be no terminal any more.
+fn take() -> io::Result<()> {
+    OWNERSHIP.take(enter, leave)
+}
+
 fn give_back() {
-    if TAKEN.swap(false, Ordering::SeqCst) {
-        let _ = execute!(
-            stdout(),
-            EndSynchronizedUpdate,
-            LeaveMouse,
-            DisableBracketedPaste,
-            LeaveAlternateScreen,
-            Show
-        );
-        let _ = stdout().flush();
-        let _ = disable_raw_mode();
+    drop(OWNERSHIP.give_back(leave));
+}
+
+fn enter() -> io::Result<()> {
+    enable_raw_mode()?;
+    read_without_waiting()?;
+    execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide)?;
+    match MOUSE.load(Ordering::SeqCst) {
+        true => execute!(stdout(), HeedMouse),
+        false => Ok(()),
     }
+}
+
+/// Lets a read return nothing where nothing is there. The terminal library reads on after half an escape sequence, and after
+/// one that it does not know, and would keep the screen waiting for the next key. Raw mode's end restores the old setting.
+fn read_without_waiting() -> io::Result<()> {
+    let mut settings = tcgetattr(stdin())?;
+    settings.special_codes[SpecialCodeIndex::VMIN] = 0;
+    settings.special_codes[SpecialCodeIndex::VTIME] = 0;
+    Ok(tcsetattr(stdin(), OptionalActions::Now, &settings)?)
+}
+
+/// Errors are of no use here: there may be no terminal any more.
+fn leave() {
+    let _ = execute!(
+        stdout(),
+        EndSynchronizedUpdate,
+        LeaveMouse,
+        DisableBracketedPaste,
+        LeaveAlternateScreen,
+        Show
+    );
+    let _ = stdout().flush();
+    let _ = disable_raw_mode();
 }
 
 /// Whether the terminal went away under the program: there is none any more where there was one.
@@ -185,7 +248,7 @@ fn hook_panics() {
     ONCE.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
-            if thread::current().id() == ours || !TAKEN.load(Ordering::SeqCst) {
+            if thread::current().id() == ours || !*OWNERSHIP.lock() {
                 give_back();
                 before(info);
             } else {
@@ -260,8 +323,8 @@ impl Drop for Signals {
     }
 }
 
-/// Waits on a thread of its own for the signals that end the process. The event loop is told and given a moment;
-/// it may be stuck, since the terminal library reads for ever from a terminal that is gone.
+/// Waits on a separate thread for the signals that end the process. The event loop gets a moment to end by itself; it may
+/// be stuck in a write to a terminal that is gone.
 fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
     let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
     let handle = signals.handle();
@@ -270,7 +333,7 @@ fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
         if let Some(signal) = signals.forever().next() {
             end.store(signal as usize, Ordering::SeqCst);
             thread::sleep(PATIENCE);
-            give_back();
+            let _nobody_takes_it_again = OWNERSHIP.give_back(leave);
             let _ = obey(signal);
         }
     });
@@ -280,4 +343,67 @@ fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
 /// Ends the process as the signal would have without us, so that whoever sent it sees that.
 pub fn obey(signal: i32) -> io::Result<()> {
     low_level::emulate_default_handler(signal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc::{RecvTimeoutError, channel};
+
+    #[test]
+    fn a_terminal_that_is_just_being_taken_is_given_back_after_that() {
+        static OWNED: Ownership = Ownership(Mutex::new(false));
+        let (entering, entered) = (channel(), channel::<()>());
+        let (told, left) = channel();
+        let taker = thread::spawn(move || {
+            let enter = || {
+                entering.0.send(()).unwrap();
+                entered.1.recv().unwrap();
+                Ok(())
+            };
+            OWNED.take(enter, || panic!("nothing failed")).unwrap();
+        });
+        entering.1.recv().unwrap();
+        let giver = thread::spawn(move || drop(OWNED.give_back(|| told.send(()).unwrap())));
+        // A signal comes while the screen is entered: what is not entered yet cannot be left.
+        let early = left.recv_timeout(Duration::from_millis(50));
+        assert_eq!(early, Err(RecvTimeoutError::Timeout));
+        entered.0.send(()).unwrap();
+        taker.join().unwrap();
+        giver.join().unwrap();
+        assert_eq!(left.try_iter().count(), 1);
+        assert!(!*OWNED.lock());
+    }
+
+    #[test]
+    fn what_failed_half_way_is_undone_and_a_terminal_that_is_not_ours_is_left_alone() {
+        let owned = Ownership(Mutex::new(false));
+        let mut undone = 0;
+        let failed = owned.take(|| Err(io::ErrorKind::Other.into()), || undone += 1);
+        assert!(failed.is_err() && undone == 1 && !*owned.lock());
+        drop(owned.give_back(|| panic!("it is not ours")));
+        owned.take(|| Ok(()), || panic!("nothing failed")).unwrap();
+        owned.take(|| panic!("it is ours"), || ()).unwrap();
+        drop(owned.give_back(|| undone += 1));
+        assert_eq!(undone, 2);
+    }
+
+    #[test]
+    fn nobody_takes_the_terminal_while_the_process_ends() {
+        static OWNED: Ownership = Ownership(Mutex::new(true));
+        let ending = OWNED.give_back(|| ());
+        let (told, taken) = channel();
+        let taker = thread::spawn(move || {
+            let enter = || {
+                told.send(()).unwrap();
+                Ok(())
+            };
+            OWNED.take(enter, || ())
+        });
+        let early = taken.recv_timeout(Duration::from_millis(50));
+        assert_eq!(early, Err(RecvTimeoutError::Timeout));
+        drop(ending);
+        taker.join().unwrap().unwrap();
+        assert!(taken.recv().is_ok());
+    }
 }

@@ -82,7 +82,7 @@ fn a_trace_has_a_row_for_every_minor_iteration_and_agrees_with_the_csv() {
 }
 
 #[test]
-fn a_cycle_ends_with_3_and_is_told_with_place_nodes_and_what_to_try() {
+fn a_cycle_ends_with_3_and_is_told_with_place_nodes_and_the_command_that_tries_remedies() {
     let output = ran(&["run", OSC, "--csv", "-", "--set", "history.increment=0.02"]);
     assert_eq!(code(&output), 3);
     assert_eq!(whole_rows(&out(&output)), 2, "what converged before");
@@ -92,7 +92,7 @@ fn a_cycle_ends_with_3_and_is_told_with_place_nodes_and_what_to_try() {
         "2-cycle",
         "beam.5 free > fixed",
         "load 0.04",
-        "try ",
+        "`stickslip remedies osc-inclined-cantilever --set history.increment=0.02` tries",
     ] {
         assert!(told.contains(part), "{part:?} is not in {told}");
     }
@@ -590,5 +590,25 @@ fn a_run_tells_what_one_step_of_coulombs_law_makes_of_the_increment_in_which_nod
         &["run", "02-two-cantilevers-smooth"],
     ] {
         assert!(!err(&ran(quiet)).contains("touch: start"), "{quiet:?}");
+    }
+}
+
+#[test]
+fn a_failed_run_advises_nothing_and_names_the_command_that_tries_remedies() {
+    for set in [&[][..], &["--set", "friction.angle=25"]] {
+        let output = ran(&[&["run", OSC][..], set].concat());
+        let told = err(&output);
+        assert_eq!(code(&output), 3, "{told}");
+        assert!(
+            !told.contains("try the") && !told.contains("at_cycle"),
+            "{told}"
+        );
+        let command = told.split('`').nth(1).unwrap_or_default();
+        let words: Vec<&str> = command.split(' ').collect();
+        assert_eq!(words, [&["stickslip", "remedies", OSC][..], set].concat());
+        // What it names was not tried yet, and does try.
+        let output = ran(&words[1..]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        assert!(out(&output).contains("converged"), "{}", out(&output));
     }
 }

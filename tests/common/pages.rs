@@ -32,7 +32,7 @@ fn renewed(text: &str) -> String {
             skipping = false;
         }
         if !skipping {
-            renewed += line;
+            renewed += &counted(line);
             renewed.push('\n');
         }
         let marker = line
@@ -73,6 +73,39 @@ fn made(marker: &str) -> Option<String> {
             list(rows.collect())
         }
         _ => None,
+    }
+}
+
+/// A line with its numbers made anew: each between `<!-- number of WHAT -->` and `<!-- end -->`.
+fn counted(line: &str) -> String {
+    const MARKER: &str = "<!-- number of ";
+    let mut pieces = line.split(MARKER);
+    let mut made = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (what, rest) = piece.split_once(" -->").unwrap();
+        let (_, after) = rest.split_once("<!-- end -->").unwrap();
+        made += &format!("{MARKER}{what} -->{}<!-- end -->{after}", count(what));
+    }
+    made
+}
+
+/// How many there are, of what the program has.
+fn count(what: &str) -> usize {
+    match what {
+        "lessons" => stickslip::teach::list().len(),
+        "strategies" => stickslip::model::Strategy::ALL.len(),
+        "scenes" => stickslip::scene::builtin::list().len(),
+        "pages" => stickslip::manual::PAGES.len(),
+        "examples" => {
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/examples");
+            let files = fs::read_dir(folder)
+                .unwrap()
+                .map(|file| file.unwrap().path());
+            files
+                .filter(|file| file.extension().is_some_and(|end| end == "rs"))
+                .count()
+        }
+        _ => panic!("a number of {what} is not counted"),
     }
 }
 

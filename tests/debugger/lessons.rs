@@ -142,6 +142,177 @@ fn a_decision_that_is_asked_about_is_nowhere_on_the_screen() {
     }
 }
 
+/// The debugger at a step (from 1) of a built-in lesson, with all steps before it done right.
+fn at_step(name: &str, step: usize) -> Debugger {
+    let mut debugger = taught(name);
+    let line = |debugger: &mut Debugger, line: &str| {
+        debugger.type_keys(":");
+        debugger.type_text(line);
+        debugger.type_keys("Enter");
+    };
+    while tutor(&debugger).at() + 1 < step {
+        let todo = tutor(&debugger).todo();
+        let typed = todo
+            .strip_prefix("type :")
+            .and_then(|todo| todo.split_once(" and Enter"));
+        let pressed = todo
+            .strip_prefix("press ")
+            .and_then(|todo| todo.split_once(' '));
+        match (typed, pressed, tutor(&debugger).solution()) {
+            (Some((typed, _)), ..) => line(&mut debugger, typed),
+            (_, Some((keys, _)), _) => {
+                let keys: Vec<String> = keys.chars().map(String::from).collect();
+                debugger.type_keys(&keys.join(" "));
+            }
+            (.., Some(word)) => line(&mut debugger, &format!("answer {word}")),
+            (None, None, None) => debugger.type_keys("Space"),
+        }
+    }
+    debugger
+}
+
+#[test]
+fn a_verdict_that_is_asked_about_is_nowhere_on_the_screen() {
+    let asked = [
+        ("10-slip", 10, "1", "load 0.05 accepted"),
+        ("10-slip", 17, "2", "although beam.5 slipped"),
+        ("11-judge", 4, "1", "load 0.5 accepted"),
+        ("11-judge", 7, "3", "more than friction can give"),
+        ("11-judge", 13, "1", "friction drives the slip"),
+        ("11-judge", 17, "2", "more than friction can give"),
+    ];
+    for (name, step, right, told) in asked {
+        let mut debugger = at_step(name, step);
+        assert_eq!(tutor(&debugger).solution().as_deref(), Some(right));
+        for (width, height) in [(80, 24), (120, 40), (200, 60)] {
+            let screen = debugger.text(width, height);
+            for telling in ["although", "✓ ", "judge ✗", "judge ✓", told] {
+                assert!(
+                    !screen.contains(telling),
+                    "{name} {step}: {telling}\n{screen}"
+                );
+            }
+            assert!(screen.contains("Predict the judge's verdict"), "{screen}");
+        }
+        debugger.type_keys(&format!("a {right}"));
+        let screen = debugger.text(200, 60);
+        assert!(screen.contains(told), "{name} {step}: {told}\n{screen}");
+    }
+}
+
+/// What the check of a built-in lesson prints of a step (from 1): the replies to the right answer and to a wrong one.
+fn replies(name: &str, step: usize) -> (String, String) {
+    let answers = play(&Arc::new(Lesson::open(name).unwrap())).unwrap();
+    let found = answers.into_iter().find(|found| found.step + 1 == step);
+    found.map(|found| (found.then, found.hint)).unwrap()
+}
+
+#[test]
+fn hints_have_the_numbers_of_the_shown_iteration_and_not_the_answer() {
+    // The residual that is shown, and not the next one.
+    let (then, hint) = replies("9-majors", 6);
+    assert_eq!(hint, "No. 7.238e−8 times 0.37.");
+    assert!(then.starts_with("Right: 2.634e−8."), "{then}");
+    // Of a decision that is still to come not even the numbers are shown.
+    for (name, step) in [
+        ("1-modes", 12),
+        ("4-oscillation", 4),
+        ("5-increment", 3),
+        ("5-increment", 8),
+        ("13-two-sides", 11),
+    ] {
+        let (then, hint) = replies(name, step);
+        assert!(
+            !hint.contains("Table 2") && hint.len() > 20,
+            "{name} {step}: {hint}"
+        );
+        assert!(then.starts_with("Right: "), "{then}");
+    }
+    let (_, hint) = replies("8-t-max", 4);
+    assert!(
+        !hint.contains("0.2588") && !hint.contains("0.3312"),
+        "{hint}"
+    );
+    let (_, hint) = replies("5-increment", 3);
+    assert!(
+        hint.ends_with("by as much as the load falls: by 0.05."),
+        "{hint}"
+    );
+}
+
+#[test]
+fn the_force_of_a_stuck_foot_grows_as_the_hint_of_lesson_5_says() {
+    let scene = common::scene(
+        "01-pinned-beam-rough-floor",
+        &[("history.increment", "0.05")],
+    );
+    let run = common::run(&scene);
+    let stuck: Vec<_> = run.accepted[6..8]
+        .iter()
+        .map(|a| a.state.nodes[0])
+        .collect();
+    assert!(stuck.iter().all(|node| node.mode == Mode::Fixed));
+    assert!((stuck[1].f_t - stuck[0].f_t - 0.05).abs() < 1e-9);
+    assert!((stuck[1].t_max - stuck[0].t_max).abs() < 1e-9);
+}
+
+#[test]
+fn hints_that_look_ahead_or_contain_the_answer_are_refused() {
+    let hint = |answer: &str, hint: &str| {
+        let ask = format!(r#"Ask(text: "x", answer: {answer}, hint: "{hint}")"#);
+        Lesson::from_text("test.ron", &lesson_of(&ask)).map_err(|error| error.to_string())
+    };
+    let mode = r#"Mode(node: "beam.end")"#;
+    for looks in [
+        "right",
+        "next beam.end",
+        "reason beam.end",
+        "lag beam.end",
+        "minors",
+        "majors",
+        "period",
+        "answers",
+        "verdict",
+    ] {
+        let told = hint(mode, &format!("{{{looks}}}")).unwrap_err();
+        assert!(
+            told.contains("steps[0].hint: the hint contains the answer or looks ahead"),
+            "{told}"
+        );
+    }
+    let number = r#"Number(of: "gap beam.end", tolerance: 0.1)"#;
+    assert!(hint(number, "{gap beam.end}").is_err());
+    assert!(hint(number, "{F_n beam.end} {mode beam.end} {increment}").is_ok());
+    // A number of the shown iteration is no answer about a later one.
+    let later = r#"Number(of: "gap beam.end", tolerance: 0.1), ahead: 1"#;
+    assert!(hint(later, "{gap beam.end}").is_ok());
+}
+
+#[test]
+fn predictions_end_with_the_history_however_few_were_right() {
+    let mut debugger = at_step("2-table-2", 14);
+    let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
+    for _ in 0..200 {
+        debugger.type_keys("f");
+        // Never what happens: there is no third mode that a decision of this lesson could lead to.
+        let frame = debugger.session.as_ref().unwrap().frame();
+        let next = frame.event.as_ref().unwrap().nodes[0].decision.next;
+        debugger.type_keys(if next == Mode::Free { "a x" } else { "a f" });
+        if tutor(&debugger).is_read() {
+            break;
+        }
+    }
+    let Paragraph::Wrong(told) = last(&debugger) else {
+        panic!("{:?}", last(&debugger))
+    };
+    assert!(
+        told.ends_with("(0 of 3) The history ends here, and so do the predictions."),
+        "{told}"
+    );
+    debugger.type_keys("Space");
+    assert!(tutor(&debugger).step().is_none());
+}
+
 #[test]
 fn a_lesson_waits_for_what_it_wants_and_lets_one_look_around() {
     let mut debugger = taught("4-oscillation");
@@ -424,6 +595,12 @@ fn the_command_line_lists_and_checks_lessons() {
     let (code, out, _) = run(&["lesson", "--check", "by-hand"]);
     assert!(
         code == Some(0) && out.contains("3-by-hand: sound; 13 steps, 7 questions"),
+        "{out}"
+    );
+    assert_eq!(out.matches("\n    ✓ Right: ").count(), 7, "{out}");
+    assert_eq!(out.matches("\n    ✗ No. ").count(), 7, "{out}");
+    assert!(
+        out.contains("✗ No. Look at the row fixed of Table 2: F_n = 0.18 > 0"),
         "{out}"
     );
     let (code, _, err) = run(&["lesson", "4"]);

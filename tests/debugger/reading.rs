@@ -174,7 +174,7 @@ fn what_was_done_of_the_lessons_is_kept_and_listed() {
     let done = |name: &str| Progress::read(&file).unwrap().of(name).map(|of| of.told());
     let mut debugger = begin("4-oscillation");
     debugger.type_keys("Space s");
-    assert_eq!(done("4-oscillation").as_deref(), Some("step 2 of 12"));
+    assert_eq!(done("4-oscillation").as_deref(), Some("step 3 of 12"));
     assert_eq!(done("1-modes"), None);
     // To its end, with one wrong answer.
     debugger
@@ -184,11 +184,24 @@ fn what_was_done_of_the_lessons_is_kept_and_listed() {
     begin("4-oscillation").type_keys("Space");
     begin("1-modes").type_keys("Space Space");
     assert_eq!(done("4-oscillation").as_deref(), Some("done, 4/5 right"));
-    assert_eq!(done("1-modes").as_deref(), Some("step 2 of 14"));
+    assert_eq!(done("1-modes").as_deref(), Some("step 3 of 14"));
     let progress = Progress::read(&file).unwrap();
     let offers = choosing::offers(&progress);
     let offer = offers.iter().find(|offer| offer.name == "4-oscillation");
-    assert_eq!(offer.unwrap().done, "done, 4/5 right");
+    let reached = offer.unwrap().reached.unwrap();
+    assert_eq!(reached.told(), "done, 4/5 right");
+    // The chooser ticks what is finished, and nothing else.
+    let mut chooser = Debugger::new(Theme::mono(), offers, None);
+    chooser.type_text("lessons");
+    chooser.settle();
+    let screen = chooser.text(120, 40);
+    let row = |name: &str| screen.lines().find(|row| row.contains(name)).unwrap();
+    assert!(
+        row("4-oscillation").contains("✓ done, 4/5 right"),
+        "{screen}"
+    );
+    assert!(row("1-modes").contains("step 3 of 14"), "{screen}");
+    assert_eq!(screen.matches('✓').count(), 1, "{screen}");
     // Nothing is left beside it, and what is no such file is said and stays.
     assert_eq!(
         std::fs::read_dir(home.path().join("deep")).unwrap().count(),
@@ -227,7 +240,7 @@ fn the_list_of_lessons_tells_what_was_done() {
     let (code, told) = list(home.path());
     let first = told.lines().next().unwrap();
     assert!(
-        code == Some(0) && first.contains("of 14") && first.contains("What a mode is"),
+        code == Some(0) && first.contains("step 3 of 14") && first.contains("What a mode is"),
         "{told}"
     );
     std::fs::write(folder.join("lessons.ron"), "(").unwrap();

@@ -159,10 +159,45 @@ proptest! {
     }
 
     #[test]
-    fn any_name_of_a_node_is_answered(name in "[a-z]{0,3}[.@]?[-0-9a-z.]{0,6}") {
+    fn any_name_of_a_node_is_answered(name in any_name()) {
         let scene = Scene::from_text("x", EVERYTHING, &[]).unwrap();
-        if let Ok(node) = scene.node(&name) {
-            prop_assert!(node < scene.model.nodes.len());
+        let own = scene.model.nodes.iter().position(|node| node.name == name);
+        match scene.node(&name) {
+            Ok(node) => {
+                prop_assert!(node < scene.model.nodes.len());
+                prop_assert!(own.is_none_or(|own| own == node), "{} is node {}", name, node);
+                prop_assert_eq!(scene.names().nodes(&name), Ok(vec![node]));
+            }
+            Err(message) => {
+                prop_assert!(own.is_none(), "{}", message);
+                prop_assert!(message.len() > 10 && !message.contains('\n'), "{}", message);
+            }
         }
+    }
+}
+
+/// Names that nodes have, names near to these, and others.
+fn any_name() -> impl Strategy<Value = String> {
+    let scene = Scene::from_text("x", EVERYTHING, &[]).unwrap();
+    let names = scene.model.nodes.iter().map(|node| node.name.clone());
+    let own = prop::sample::select(names.collect::<Vec<_>>());
+    prop_oneof![
+        own,
+        "[abctkrhi][.](start|end|all|[0-9]{1,2})",
+        "[a-z]{0,3}[.@]?[-0-9a-z.]{0,6}"
+    ]
+}
+
+#[test]
+fn nodes_of_a_line_are_counted_from_its_start() {
+    let scene = Scene::from_text("x", EVERYTHING, &[]).unwrap();
+    let at = |name: &str| scene.node(name).map(|node| scene.model.nodes[node].at);
+    for place in 1..=9 {
+        let x = 0.5 * (place - 1) as f64;
+        assert_eq!(at(&format!("b.{place}")), Ok([x, 0.0]));
+    }
+    assert_eq!((at("b.start"), at("b.end")), (at("b.1"), at("b.9")));
+    for wrong in ["b.0", "b.10", "b.all", "b", "q.1", "b.x"] {
+        assert!(at(wrong).is_err(), "{wrong}");
     }
 }

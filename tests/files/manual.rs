@@ -506,3 +506,30 @@ fn on_a_terminal_the_pager_shows_a_page_and_without_one_it_is_printed() {
     assert!(!plain.screen(bold));
     assert!(plain.end().success());
 }
+
+#[test]
+fn the_exercise_on_the_judge_finds_a_broken_law_that_shrinks_with_the_increment() {
+    let page = stickslip::manual::page("teaching").unwrap().text();
+    let typed = pages::typed(&page);
+    let audit = typed
+        .iter()
+        .find(|line| line.starts_with("stickslip audit 0"));
+    let finer = typed
+        .iter()
+        .find(|line| line.starts_with("--set history.increment"));
+    let amount = |more: &str| -> f64 {
+        let words = format!("{} {more}", audit.unwrap());
+        let audited = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"))
+            .args(words.split_whitespace().skip(1))
+            .output()
+            .unwrap();
+        let table = String::from_utf8(audited.stdout).unwrap();
+        let broken: Vec<&str> = table.lines().filter(|row| row.contains("BROKEN")).collect();
+        assert_eq!(broken.len(), 1, "{table}");
+        let cells: Vec<&str> = broken[0].split_whitespace().collect();
+        assert_eq!(cells[0], "slip", "{table}");
+        cells[1].parse().unwrap()
+    };
+    let ratio = amount("") / amount(finer.unwrap());
+    assert!((3.5..4.5).contains(&ratio), "{ratio}");
+}

@@ -137,7 +137,7 @@ fn found(debugger: &Debugger) -> Examination {
 }
 
 #[test]
-fn every_way_to_fail_has_a_page_that_says_what_why_and_what_to_do() {
+fn every_way_to_fail_has_a_page_that_says_what_why_and_what_was_tried() {
     for case in &CASES {
         let debugger = at_failure(case);
         let session = debugger.session.as_ref().unwrap();
@@ -146,9 +146,13 @@ fn every_way_to_fail_has_a_page_that_says_what_why_and_what_to_do() {
         };
         assert!((case.is_meant)(&failure), "{}: {failure:?}", case.name);
         let found = found(&debugger);
-        for head in ["what: ", "do: 1. "] {
-            let any = found.lines.iter().any(|line| line.starts_with(head));
-            assert!(any, "{}: {head}: {:#?}", case.name, found.lines);
+        let any = |head: &str| found.lines.iter().any(|line| line.starts_with(head));
+        assert!(any("what: "), "{}: {:#?}", case.name, found.lines);
+        let tried = any("do: 1. ") || any("did not help: ") || any("not tried: ");
+        assert!(tried, "{}: {:#?}", case.name, found.lines);
+        let advised = found.lines.iter().filter(|line| line.starts_with("do: "));
+        for advice in advised {
+            assert!(advice.contains("(tried"), "{}: {advice}", case.name);
         }
         for (width, height) in [(80, 24), (120, 40), (200, 60)] {
             let name = format!("{}-{width}x{height}", case.name);

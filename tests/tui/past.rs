@@ -19,6 +19,7 @@ use stickslip::tui::past::screen;
 use stickslip::tui::theme::Theme;
 use stickslip_exchange::calculix::past::PastRun;
 use stickslip_exchange::calculix::{cel, cvg};
+use vt100::Screen;
 
 const CTRL_Z: &str = "\x1a";
 const ESC: &str = "\x1b";
@@ -241,9 +242,15 @@ fn a_session_walks_searches_is_resized_stopped_and_leaves_no_trace() {
     session.type_and_see("/39\r", "node 39");
     session.type_and_see("?", "What can be done");
     session.type_and_see(ESC, "Attempts: 13");
-    session.keys(CTRL_Z);
+    // There is no shell here that could continue it; who sends a signal can.
+    session.type_and_see(CTRL_Z, "it cannot be suspended");
+    session.signal("TSTP");
     session.wait("the shell's screen", Session::on_main_screen);
-    session.signal("CONT");
+    let back = patiently(|| {
+        session.signal("CONT");
+        session.screen(Screen::alternate_screen).then_some(())
+    });
+    assert!(back.is_some(), "it does not come back");
     session.see("Attempts: 13");
     session.quit();
 }

@@ -6,6 +6,8 @@
 #![cfg(unix)]
 
 use crate::terminal::*;
+use rustix::fs::{self, OFlags};
+use rustix::io::ioctl_fionread;
 use std::path::PathBuf;
 use std::process::Stdio;
 use std::sync::Arc;
@@ -254,6 +256,84 @@ fn ctrl_z_goes_back_to_the_shell_and_fg_returns() {
     session.type_and_see("echo left=$?\r", "left=0");
     session.keys("exit\r");
     session.end();
+}
+
+#[test]
+fn ctrl_z_without_a_shell_to_return_to_does_not_freeze_it() {
+    // The program leads the session here: nobody could continue it.
+    let mut session = open(FLOOR);
+    session.keys("3s");
+    session.see_picture(FLOOR, "3 s", 120, 40);
+    session.type_and_see(CTRL_Z, "it cannot be suspended");
+    session.see_taken();
+    session.keys("s");
+    session.see_picture(FLOOR, "4 s", 120, 40);
+    session.quit();
+}
+
+/// What the terminal keeps for the program to read.
+fn unread(session: &Session) -> u64 {
+    let name = session.master.tty_name().unwrap();
+    let terminal = fs::open(name, OFlags::RDONLY | OFlags::NOCTTY, fs::Mode::empty());
+    ioctl_fionread(terminal.unwrap()).unwrap()
+}
+
+#[test]
+fn thousands_of_keys_in_one_write_are_all_read() {
+    let past = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/calculix/pinned-beam.cel"
+    );
+    for (opened, first) in [
+        (FLOOR, "nothing is solved yet"),
+        (past, "stick and slip are not in the file"),
+    ] {
+        let mut session = Start::debugger(&[opened]).go();
+        session.see(first);
+        // No key follows that could wake it.
+        session.keys(&"j".repeat(5000));
+        let read = patiently(|| (unread(&session) == 0).then_some(()));
+        assert!(
+            read.is_some(),
+            "{opened}: {} bytes are unread",
+            unread(&session)
+        );
+        let all = format!("{}q", "jk".repeat(2500));
+        session.keys(&all);
+        assert!(session.end().success());
+        session.see_restored();
+    }
+}
+
+#[test]
+fn a_paste_and_clicks_of_thousands_of_bytes_are_read_whole() {
+    let mut session = open(FLOOR);
+    let wheel = "\x1b[<65;5;8M".repeat(500);
+    session.keys(&format!(
+        "{wheel}:\x1b[200~{}tail\x1b[201~",
+        "step ".repeat(300)
+    ));
+    session.see("step tail");
+    session.keys(ESC);
+    session.see_no_more("step tail");
+    session.quit();
+}
+
+#[test]
+fn half_an_escape_sequence_and_unknown_ones_do_not_hold_up_the_screen() {
+    for keys in ["\x1b[", "\x1b[99z", "\x1b[<1;", "\u{e9}\x1b[?1;2;3c"] {
+        let mut session = long_run();
+        session.keys(keys);
+        let now = patiently(|| steps(&session)).unwrap();
+        let further = patiently(|| steps(&session).filter(|later| *later > now + 50));
+        assert!(
+            further.is_some(),
+            "{keys:?}: it stands still\n{}",
+            session.text()
+        );
+        session.signal("TERM");
+        session.end();
+    }
 }
 
 #[test]

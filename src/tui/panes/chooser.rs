@@ -88,9 +88,10 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
         }
         let name = paint::cut(&offer.name, names);
         let blank = " ".repeat(names.saturating_sub(name.width()));
-        let done = match offer.done.as_str() {
-            "" => String::new(),
-            done => format!("✓ {done}  "),
+        let done = match offer.reached {
+            None => String::new(),
+            Some(reached) if reached.is_done() => format!("✓ {}  ", reached.told()),
+            Some(reached) => format!("{}  ", reached.told()),
         };
         let room = width.saturating_sub(names + 6 + done.width());
         lines.push(Line::from(vec![

@@ -43,7 +43,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Span::raw(short(last.limit, view)),
     ]);
     let mut above = vec![caption];
-    above.extend(judged(view, theme).filter(|_| inner.height >= ROOM_FOR_JUDGE));
+    let shows_judge = inner.height >= ROOM_FOR_JUDGE && !app.hides_verdict();
+    above.extend(judged(view, theme).filter(|_| shows_judge));
     paint::lines(buffer, inner, &above);
     let above = above.len() as u16;
     // A row for the numbers of the iterations below.

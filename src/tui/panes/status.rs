@@ -217,6 +217,10 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             theme.strong,
         ),
         (None, None) => (start(view), theme.text),
+        (None, Some(_)) if app.hides_verdict() => (
+            "? Accepted. Predict the judge's verdict (a)".into(),
+            theme.text,
+        ),
         (None, Some(_)) if app.hides_any(view) => {
             ("? solved; what follows is yours to say".into(), theme.text)
         }

@@ -253,7 +253,10 @@ mod tests {
     fn any_size_shows_something() {
         let page = page();
         for (width, height) in [(1, 1), (20, 5), (40, 12), (80, 24), (200, 60)] {
-            text(&page, width, height);
+            let shown = text(&page, width, height);
+            assert_eq!(shown.lines().count(), usize::from(height));
+            let blank = shown.chars().all(char::is_whitespace);
+            assert!(!blank, "{width}x{height}");
         }
     }
 }

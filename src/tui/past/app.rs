@@ -129,6 +129,11 @@ impl App {
         self.message = Message { text, tone };
     }
 
+    /// Shows an error in the line of messages.
+    pub(super) fn complain(&mut self, text: &str) {
+        self.say(text, Tone::Error);
+    }
+
     /// What a key does, and what it asks of the event loop.
     pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
         let name = keys::name(key)?;

@@ -6,11 +6,12 @@ use crate::action::Keymap;
 use crate::action::config::Config;
 use crate::explain::past::run::Past;
 use crate::tui::keys;
-use crate::tui::run::{Error, IDLE, leave, obey, suspend};
+use crate::tui::run::{BUSY, Error, IDLE, leave, next_event, obey, stop};
 use crate::tui::terminal::{Signals, Terminal};
 use crate::tui::theme::Theme;
-use crossterm::event::{self, Event};
+use crossterm::event::Event;
 use std::io::{self, IsTerminal};
+use std::time::{Duration, Instant};
 
 /// Shows a run in the terminal.
 ///
@@ -32,17 +33,20 @@ pub fn run(past: Past) -> Result<(), Error> {
 
 fn events(app: &mut App, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     let mut changed = true;
+    let mut drawn = Instant::now();
     while signals.end().is_none() {
         if std::mem::take(&mut changed) {
             let area = terminal.show(|buffer, area| screen::draw(buffer, area, app))?;
+            drawn = Instant::now();
             if matches!(app.overlay, Overlay::Help(..)) {
                 let help = panes::help(app, usize::from(area.width.saturating_sub(2)));
                 app.shows_help(help.iter().map(ToString::to_string).collect());
             }
         }
-        if event::poll(IDLE)? {
+        let mut input = next_event(IDLE)?;
+        while let Some(event) = input {
             changed = true;
-            let outside = match event::read()? {
+            let outside = match event {
                 Event::Key(key) => keys::apart(&key).find_map(|key| app.key(&key)),
                 Event::Paste(text) => {
                     app.paste(&text);
@@ -51,13 +55,19 @@ fn events(app: &mut App, terminal: &mut Terminal, signals: &Signals) -> io::Resu
                 _ => None,
             };
             if let Some(outside) = outside
-                && obey(outside, terminal, signals)?
+                && obey(outside, terminal, signals, &mut |text| app.complain(text))?
             {
                 return Ok(());
             }
+            // How far help can be scrolled is known once it is drawn.
+            let waits = matches!(app.overlay, Overlay::Help(..)) || drawn.elapsed() >= BUSY;
+            input = match waits {
+                true => None,
+                false => next_event(Duration::ZERO)?,
+            };
         }
         if signals.stop() {
-            suspend(terminal, signals)?;
+            stop(terminal, signals)?;
             changed = true;
         }
         if signals.resumed() {
