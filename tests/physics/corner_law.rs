@@ -139,6 +139,7 @@ fn no_node_that_slid_onto_a_border_is_held_there_against_the_law_of_slip() {
         let trial = attempt(&scene);
         assert_eq!(trial.end, End::Finished, "{name}");
         assert!(trial.wrong.is_empty(), "{name}: {:?}", trial.wrong);
+        assert!(end(&scene).1 > 0, "{name}: nothing is released");
     }
 }
 
@@ -149,7 +150,7 @@ fn what_slid_onto_a_border_has_the_place_and_the_friction_of_finer_increments() 
         ("302-178", 0.2222, "u.2", 0.8889, -0.629386, -0.58861),
         ("301-43", 0.03448, "u.9", 0.96544, 0.401815, -0.12082),
         ("301-99", 0.02703, "r.21", 0.91902, 1.78234, -0.05825),
-        ("303-243", 0.1625, "l.38", 0.8125, 0.111632, -0.51921),
+        ("303-243", 0.1625, "l.38", 0.8125, 0.570966, -0.51921),
     ] {
         for parts in [1.0, 4.0] {
             let increment = format!("{:?}", increment / parts);
@@ -210,18 +211,16 @@ fn dragged(half: f64, pull: f64, crossed: bool, increment: f64) -> Scene {
     Scene::from_text("dragged", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Steps to the end of the history; how often the node went back to a side along which it had come.
+/// Steps to the end of the history; how often a node went back to the side along which it had come.
 fn end(scene: &Scene) -> (Stepper, usize) {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
     let mut releases = 0;
     while let Some(event) = stepper.step() {
         assert!(!matches!(event.outcome, Outcome::Failed(_)), "{event:?}");
-        let decision = &event.nodes[0].decision;
-        if decision.rule == Rule::CornerReleases {
-            assert_eq!(
-                [decision.before, decision.next],
-                [Mode::Fixed, Mode::Sliding]
-            );
+        let decisions = event.nodes.iter().map(|node| &node.decision);
+        for decision in decisions.filter(|decision| decision.rule == Rule::CornerReleases) {
+            let modes = [decision.before, decision.next];
+            assert_eq!(modes, [Mode::Fixed, Mode::Sliding]);
             assert!(decision.margin() < 0.0 && event.outcome.ends_major());
             releases += 1;
         }
@@ -274,6 +273,7 @@ fn a_node_that_is_drawn_over_a_kink_rests_where_friction_against_its_slip_holds_
             }
         }
         assert!(rests > 0, "{crossed}");
-        assert!(released > 0, "{crossed}");
+        // Over one surface the node comes to where it rests without having passed it.
+        assert!(released > 0 || !crossed);
     }
 }
