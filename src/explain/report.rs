@@ -1,5 +1,6 @@
 //! What happened, in words: the sentences that the command line and the debugger share.
 
+use crate::contact::record::ContactRecord;
 use crate::contact::table2::{Decision, Rule, Tested};
 use crate::explain::judged;
 use crate::explain::names::{mode, position, slave};
@@ -191,14 +192,11 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             by.words()
         ),
         Outcome::Major { after, settled } => {
-            let how = if *settled {
-                "minors settled"
-            } else {
-                "minors cut off unsettled"
-            };
-            let how = match released(model, event).as_str() {
-                "" => how.to_owned(),
-                names => format!("{how}; {names} slid into a corner and leaves it again"),
+            let leaves = |node: &ContactRecord| node.decision.rule == Rule::CornerReleases;
+            let how = match (settled, event.nodes.iter().any(leaves)) {
+                (true, false) => "minors settled".to_owned(),
+                (true, true) => format!("minors settled, then {}", changes(model, event)),
+                (false, _) => "minors cut off unsettled".to_owned(),
             };
             format!(
                 "{at}: {how}; residual {:.3e}, wanted {:.1e}",
@@ -359,15 +357,6 @@ fn changes(model: &Model, event: &Event) -> String {
             n - 2
         ),
     }
-}
-
-/// The nodes that leave a corner at the end of the major iteration.
-fn released(model: &Model, event: &Event) -> String {
-    let leaves = |s: &usize| event.nodes[*s].decision.rule == Rule::CornerReleases;
-    let names = (0..event.nodes.len())
-        .filter(leaves)
-        .map(|s| slave(model, s));
-    names.collect::<Vec<_>>().join(", ")
 }
 
 /// What the user did.

@@ -1,17 +1,18 @@
 //! The law at a border between two sides: what a node bears there that slid onto it. Kinks go to zero, increments too; the solver,
 //! its judge and the judge from outside agree.
 
-use crate::common::{Run, run, scene};
+use crate::blocks::finished;
+use crate::common::{Accepted, scene};
 use crate::outside::judge::Corner;
 use crate::outside::trial::{End, attempt};
 use proptest::prelude::*;
-use stickslip::contact::corner::{
-    Side, beyond_corner, beyond_slid, half_angle, least_friction, widened,
-};
+use std::sync::Arc;
+use stickslip::contact::corner::{Side, beyond_corner, beyond_slid, least_friction, widened};
 use stickslip::contact::table2::Rule;
-use stickslip::explain::audit::Audit;
-use stickslip::model::Friction;
+use stickslip::model::{Contact, Friction, Mode};
 use stickslip::scene::Scene;
+use stickslip::step::event::Outcome;
+use stickslip::step::stepper::Stepper;
 
 /// Walked towards −x, so that the outside is up.
 const T: [f64; 2] = [-1.0, 0.0];
@@ -138,5 +139,141 @@ fn no_node_that_slid_onto_a_border_is_held_there_against_the_law_of_slip() {
         let trial = attempt(&scene);
         assert_eq!(trial.end, End::Finished, "{name}");
         assert!(trial.wrong.is_empty(), "{name}: {:?}", trial.wrong);
+        assert!(end(&scene).1 > 0, "{name}: nothing is released");
+    }
+}
+
+/// The node, the load, and its place and the ratio of the force's components that finer increments come to.
+#[test]
+fn what_slid_onto_a_border_has_the_place_and_the_friction_of_finer_increments() {
+    for (name, increment, node, load, place, ratio) in [
+        ("302-178", 0.2222, "u.2", 0.8889, -0.629386, -0.58861),
+        ("301-43", 0.03448, "u.9", 0.96544, 0.401815, -0.12082),
+        ("301-99", 0.02703, "r.21", 0.91902, 1.78234, -0.05825),
+        ("303-243", 0.1625, "l.38", 0.8125, 0.570966, -0.51921),
+    ] {
+        for parts in [1.0, 4.0] {
+            let increment = format!("{:?}", increment / parts);
+            let run = finished(&finding(name, &[("history.increment", &increment)]));
+            let model = run.stepper.model();
+            let is = |contact: &Contact| model.nodes[contact.node].name == node;
+            let slave = model.contacts.iter().position(is).unwrap();
+            let at = |accepted: &&Accepted| (accepted.load - load).abs() < 1e-6;
+            let state = &run.accepted.iter().find(at).unwrap().state;
+            let x = model.place(&state.u, model.contacts[slave].node)[0];
+            let [f_x, f_y] = state.nodes[slave].force();
+            assert!((x - place).abs() < 1.5e-5, "{name}, {increment}: {x}");
+            assert!(
+                (f_x / f_y - ratio).abs() < 3e-5,
+                "{name}, {increment}: {}",
+                f_x / f_y
+            );
+        }
+    }
+}
+
+/// A node with the weight 1 that a spring draws to the left, by `pull` from where it is at rest, down a slope at x = 0.5 and over a kink
+/// of twice `half` degrees at x = 0, which is the meeting of one surface or a crossing of two.
+fn dragged(half: f64, pull: f64, crossed: bool, increment: f64) -> Scene {
+    let rise = half.to_radians().tan();
+    let (low, high) = (-rise, rise);
+    let (track, on) = if crossed {
+        (
+            format!(
+                "Through(id: \"a\", points: [(1.0, {high:?}), (-1.0, {low:?})], per_element: 2),
+                Through(id: \"b\", points: [(1.0, {low:?}), (-1.0, {high:?})], per_element: 2),"
+            ),
+            "\"a\", \"b\"",
+        )
+    } else {
+        (
+            format!(
+                "Through(id: \"a\", points: [(1.0, {high:?}), (0.0, 0.0), (-1.0, {high:?})], per_element: 2),"
+            ),
+            "\"a\"",
+        )
+    };
+    let surfaces = on.replace("\"a\"", "(id: \"a\", along: \"a\")");
+    let surfaces = surfaces.replace(", \"b\"", ", (id: \"b\", along: \"b\")");
+    let y = 0.5 * rise;
+    let text = format!(
+        "(title: \"drawn over a kink\", nodes: [{track} Node(id: \"n\", at: (0.5, {y:?})), Node(id: \"s\", at: (0.5, {y:?}))],
+        materials: [], bodies: [Matrix(id: \"spring\", nodes: [\"n\", \"s\"], stiffness: [
+            [4.0, 0.0, -4.0, 0.0], [0.0, 0.1, 0.0, -0.1], [-4.0, 0.0, 4.0, 0.0], [0.0, -0.1, 0.0, 0.1]])],
+        surfaces: [{surfaces}],
+        slaves: [(nodes: [\"n\"], on: [{on}], start: fixed, friction: (angle: 30))],
+        supports: [(node: \"s\", fix: [y])],
+        loads: [Force(node: \"n\", y: -1.0, scale: [(0.0, 1.0), (1.0, 1.0)]),
+            Displacement(node: \"s\", component: x, value: -{pull:?})],
+        history: (path: [0.0, 1.0], increment: {increment:?}),
+        monitors: [(name: \"u_x\", of: Displacement(node: \"n\", component: x))])"
+    );
+    Scene::from_text("dragged", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Steps to the end of the history; how often a node went back to the side along which it had come.
+fn end(scene: &Scene) -> (Stepper, usize) {
+    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    let mut releases = 0;
+    while let Some(event) = stepper.step() {
+        assert!(!matches!(event.outcome, Outcome::Failed(_)), "{event:?}");
+        let decisions = event.nodes.iter().map(|node| &node.decision);
+        for decision in decisions.filter(|decision| decision.rule == Rule::CornerReleases) {
+            let modes = [decision.before, decision.next];
+            assert_eq!(modes, [Mode::Fixed, Mode::Sliding]);
+            assert!(decision.margin() < 0.0 && event.outcome.ends_major());
+            releases += 1;
+        }
+    }
+    (stepper, releases)
+}
+
+/// On the slopes friction is at its limit, in the kink it is between both limits; and the size of increments does not matter.
+#[test]
+fn a_node_that_is_drawn_over_a_kink_rests_where_friction_against_its_slip_holds_it() {
+    let phi = 30_f64.to_radians();
+    for crossed in [false, true] {
+        let mut released = 0;
+        let mut rests = 0;
+        for half in [1e-5, 0.01, 1.0, 10.0] {
+            for k in 0..15 {
+                let pull = 0.5 + phi.tan() / 4.0 + 0.01 * f64::from(k - 7);
+                let [one, many] = [1.0, 1.0 / 16.0].map(|increment| {
+                    let scene = dragged(half, pull, crossed, increment);
+                    let trial = attempt(&scene);
+                    assert!(
+                        trial.wrong.is_empty(),
+                        "{half} {pull} {crossed}: {:?}",
+                        trial.wrong
+                    );
+                    let (mut stepper, releases) = end(&scene);
+                    released += releases;
+                    let mut values = Vec::new();
+                    stepper.monitors(&mut values);
+                    (0.5 + values[0], stepper.state().nodes[0].force())
+                });
+                let (x, [against, f_n]) = one;
+                assert!(
+                    (x - many.0).abs() < 1e-8,
+                    "{half} {pull} {crossed}: {x} {}",
+                    many.0
+                );
+                let angle = against.atan2(f_n) - phi;
+                let h = half.to_radians();
+                if x.abs() < 1e-9 {
+                    rests += 1;
+                    assert!(angle.abs() < h + 1e-8, "{half} {pull} {crossed}: {angle}");
+                } else {
+                    let edge = -h * x.signum();
+                    assert!(
+                        (angle - edge).abs() < 1e-8,
+                        "{half} {pull} {crossed}: {angle}"
+                    );
+                }
+            }
+        }
+        assert!(rests > 0, "{crossed}");
+        // Over one surface the node comes to where it rests without having passed it.
+        assert!(released > 0 || !crossed);
     }
 }

@@ -284,6 +284,67 @@ fn in_a_concave_corner_both_sides_give_a_force_and_only_there() {
     assert_eq!(slid(120.0), [Law::Slip]);
 }
 
+/// A node slides onto a kink of 2e-4, of one surface, or of two that cross or end and begin there: friction is at its limit against
+/// the slip, within that kink.
+#[test]
+fn a_slight_kink_takes_no_friction_from_a_node_that_slid_onto_it() {
+    let h = 1e-4_f64;
+    let phi = 30_f64.to_radians();
+    let friction = Friction {
+        angle: 30.0,
+        cohesion: 0.0,
+    };
+    let bent = |h: f64| [[1.0, h], [0.0, 0.0], [0.0, 0.0], [-1.0, h]];
+    let crossed = [[1.0, h], [-1.0, -h], [1.0, -h], [-1.0, h]];
+    let one = vec![surface(vec![vec![1, 2], vec![2, 4]])];
+    let two = vec![surface(vec![vec![1, 2]]), surface(vec![vec![3, 4]])];
+    let turned = vec![two[1].clone(), two[0].clone()];
+    for (name, surfaces, chain) in [
+        ("valley", &one, bent(h)),
+        ("valley of two", &two, bent(h)),
+        ("valley of two, turned", &turned, bent(h)),
+        ("crossing", &two, crossed),
+        ("crossing, turned", &turned, crossed),
+        ("ridge", &one, bent(-h)),
+        ("ridge of two", &two, bent(-h)),
+        ("ridge of two, turned", &turned, bent(-h)),
+    ] {
+        let is_ridge = name.starts_with("ridge");
+        // From the right, friction points to the right; and the other way round.
+        for side in [1.0, -1.0] {
+            let broken = |from: f64, against: f64| {
+                let rise = if is_ridge { -h } else { h };
+                let way = [[side * from, from * rise], [0.0, 0.0]];
+                let slave = slave(surfaces, friction, Bond::Hard);
+                let force = [side * against, 1.0];
+                let (verdict, _) = judged(surfaces, slave, &chain, way, force, 0.0);
+                verdict.broken().map(|f| f.law).collect::<Vec<_>>()
+            };
+            let [least, most] = [(phi - h).tan(), (phi + h).tan()];
+            for against in [least, most] {
+                assert_eq!(broken(0.5, against), [], "{name} {side}");
+            }
+            let between = broken(0.5, phi.tan());
+            assert_eq!(between.is_empty(), !is_ridge, "{name} {side}: {between:?}");
+            for against in [least - 1e-6, 0.3, 0.0, -0.3, -least] {
+                let found = broken(0.5, against);
+                assert!(
+                    found.contains(&Law::Slip),
+                    "{name} {side} {against}: {found:?}"
+                );
+            }
+            assert!(
+                broken(0.5, most + 1e-6).contains(&Law::Cone),
+                "{name} {side}"
+            );
+            // What stood there before may bear any force of the cone.
+            for against in [least, 0.3, 0.0, -0.3, -least] {
+                assert_eq!(broken(0.0, against), [], "{name} {side} {against}");
+            }
+        }
+    }
+}
+
 #[test]
 fn on_a_convex_vertex_a_node_stays_that_slides_down_neither_side() {
     // Slopes of 15 degrees.

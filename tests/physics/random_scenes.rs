@@ -86,6 +86,27 @@ fn bent(bend: f64, friction: Friction) -> Scene {
     Scene::from_text("bent", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// The same node over two surfaces of one element each, which meet or cross at the origin.
+fn two(one: [Point; 2], other: [Point; 2], friction: Friction) -> Scene {
+    let through = |id: &str, ends: [Point; 2]| {
+        let [[a, b], [c, d]] = ends;
+        format!("Through(id: \"{id}\", points: [({a:?}, {b:?}), ({c:?}, {d:?})], per_element: 2)")
+    };
+    let text = format!(
+        "(title: \"one node\", nodes: [{}, {}, Node(id: \"s\", at: (0, 0.5))],
+        materials: [], bodies: [Springs(id: \"k\", bars: [
+            (nodes: [\"s\"], angle: 0, stiffness: 1), (nodes: [\"s\"], angle: 90, stiffness: 1)])],
+        surfaces: [(id: \"f\", along: \"f\"), (id: \"g\", along: \"g\")],
+        slaves: [(nodes: [\"s\"], on: [\"f\", \"g\"], friction: (angle: {}, cohesion: {}))],
+        history: (path: [0, 1], increment: 1))",
+        through("f", one),
+        through("g", other),
+        friction.angle,
+        friction.cohesion,
+    );
+    Scene::from_text("two", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// What the judge says of a node that goes from one place to another and bears a force there; the scene's extent and largest
 /// force are 1.
 fn verdict(scene: &Scene, from: Point, to: Point, force: Point) -> Verdict {
@@ -222,6 +243,61 @@ fn at_a_vertex_a_force_is_held_by_both_sides() {
     };
     assert_eq!(on_vertex(60.0, rough(31.0), [0.0, 0.5]), (None, 0));
     assert_eq!(on_vertex(60.0, rough(29.0), [0.0, 0.5]).0, Some(Law::Cone));
+}
+
+/// The same law as the solver's judge has, from outside: on a kink of one surface and of two, whichever comes first.
+#[test]
+fn a_node_that_slid_onto_a_kink_bears_friction_at_its_limit_against_the_slip() {
+    let (bend, friction) = (
+        -0.02,
+        Friction {
+            angle: 30.0,
+            cohesion: 0.0,
+        },
+    );
+    let rise = (0.5_f64 * 0.02).to_radians();
+    let (from, at) = ([0.5 * rise.cos(), 0.5 * rise.sin()], [0.0, 0.0]);
+    let edge = |times: f64| {
+        let (sin, cos) = (30_f64.to_radians() + times * rise).sin_cos();
+        [0.5 * sin, 0.5 * cos]
+    };
+    let ends = |right: f64, left: f64| {
+        let (sin, cos) = rise.sin_cos();
+        [[right * cos, right * sin], [left * cos, -left * sin]]
+    };
+    for scene in [
+        bent(bend, friction),
+        two(ends(1.0, 0.0), ends(0.0, -1.0), friction),
+        two(ends(0.0, -1.0), ends(1.0, 0.0), friction),
+        two(
+            [ends(1.0, 0.0)[0], ends(-1.0, 0.0)[0]],
+            [ends(0.0, 1.0)[1], ends(0.0, -1.0)[1]],
+            friction,
+        ),
+        two(
+            [ends(0.0, 1.0)[1], ends(0.0, -1.0)[1]],
+            [ends(1.0, 0.0)[0], ends(-1.0, 0.0)[0]],
+            friction,
+        ),
+    ] {
+        for side in [1.0, -1.0] {
+            let slid = |force: Point| {
+                let turned = |p: Point| [side * p[0], p[1]];
+                broken(&verdict(&scene, turned(from), at, turned(force)))
+            };
+            for times in [-1.0, 0.0, 1.0] {
+                assert_eq!(slid(edge(times)), None, "{times}");
+            }
+            assert_eq!(slid(edge(1.01)), Some(Law::Cone));
+            assert_eq!(slid(edge(-1.01)), Some(Law::Stuck));
+            assert_eq!(slid([0.0, 0.5]), Some(Law::Stuck));
+            assert_eq!(slid([-0.1, 0.5]), Some(Law::Driven));
+            let stood = |force: Point| broken(&verdict(&scene, at, at, force));
+            assert_eq!(stood([0.0, 0.5]), None);
+            assert_eq!(stood(edge(0.0)), None);
+            assert_eq!(stood([0.0, -0.5]), Some(Law::Tension));
+        }
+    }
 }
 
 #[test]
