@@ -22,6 +22,10 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(mutants)]
+#[path = "../tests/mutants/mutants.rs"]
+mod mutants;
+
 pub mod action;
 pub mod attach;
 pub mod cli;

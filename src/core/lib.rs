@@ -124,6 +124,10 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(mutants)]
+#[path = "../../tests/mutants/mutants.rs"]
+mod mutants;
+
 pub mod contact;
 pub mod executor;
 pub mod fem;

@@ -9,6 +9,10 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(mutants)]
+#[path = "../../tests/mutants/mutants.rs"]
+mod mutants;
+
 mod check;
 mod dense;
 mod dissection;

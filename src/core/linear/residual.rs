@@ -33,6 +33,12 @@ impl System {
                         .max(self.size[d] / lever)
                         .max(self.external[d].abs() / lever);
                     if equation.is_some() {
+                        #[cfg(mutants)]
+                        let balance = crate::mutants::pick(
+                            "residual-with-its-sign",
+                            balance,
+                            balance.max(0.0),
+                        );
                         force = force.max(balance.abs() / lever);
                     }
                 }
@@ -145,6 +151,10 @@ impl System {
 
     /// Internal force less applied load at a degree of freedom: what support or surface must give there.
     pub fn nodal_force(&self, dof: usize) -> f64 {
+        #[cfg(mutants)]
+        if crate::mutants::is_active("reactions-without-loads") {
+            return self.force[dof];
+        }
         self.force[dof] - self.external[dof]
     }
 

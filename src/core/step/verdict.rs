@@ -28,6 +28,9 @@ impl Stepper {
             return self.refuse_inverted(point);
         }
         let verdict = self.source.judge(&self.state.at(), &after);
+        #[cfg(mutants)]
+        let verdict =
+            crate::mutants::pick("accepted-without-the-judge", verdict, Verdict::default());
         if self.state.motion.is_some() {
             let worst = worst_of(&verdict);
             return match worst.filter(|found| is_slip(found.law) && !self.state.net) {
