@@ -22,10 +22,6 @@
 
 #![forbid(unsafe_code)]
 
-#[cfg(mutants)]
-#[path = "../tests/mutants/mutants.rs"]
-mod mutants;
-
 pub mod action;
 pub mod attach;
 pub mod cli;
@@ -42,6 +38,8 @@ pub mod teach;
 #[cfg(feature = "tui")]
 pub mod tui;
 
+#[cfg(mutants)]
+pub use stickslip_core::mutants;
 pub use stickslip_core::{
     contact, executor, fem, interface, linalg, linear, model, step, strategy,
 };

@@ -23,10 +23,6 @@
 
 #![forbid(unsafe_code)]
 
-#[cfg(mutants)]
-#[path = "../../tests/mutants/mutants.rs"]
-mod mutants;
-
 pub mod attach;
 pub mod broken;
 pub mod calculix;

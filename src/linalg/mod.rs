@@ -9,10 +9,6 @@
 
 #![forbid(unsafe_code)]
 
-#[cfg(mutants)]
-#[path = "../../tests/mutants/mutants.rs"]
-mod mutants;
-
 mod check;
 mod dense;
 mod dissection;
@@ -20,6 +16,8 @@ mod front;
 mod fronts;
 mod graph;
 mod lu;
+#[cfg(mutants)]
+pub mod mutants;
 mod order;
 mod pattern;
 mod symmetric;

@@ -225,10 +225,6 @@ fn amplitude(card: &Card<'_>, deck: &Deck) -> Result<Option<usize>, Fault> {
 
 /// Whether a card gives up what was before it.
 fn is_new(card: &Card<'_>) -> Result<bool, Fault> {
-    #[cfg(mutants)]
-    if crate::mutants::is_active("op-new-ignored") {
-        return Ok(false);
-    }
     Ok(card.choice("OP", &["MOD", "NEW"])? == 1)
 }
 

@@ -1,10 +1,9 @@
-//! Selects a fault of the mutation bench (`tests/mutants/run.py`). Only a build with `--cfg mutants` includes this file, in
-//! every package.
-#![allow(dead_code)]
+//! Selects a fault of the mutation bench (`tests/mutants/run.py`). Only a build with `--cfg mutants` contains this module and
+//! the faults.
 
 use std::sync::OnceLock;
 
-/// Whether this process runs with this fault: the environment variable STICKSLIP_MUTANT names one.
+/// Whether this process runs with this fault, which the environment variable STICKSLIP_MUTANT names.
 pub fn is_active(fault: &str) -> bool {
     static SELECTED: OnceLock<Option<String>> = OnceLock::new();
     let selected = SELECTED.get_or_init(|| std::env::var("STICKSLIP_MUTANT").ok());
