@@ -22,6 +22,8 @@ impl System {
             }
         }
         let tolerance = at.chosen.tolerance;
+        #[cfg(mutants)]
+        let tolerance = crate::mutants::pick("tolerance-widened", tolerance, 1e4 * tolerance);
         let mut scale = self.sizes.reference.max(self.sizes.least_scale(tolerance));
         let (mut force, mut length) = (0.0_f64, 0.0_f64);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
@@ -33,12 +35,6 @@ impl System {
                         .max(self.size[d] / lever)
                         .max(self.external[d].abs() / lever);
                     if equation.is_some() {
-                        #[cfg(mutants)]
-                        let balance = crate::mutants::pick(
-                            "residual-with-its-sign",
-                            balance,
-                            balance.max(0.0),
-                        );
                         force = force.max(balance.abs() / lever);
                     }
                 }
