@@ -38,6 +38,8 @@ pub mod teach;
 #[cfg(feature = "tui")]
 pub mod tui;
 
+#[cfg(mutants)]
+pub use stickslip_core::mutants;
 pub use stickslip_core::{
     contact, executor, fem, interface, linalg, linear, model, step, strategy,
 };

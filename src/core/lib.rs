@@ -141,3 +141,5 @@ pub use model::{Mode, Model, Settings, Strategy};
 pub use step::intervene::Intervention;
 pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;
+#[cfg(mutants)]
+pub use stickslip_linalg::mutants;

@@ -5,7 +5,9 @@
 
 use super::remedy::{Kind, Remedy};
 use crate::linear::singular::Singular;
-use crate::model::{AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, Strategy};
+use crate::model::{
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, Strategy,
+};
 use crate::step::event::Failure;
 use crate::step::state::State;
 

@@ -385,7 +385,11 @@ impl Page {
                 How::Restart(_) => "tried from the start: it gets past this load",
                 _ => "tried: it converges",
             };
-            format!("{}: {} ({from}, {minors})", remedy.label, remedy.how.typed())
+            format!(
+                "{}: {} ({from}, {minors})",
+                remedy.label,
+                remedy.how.typed()
+            )
         });
         let finer = self.finer.iter();
         let finer = finer.filter(|finer| finer.run.failure.is_none());

@@ -10,8 +10,8 @@ use super::number;
 use super::strain::{self, MaterialCause};
 use crate::contact::projection::projection_at;
 use crate::model::{
-    AtCycle, BoundUpdate, Geometry, InitialGaps, Mode, Model, ResidualMethod, Settings, Sticking, Strategy,
-    Touch,
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Mode, Model, ResidualMethod, Settings, Sticking,
+    Strategy, Touch,
 };
 use crate::scene::gaps::{StartGaps, start_gaps};
 use crate::step::event::Failure;

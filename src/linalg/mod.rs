@@ -16,6 +16,8 @@ mod front;
 mod fronts;
 mod graph;
 mod lu;
+#[cfg(mutants)]
+pub mod mutants;
 mod order;
 mod pattern;
 mod symmetric;

@@ -312,6 +312,8 @@ impl Journal {
     }
 
     fn write(&mut self, line: &impl Serialize, sync: bool) -> Result<(), JournalError> {
+        #[cfg(mutants)]
+        let sync = crate::mutants::pick("journal-not-synced", sync, false);
         let failed = |source| failure(&self.path, "written", source);
         let text = notation::line(line);
         let text = text.map_err(|e| failed(io::Error::other(e)))? + "\n";
@@ -541,6 +543,14 @@ pub fn newest() -> Result<PathBuf, JournalError> {
 
 /// A digest of a state's bits, over its text in RON, in which floats are exact.
 pub fn digest(state: &State) -> String {
+    #[cfg(mutants)]
+    let state = &match crate::mutants::is_active("digest-without-contacts") {
+        true => State {
+            nodes: Vec::new(),
+            ..state.clone()
+        },
+        false => state.clone(),
+    };
     let mut digest = Digest::default();
     match notation::line_to(&mut digest, state) {
         Ok(()) => digest.to_string(),

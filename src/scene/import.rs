@@ -130,6 +130,8 @@ pub(crate) fn given(
     reduced: bool,
     scale: f64,
 ) -> Result<Nodes, (&'static str, String)> {
+    #[cfg(mutants)]
+    let scale = crate::mutants::pick("import-without-its-scale", scale, 1.0);
     let label = |&n: &usize| mesh.labels[n] as usize;
     let mut used = vec![false; mesh.nodes.len()];
     mesh.cells

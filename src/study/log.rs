@@ -227,6 +227,11 @@ impl Lines<'_> {
                 self.are_sealed = true;
             }
             Seal::Missing if !self.are_sealed => {}
+            #[cfg(mutants)]
+            Seal::Broken if crate::mutants::is_active("changed-log-line-accepted") => {
+                let end = text.rfind('\t').unwrap_or(text.len());
+                text.truncate(end);
+            }
             Seal::Broken | Seal::Missing => return Err(broken(CHANGED)),
         }
         self.number += 1;

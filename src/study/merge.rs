@@ -47,6 +47,8 @@ pub struct Reading<T> {
 
 /// The one of two results that are the same to the last bit.
 pub fn same<T: Serialize + Clone>(one: &T, other: &T) -> Option<T> {
+    #[cfg(mutants)]
+    let other = crate::mutants::pick("merge-keeps-the-first-result", other, one);
     // Their text and not they, since a number that is none is not equal to itself.
     let text = |value: &T| ron::to_string(value).ok();
     (text(one) == text(other)).then(|| one.clone())

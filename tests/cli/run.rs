@@ -1,9 +1,11 @@
 //! The program from outside: exit codes, what goes to which stream, and what happens to files.
 
-use crate::program::{code, err, interrupted, names, out, program};
+use crate::program::{code, err, interrupted, names, out, program, rows, well};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
+use stickslip::scene::Scene;
 
 const BEAM: &str = "01-pinned-beam-rough-floor";
 const ROUGH: &str = "02-two-cantilevers-rough";
@@ -79,6 +81,29 @@ fn a_trace_has_a_row_for_every_minor_iteration_and_agrees_with_the_csv() {
     let last = rows.last().unwrap().rsplit(',').nth(1).unwrap();
     let last: f64 = last.parse().unwrap();
     assert!(last < 1e-10, "the residual at the end of a major: {last}");
+}
+
+#[test]
+fn numbers_of_the_csv_read_back_to_the_bits_of_the_solver() {
+    let csv = well(&ran(&["run", BEAM, "--csv", "-", "-q"]));
+    let mut table = rows(&csv).into_iter();
+    let mut stepper = Stepper::new(Arc::new(Scene::open(BEAM, &[]).unwrap().model));
+    let mut values = Vec::new();
+    while let Some(event) = stepper.step().cloned() {
+        if !matches!(event.outcome, Outcome::Increment { .. }) {
+            continue;
+        }
+        stepper.monitors(&mut values);
+        let row = table.next().unwrap();
+        let monitors = stepper.model().monitors.iter().zip(&values);
+        let named = monitors.map(|(monitor, value)| (monitor.name.as_str(), *value));
+        for (name, value) in named.chain([("load", event.load_factor)]) {
+            let read: f64 = row[name].parse().unwrap();
+            assert_eq!(read.to_bits(), value.to_bits(), "{name} {value:?}");
+        }
+    }
+    assert_eq!(table.next(), None);
+    assert!(!values.is_empty());
 }
 
 #[test]

@@ -258,7 +258,7 @@ pub fn circles(ties: &Ties) -> Vec<BTreeSet<String>> {
         .collect()
 }
 
-fn rust_files(root: &Path, others: &[&str]) -> Vec<String> {
+pub fn rust_files(root: &Path, others: &[&str]) -> Vec<String> {
     let mut found = Vec::new();
     let mut left = vec![String::new()];
     while let Some(folder) = left.pop() {

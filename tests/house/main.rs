@@ -4,6 +4,7 @@
 //! too much fails as one that says too little.
 
 mod imports;
+mod mutants;
 
 use imports::{Package, Sources, Ties, circles};
 use std::collections::{BTreeMap, BTreeSet};

@@ -162,6 +162,65 @@ fn a_node_in_a_rough_valley_ends_at_the_bottom_with_the_force_of_both_sides() {
 }
 
 #[test]
+fn an_audit_keeps_the_worst_of_all_increments() {
+    let scene = scene("01-pinned-beam-rough-floor", &[]);
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut audit = Audit::default();
+    let (mut worst, mut last) = ([0.0_f64; Law::ALL.len()], [0.0; Law::ALL.len()]);
+    while let Some(event) = stepper.step() {
+        let accepted = matches!(event.outcome, Outcome::Increment { marked: None, .. });
+        audit.take(&stepper);
+        if accepted && let Some(verdict) = stepper.state().start.verdict {
+            last = verdict
+                .worst
+                .map(|found| found.map_or(0.0, |found| found.times()));
+            worst = std::array::from_fn(|k| worst[k].max(last[k]));
+        }
+    }
+    let kept = Law::ALL.map(|law| audit.of(law).map_or(0.0, |found| found.finding.times()));
+    assert_eq!(kept, worst);
+    assert_ne!(last, worst);
+}
+
+/// A scene up to where Table 2, without the ladder, fails.
+fn failed(name: &str) -> Stepper {
+    let by_table_2 = scene(name, &[("settings.strategy", "table2")]);
+    let mut stepper = Stepper::new(Arc::new(by_table_2.model));
+    while let Some(event) = stepper.step() {
+        if matches!(event.outcome, Outcome::Failed(_)) {
+            return stepper;
+        }
+    }
+    panic!("{name} is to fail")
+}
+
+#[test]
+fn a_remedy_converges_where_it_reaches_the_load_that_failed() {
+    let (mut converged, mut in_parts) = (0, 0);
+    for name in [
+        "osc-inclined-cantilever",
+        "osc-drag65",
+        "osc-big-step",
+        "osc-snap",
+        "osc-p5-slow",
+    ] {
+        let mut stepper = failed(name);
+        let failed = stepper.state().clone();
+        for remedy in remedies::all(&mut stepper, &failed, &|| false) {
+            let trial = remedies::attempt(&mut stepper, &failed, &remedy, &|| false).unwrap();
+            let reached = stepper.state().start.load_factor;
+            let short = (failed.load_factor - reached) > 1e-9;
+            if trial.end == TrialEnd::Converged {
+                assert!(!short, "{name}: {} ends at {reached}", trial.label);
+                converged += 1;
+                in_parts += u32::from(stepper.state().next.increment > failed.next.increment + 1);
+            }
+        }
+    }
+    assert!(converged > 10 && in_parts > 3, "{converged} {in_parts}");
+}
+
+#[test]
 fn no_remedy_that_ends_against_a_law_is_called_converged() {
     // Nothing is accepted against a law but what the user holds: so a node is held where it does not belong.
     let (mut sound, mut against) = (0, 0);
@@ -172,16 +231,7 @@ fn no_remedy_that_ends_against_a_law_is_called_converged() {
         ("osc-drag65", None),
         ("osc-three10", Some(Mode::Fixed)),
     ] {
-        let mut stepper = Stepper::new(Arc::new(
-            scene(name, &[("settings.strategy", "table2")]).model,
-        ));
-        loop {
-            match stepper.step().map(|event| event.outcome.clone()) {
-                None => panic!("{name} is to fail"),
-                Some(Outcome::Failed(_)) => break,
-                Some(_) => {}
-            }
-        }
+        let mut stepper = failed(name);
         if let Some(mode) = held {
             let (slave, hold) = (0, true);
             let force = Intervention::Force { slave, mode, hold };

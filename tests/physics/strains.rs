@@ -39,7 +39,14 @@ fn a_homogeneous_deformation_has_the_stretches_that_it_was_made_of() {
         let (s, c) = angle.sin_cos();
         [c * x - s * y, s * x + c * y]
     };
-    for kind in ["Triangle3", "Triangle6", "Quad4", "Quad8", "Quad8Reduced", "Quad9"] {
+    for kind in [
+        "Triangle3",
+        "Triangle6",
+        "Quad4",
+        "Quad8",
+        "Quad8Reduced",
+        "Quad9",
+    ] {
         let model = unit(&kind.to_lowercase(), "").model;
         for [a, b] in [[0.4, 1.3], [0.05, 0.9], [-0.2, 1.1], [1.2, 1.5]] {
             let map = |at: [f64; 2]| {
@@ -48,7 +55,10 @@ fn a_homogeneous_deformation_has_the_stretches_that_it_was_made_of() {
             };
             let found = deformation(&model, &moved(&model, map)).unwrap();
             assert!((found.smallest.stretch - a).abs() < 1e-13, "{kind} {a}");
-            assert!((found.flattest.determinant - a * b).abs() < 1e-13, "{kind} {a}");
+            assert!(
+                (found.flattest.determinant - a * b).abs() < 1e-13,
+                "{kind} {a}"
+            );
             assert_eq!(found.inverted().is_some(), a < 0.0);
             assert_eq!(found.outside.is_some(), a < SOFTENING);
         }
@@ -75,9 +85,7 @@ fn rings_and_thicknesses_are_stretched_too() {
 
 /// x, or X, at a point of a Quad8 by the shape functions of the serendipity family, written down for this test.
 fn quad8(nodes: &[[f64; 2]], xi: f64, eta: f64) -> [f64; 2] {
-    let corner = |a: f64, b: f64| {
-        (1.0 + a * xi) * (1.0 + b * eta) * (a * xi + b * eta - 1.0) / 4.0
-    };
+    let corner = |a: f64, b: f64| (1.0 + a * xi) * (1.0 + b * eta) * (a * xi + b * eta - 1.0) / 4.0;
     let n = [
         corner(-1.0, -1.0),
         corner(1.0, -1.0),
@@ -147,8 +155,16 @@ fn checked(run: &Run) -> [f64; 2] {
         let Deformation {
             smallest, flattest, ..
         } = deformation(model, u).unwrap();
-        assert!((smallest.stretch - expected[0]).abs() < 1e-8, "load {}", a.load);
-        assert!((flattest.determinant - expected[1]).abs() < 1e-8, "load {}", a.load);
+        assert!(
+            (smallest.stretch - expected[0]).abs() < 1e-8,
+            "load {}",
+            a.load
+        );
+        assert!(
+            (flattest.determinant - expected[1]).abs() < 1e-8,
+            "load {}",
+            a.load
+        );
         let all = by_element(model, u);
         let [stretch, _] = all[smallest.body][smallest.element];
         assert_eq!(stretch, smallest.stretch);
@@ -189,14 +205,23 @@ fn svk_softens_below_the_limit_of_its_range_and_neo_hookean_does_not() {
             for pair in forces.windows(2) {
                 let ((above, before), (below, after)) = (pair[0], pair[1]);
                 if below > SOFTENING {
-                    assert!(after < before, "{plane} nu {nu}: at {below} more force is needed");
+                    assert!(
+                        after < before,
+                        "{plane} nu {nu}: at {below} more force is needed"
+                    );
                 } else if above < SOFTENING {
-                    assert!(after > before, "{plane} nu {nu}: at {below} less force is needed");
+                    assert!(
+                        after > before,
+                        "{plane} nu {nu}: at {below} less force is needed"
+                    );
                 }
             }
             let neo = format!("E: 10, nu: {nu}, plane: {plane}, law: neohookean");
             let forces = pressed(&neo, sides);
-            assert!(forces.windows(2).all(|pair| pair[1].1 < pair[0].1), "{plane} nu {nu}");
+            assert!(
+                forces.windows(2).all(|pair| pair[1].1 < pair[0].1),
+                "{plane} nu {nu}"
+            );
         }
     }
 }
@@ -209,10 +234,20 @@ fn no_increment_with_an_inverted_element_is_accepted() {
     assert!(determinant > 0.0, "{determinant}");
     assert!(run.failure.is_some());
     let left = |a: &&crate::common::Accepted| {
-        matches!(a.event.outcome, Outcome::Increment { left_range: Some(_), .. })
+        matches!(
+            a.event.outcome,
+            Outcome::Increment {
+                left_range: Some(_),
+                ..
+            }
+        )
     };
     let left: Vec<f64> = run.accepted.iter().filter(left).map(|a| a.load).collect();
-    assert_eq!(left, [0.3], "said once, where the stretch falls below 0.577");
+    assert_eq!(
+        left,
+        [0.3],
+        "said once, where the stretch falls below 0.577"
+    );
 }
 
 #[test]

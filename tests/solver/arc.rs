@@ -78,11 +78,17 @@ fn with_spring(load: &str, history: &str) -> Scene {
 /// P = 0.5 (x + 0.5) − 10 (y + 0.25) (2 x − µ) / (1 + 2 µ x)
 /// ```
 fn ridge(history: &str) -> Scene {
+    ridge_towards(1.0, history)
+}
+
+/// The same drawn towards +x (`way` 1) or, mirrored, towards −x (−1).
+fn ridge_towards(way: f64, history: &str) -> Scene {
+    let (start, load) = (-0.5 * way, way);
     let text = format!(
         r#"(
     title: "A node on springs is drawn over a rough ridge",
     nodes: [
-        Node(id: "tip", at: (-0.5, -0.25)),
+        Node(id: "tip", at: ({start:?}, -0.25)),
         Through(id: "ridge", points: [(2.0, -4.0), (0.0, 0.0), (-2.0, -4.0)], per_element: 3),
     ],
     materials: [],
@@ -93,7 +99,7 @@ fn ridge(history: &str) -> Scene {
     surfaces: [(id: "ridge", along: "ridge")],
     slaves: [(nodes: ["tip"], on: ["ridge"], start: sliding)],
     friction: (angle: 11.309932474020213),
-    loads: [Force(node: "tip", x: 1.0)],
+    loads: [Force(node: "tip", x: {load:?})],
     history: {history},
     monitors: [
         (name: "u_x", of: Displacement(node: "tip", component: x)),
@@ -225,6 +231,66 @@ fn a_node_slides_over_a_rough_ridge_along_its_closed_form_and_ends_at_its_bound(
         let highest = run.accepted.iter().map(|a| a.load).fold(0.0, f64::max);
         assert!(highest > 1.5 && last(&run).load < 0.0, "{along}");
     }
+}
+
+/// Slip is positive where the node is drawn to the right, and negative where it is drawn to the left.
+#[test]
+fn an_arc_measured_by_slip_grows_whichever_way_the_node_slides() {
+    let arcs = [1.0, -1.0].map(|way| {
+        let bound = format!(r#"ends: [(monitor: "u_x", at: {:?})]"#, 0.9 * way);
+        let history = format!(
+            r#"(path: [0.0, 2.0], increment: 0.05, control: arc, arc: (slip: "tip", {bound}))"#
+        );
+        let run = finished(&ridge_towards(way, &history));
+        assert!((last(&run).monitors["u_x"] - 0.9 * way).abs() < 1e-12);
+        let arcs: Vec<f64> = of(&run, "arc").collect();
+        assert!(arcs.windows(2).all(|pair| pair[0] < pair[1]), "{arcs:?}");
+        arcs
+    });
+    assert_eq!(arcs[0].len(), arcs[1].len());
+    for (right, left) in arcs[0].iter().zip(&arcs[1]) {
+        assert!((right - left).abs() < 1e-9, "{right} {left}");
+    }
+}
+
+/// Measured by w, which turns where the path snaps back, one increment can only jump to where w goes on.
+#[test]
+fn a_jump_along_the_path_is_marked() {
+    let history =
+        r#"(path: [0.0, 0.5], increment: 0.01, control: arc, jumps: accept, arc: (monitor: "w"))"#;
+    let run = finished(&with_spring(r#"Force(node: "hand", y: -1.0)"#, history));
+    let w = |d: f64| d + truss_load(d) / 0.8;
+    let downs: Vec<f64> = (0..400).map(|k| 1e-3 * f64::from(k)).collect();
+    let turns = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        let turn = |d: &[f64]| (of(d[1]) - of(d[0])) * (of(d[2]) - of(d[1])) < 0.0;
+        let around = downs.windows(3).filter(|d| turn(d));
+        around.map(|d| d[1]).collect()
+    };
+    let (limit, turns) = (turns(&truss_load)[0], turns(&w));
+    assert_eq!(turns.len(), 2);
+    let (mut before, mut jumps) = (0.0, 0);
+    for accepted in &run.accepted {
+        let d = -accepted.monitors["u"];
+        let outcome = &accepted.event.outcome;
+        let marked = matches!(outcome, Outcome::Increment { jumped: true, .. });
+        if before < turns[0] && d > turns[1] {
+            assert!(marked, "from {before} to {d}");
+            jumps += 1;
+        } else if d < limit {
+            assert!(!marked, "from {before} to {d}");
+        }
+        before = d;
+    }
+    assert_eq!(jumps, 1);
+}
+
+/// Where the tip of problem 04 touches the circle, the equations of the arc have a second solution: the way back.
+#[test]
+fn no_increment_goes_back_the_way_of_the_one_before() {
+    let set = [("history.control", "arc"), ("history.arc.length", "1.0")];
+    let run = run(&common::scene("04-cantilever-rigid-circle", &set));
+    assert!(last(&run).load > 1.1, "{}", last(&run).load);
+    assert_eq!(turns(of(&run, "u_x")), 0);
 }
 
 #[test]

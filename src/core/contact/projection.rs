@@ -102,6 +102,10 @@ pub fn project(
             {
                 continue;
             }
+            #[cfg(mutants)]
+            if previous.is_some() && crate::mutants::is_active("node-kept-on-its-element") {
+                continue;
+            }
             let spot = SurfacePoint {
                 surface,
                 element,
@@ -279,6 +283,8 @@ fn normal_at(
         return own;
     };
     let across = right_of(slope_at(surface, other, xi, positions));
+    #[cfg(mutants)]
+    let across = crate::mutants::pick("normal-of-one-side-at-a-border", across, own);
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
 

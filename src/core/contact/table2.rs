@@ -190,6 +190,8 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
         }
         Mode::Fixed => {
             let (shear, limit) = (numbers.f_t.abs(), numbers.t_max.abs());
+            #[cfg(mutants)]
+            let limit = crate::mutants::pick("friction-bound-with-its-sign", limit, numbers.t_max);
             let test = ties.test(Tested::ShearForce, shear, limit, limit - shear, ties.force);
             match ties.switches(&test, false) {
                 true => (Mode::Sliding, Rule::FixedSlides, [Some(opens), Some(test)]),
@@ -202,6 +204,8 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
             } else {
                 numbers.t_max.signum() * numbers.slip
             };
+            #[cfg(mutants)]
+            let slip = crate::mutants::pick("sliding-sticks-by-unsigned-slip", slip, numbers.slip);
             let test = ties.test(Tested::Slip, slip, 0.0, slip, ties.length);
             match ties.switches(&test, false) {
                 true => (Mode::Fixed, Rule::SlidingSticks, [Some(opens), Some(test)]),

@@ -93,6 +93,11 @@ impl Stepper {
             Measured::Dof(dof) => (motion[dof].abs(), motion[dof].signum()),
             Measured::Slip(contact) => (slips[contact].abs(), slips[contact].signum()),
         };
+        #[cfg(mutants)]
+        let sign = match way.measured {
+            Measured::Slip(_) if crate::mutants::is_active("arc-slip-sign-lost") => 1.0,
+            _ => sign,
+        };
         if !(largest.is_finite() && largest > 0.0 && size > NOTHING * largest) {
             return Err(Failure::Unmoved);
         }
@@ -161,6 +166,8 @@ impl Stepper {
             }
             jumped = true;
         }
+        #[cfg(mutants)]
+        let jumped = jumped && !crate::mutants::is_active("arc-jump-unmarked");
         self.accept(after, verdict, None, jumped)
     }
 
@@ -168,6 +175,10 @@ impl Stepper {
     fn doubles_back(&self) -> bool {
         let state = &self.state;
         let Some(way) = &state.way else { return false };
+        #[cfg(mutants)]
+        if crate::mutants::is_active("arc-step-doubles-back") {
+            return false;
+        }
         let behind = way.measured == Measured::Displacements
             && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
         if behind || self.turned_back() || way.turned || way.last.is_empty() {
@@ -229,6 +240,12 @@ impl Stepper {
             Measured::Dof(dof) => (u[dof] - start[dof]).abs(),
             Measured::Slip(contact) => state.nodes[contact].slip.abs(),
         };
+        #[cfg(mutants)]
+        if crate::mutants::is_active("arc-slip-length-signed")
+            && let Measured::Slip(contact) = way.measured
+        {
+            way.length += state.nodes[contact].slip - state.nodes[contact].slip.abs();
+        }
         let bounded = |aim: Aim| {
             let mut bounds = model.arc.bounds.iter();
             bounds.any(

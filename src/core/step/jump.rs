@@ -81,6 +81,10 @@ impl Stepper {
         }
         // The other branch has a pace of its own.
         self.state.pace = Pace::default();
+        #[cfg(mutants)]
+        if crate::mutants::is_active("jump-unmarked") {
+            return self.accept(after, verdict, None, false);
+        }
         self.accept(after, verdict, None, true)
     }
 

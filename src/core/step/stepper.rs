@@ -226,6 +226,8 @@ impl Stepper {
     pub fn restore(&mut self, state: &State) {
         let stands = self.stands_for(state);
         self.state.clone_from(state);
+        #[cfg(mutants)]
+        let stands = crate::mutants::pick("restore-keeps-the-factors", stands, true);
         let kept = self.source.restore(&self.state.at());
         self.forget_workspace();
         (self.linearised, self.measured) = (stands && kept, stands && kept);

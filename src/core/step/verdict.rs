@@ -28,6 +28,9 @@ impl Stepper {
             return self.refuse_inverted(point);
         }
         let verdict = self.source.judge(&self.state.at(), &after);
+        #[cfg(mutants)]
+        let verdict =
+            crate::mutants::pick("accepted-without-the-judge", verdict, Verdict::default());
         if self.state.motion.is_some() {
             let worst = worst_of(&verdict);
             return match worst.filter(|found| is_slip(found.law) && !self.state.net) {
@@ -64,6 +67,10 @@ impl Stepper {
 
     /// The worst point of an inverted element of the present state.
     pub(super) fn inverted(&self) -> Option<PointDeformation> {
+        #[cfg(mutants)]
+        if crate::mutants::is_active("inverted-element-accepted") {
+            return None;
+        }
         self.source.deformation(&self.state.u)?.inverted()
     }
 

@@ -178,6 +178,14 @@ impl Made<'_> {
         let direction = component(target.1);
         let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
         for (k, step) in self.deck.steps.iter().enumerate() {
+            #[cfg(mutants)]
+            let step = &match crate::mutants::is_active("op-new-ignored") {
+                true => Step {
+                    new_motions: false,
+                    ..step.clone()
+                },
+                false => step.clone(),
+            };
             if step.new_motions && !given(k) && (k > 0 || from_model) {
                 let message = format!(
                     "OP=NEW sets the {direction} of node {label} free in this step; what is held must be held in all steps"

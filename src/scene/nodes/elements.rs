@@ -41,6 +41,10 @@ pub(super) fn sound(
     if area(nodes, &own[..count]) < 0.0 {
         // From its first corner the other way round, so that the middle of its last side comes first.
         own[1..count].reverse();
+        #[cfg(mutants)]
+        if crate::mutants::is_active("middle-nodes-not-turned") {
+            return Ok((kind, own));
+        }
         if own.len() >= 2 * count {
             own[count..2 * count].reverse();
         }

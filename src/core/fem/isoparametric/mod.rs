@@ -127,9 +127,7 @@ pub(super) fn slope_at<const N: usize>(
         [by_x[1][1] / det, -by_x[0][1] / det],
         [-by_x[1][0] / det, by_x[0][0] / det],
     ];
-    let row = |by_u: [f64; 2]| {
-        [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b])
-    };
+    let row = |by_u: [f64; 2]| [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b]);
     (det > FLAT * size * size).then(|| by_u.map(row))
 }
 
@@ -271,6 +269,8 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         };
         ring.hoop = hoop;
         let volume = area * 2.0 * PI * ring.radius;
+        #[cfg(mutants)]
+        let volume = crate::mutants::pick("ring-without-its-radius", volume, area * 2.0 * PI);
         (area > 0.0 && volume > 0.0).then_some(Point {
             grad,
             h,
@@ -418,6 +418,10 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element for Elem
                 continue;
             };
             new[..3].copy_from_slice(point.cauchy().as_slice());
+            #[cfg(mutants)]
+            if crate::mutants::is_active("updated-stress-not-turned") {
+                new[..3].copy_from_slice(point.response.stress.as_slice());
+            }
             new[3] = if HOOP {
                 self.across(&point)
             } else {
