@@ -44,7 +44,13 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let mut trials = Vec::new();
     for remedy in remedies::all(&mut stepper, &state, spec, &|| false) {
-        trials.extend(remedies::attempt(&mut stepper, &state, spec, &remedy, &|| false));
+        trials.extend(remedies::attempt(
+            &mut stepper,
+            &state,
+            spec,
+            &remedy,
+            &|| false,
+        ));
     }
     remedies::sort(&mut trials);
     let rows = trials.iter().map(|trial| {

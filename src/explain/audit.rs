@@ -106,7 +106,9 @@ impl Audit {
                 load_factor: event.load_factor,
                 point,
             };
-            let least = self.stretch.map_or(f64::INFINITY, |known| known.point.stretch);
+            let least = self
+                .stretch
+                .map_or(f64::INFINITY, |known| known.point.stretch);
             if found.smallest.stretch < least {
                 self.stretch = Some(stretched(found.smallest));
             }

@@ -43,9 +43,7 @@ pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
         adjust_gap: own.adjust_gap,
         ..state.controls.settings
     };
-    stepper
-        .intervene(&Intervention::Settings(settings))
-        .ok()?;
+    stepper.intervene(&Intervention::Settings(settings)).ok()?;
     // Friction that was changed for all nodes is that of the new ones; groups of nodes, and cohesion by area, have what the
     // scene says.
     if !by_area

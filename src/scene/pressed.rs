@@ -64,9 +64,12 @@ fn told(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
 /// The load factors at which a prescribed motion may be largest: corners of the path and of the motions' own scales.
 fn loads(model: &Model) -> Vec<f64> {
     let scales = model.prescribed.iter().flat_map(|p| &p.scale.0);
-    let ends = model.path.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], load| {
-        [low.min(*load), high.max(*load)]
-    });
+    let ends = model
+        .path
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], load| {
+            [low.min(*load), high.max(*load)]
+        });
     let corners = scales.map(|(load, _)| *load);
     let corners = corners.filter(|load| (ends[0]..=ends[1]).contains(load));
     let mut all: Vec<f64> = model.path.iter().copied().chain(corners).collect();

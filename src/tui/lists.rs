@@ -153,7 +153,10 @@ impl App {
         }
         if let How::Restart(_) = &trial.how {
             let option = trial.how.typed();
-            self.complain(format!("{} changes the scene: start again with {option}", trial.label));
+            self.complain(format!(
+                "{} changes the scene: start again with {option}",
+                trial.label
+            ));
             return None;
         }
         self.zoomed = false;

@@ -15,8 +15,8 @@ mod blocks;
 // Solids alone meet closed forms and beam theory; a distorted patch is exact.
 mod solids;
 // Stretches and det F meet closed forms and finite differences; no inverted element is accepted.
-mod strains;
 mod start_gaps;
+mod strains;
 // Penalty, stick stiffness, ties and cohesion by area meet closed forms, and each other.
 mod laws;
 // The same laws on an axis, in press fits, along arcs, changed by hand, and in snapshots.

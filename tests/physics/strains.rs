@@ -3,12 +3,14 @@
 
 use crate::blocks::{block, finished};
 use crate::common::{Run, run, scene};
+use stickslip::explain::page::page;
 use stickslip::fem::deformation::{Deformation, SOFTENING, by_element, deformation};
 use stickslip::model::{BodyKind, ElementKind, Model};
 use stickslip::scene::Scene;
+use stickslip::scene::gaps;
 use stickslip::step::event::{Failure, Outcome};
 
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/findings");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
 
 /// A unit block of elements of a kind.
 fn unit(kind: &str, material: &str) -> Scene {
@@ -39,7 +41,14 @@ fn a_homogeneous_deformation_has_the_stretches_that_it_was_made_of() {
         let (s, c) = angle.sin_cos();
         [c * x - s * y, s * x + c * y]
     };
-    for kind in ["Triangle3", "Triangle6", "Quad4", "Quad8", "Quad8Reduced", "Quad9"] {
+    for kind in [
+        "Triangle3",
+        "Triangle6",
+        "Quad4",
+        "Quad8",
+        "Quad8Reduced",
+        "Quad9",
+    ] {
         let model = unit(&kind.to_lowercase(), "").model;
         for [a, b] in [[0.4, 1.3], [0.05, 0.9], [-0.2, 1.1], [1.2, 1.5]] {
             let map = |at: [f64; 2]| {
@@ -48,7 +57,10 @@ fn a_homogeneous_deformation_has_the_stretches_that_it_was_made_of() {
             };
             let found = deformation(&model, &moved(&model, map)).unwrap();
             assert!((found.smallest.stretch - a).abs() < 1e-13, "{kind} {a}");
-            assert!((found.flattest.determinant - a * b).abs() < 1e-13, "{kind} {a}");
+            assert!(
+                (found.flattest.determinant - a * b).abs() < 1e-13,
+                "{kind} {a}"
+            );
             assert_eq!(found.inverted().is_some(), a < 0.0);
             assert_eq!(found.outside.is_some(), a < SOFTENING);
         }
@@ -75,9 +87,7 @@ fn rings_and_thicknesses_are_stretched_too() {
 
 /// x, or X, at a point of a Quad8 by the shape functions of the serendipity family, written down for this test.
 fn quad8(nodes: &[[f64; 2]], xi: f64, eta: f64) -> [f64; 2] {
-    let corner = |a: f64, b: f64| {
-        (1.0 + a * xi) * (1.0 + b * eta) * (a * xi + b * eta - 1.0) / 4.0
-    };
+    let corner = |a: f64, b: f64| (1.0 + a * xi) * (1.0 + b * eta) * (a * xi + b * eta - 1.0) / 4.0;
     let n = [
         corner(-1.0, -1.0),
         corner(1.0, -1.0),
@@ -147,8 +157,16 @@ fn checked(run: &Run) -> [f64; 2] {
         let Deformation {
             smallest, flattest, ..
         } = deformation(model, u).unwrap();
-        assert!((smallest.stretch - expected[0]).abs() < 1e-8, "load {}", a.load);
-        assert!((flattest.determinant - expected[1]).abs() < 1e-8, "load {}", a.load);
+        assert!(
+            (smallest.stretch - expected[0]).abs() < 1e-8,
+            "load {}",
+            a.load
+        );
+        assert!(
+            (flattest.determinant - expected[1]).abs() < 1e-8,
+            "load {}",
+            a.load
+        );
         let all = by_element(model, u);
         let [stretch, _] = all[smallest.body][smallest.element];
         assert_eq!(stretch, smallest.stretch);
@@ -189,30 +207,49 @@ fn svk_softens_below_the_limit_of_its_range_and_neo_hookean_does_not() {
             for pair in forces.windows(2) {
                 let ((above, before), (below, after)) = (pair[0], pair[1]);
                 if below > SOFTENING {
-                    assert!(after < before, "{plane} nu {nu}: at {below} more force is needed");
+                    assert!(
+                        after < before,
+                        "{plane} nu {nu}: at {below} more force is needed"
+                    );
                 } else if above < SOFTENING {
-                    assert!(after > before, "{plane} nu {nu}: at {below} less force is needed");
+                    assert!(
+                        after > before,
+                        "{plane} nu {nu}: at {below} less force is needed"
+                    );
                 }
             }
             let neo = format!("E: 10, nu: {nu}, plane: {plane}, law: neohookean");
             let forces = pressed(&neo, sides);
-            assert!(forces.windows(2).all(|pair| pair[1].1 < pair[0].1), "{plane} nu {nu}");
+            assert!(
+                forces.windows(2).all(|pair| pair[1].1 < pair[0].1),
+                "{plane} nu {nu}"
+            );
         }
     }
 }
 
 #[test]
 fn no_increment_with_an_inverted_element_is_accepted() {
-    let collapses = scene(&format!("{FOLDER}/minimal-collapse.ron"), &[]);
+    let collapses = scene(&format!("{FOLDER}/failures/minimal-collapse.ron"), &[]);
     let run = run(&collapses);
     let [_, determinant] = checked(&run);
     assert!(determinant > 0.0, "{determinant}");
     assert!(run.failure.is_some());
     let left = |a: &&crate::common::Accepted| {
-        matches!(a.event.outcome, Outcome::Increment { left_range: Some(_), .. })
+        matches!(
+            a.event.outcome,
+            Outcome::Increment {
+                left_range: Some(_),
+                ..
+            }
+        )
     };
     let left: Vec<f64> = run.accepted.iter().filter(left).map(|a| a.load).collect();
-    assert_eq!(left, [0.3], "said once, where the stretch falls below 0.577");
+    assert_eq!(
+        left,
+        [0.3],
+        "said once, where the stretch falls below 0.577"
+    );
 }
 
 #[test]
@@ -227,4 +264,54 @@ fn a_cantilever_that_crushes_a_block_of_svk_fails_by_its_law_and_with_neo_hookea
     let neo = run(&scene("05-cantilever-elastic-block", &law));
     assert!(neo.failure.is_none());
     assert!(checked(&neo)[1] > 0.0);
+}
+
+#[test]
+fn a_wheel_that_crushes_its_soil_is_told_so_and_the_law_that_helps_was_tried() {
+    let wheel = scene(&format!("{FOLDER}/findings/wheel.ron"), &[]);
+    let mut run = run(&wheel);
+    assert!(run.failure.is_some());
+    assert!(checked(&run)[1] > 0.0);
+    let state = run.stepper.state().clone();
+    let spec = Some(&wheel.spec);
+    let found = page(&mut run.stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
+    let first = |head: &str| {
+        found
+            .lines
+            .iter()
+            .find(|line| line.starts_with(head))
+            .unwrap()
+    };
+    let why = first("why: ");
+    for part in [
+        "of soil",
+        "a stretch of 0.2883",
+        "softens below 0.5774",
+        "law: svk",
+    ] {
+        assert!(why.contains(part), "{why}");
+    }
+    assert!(first("do: 1. ").contains("--set materials.soil.law=neohookean (tried"));
+}
+
+#[test]
+fn a_motion_that_must_press_svk_out_of_its_range_is_found_before_the_run() {
+    let warned = |set: &[(&str, &str)]| {
+        let scene = scene(&format!("{FOLDER}/failures/minimal-collapse.ron"), set);
+        let told = gaps::warnings(&scene.model);
+        told.iter()
+            .any(|line| line.contains("to 0.300 of its length"))
+    };
+    assert!(warned(&[]));
+    assert!(!warned(&[("materials.rubber.law", "neohookean")]));
+    assert!(!warned(&[("materials.rubber.update", "updated")]));
+    assert!(!warned(&[("loads[0].value", "-0.8")]));
+    assert!(!warned(&[("loads[0].value", "1.4")]), "it moves away");
+    // The block itself, without any contact.
+    let held = unit("quad8", "").model;
+    assert!(
+        gaps::warnings(&held)
+            .iter()
+            .any(|line| line.contains("to 0.000 of its length"))
+    );
 }

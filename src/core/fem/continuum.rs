@@ -139,12 +139,8 @@ pub fn sample(
     see: impl FnMut(Sampled),
 ) {
     match kind {
-        ElementKind::Triangle3 => {
-            sample_by(&*triangle3::RULE, &triangle3::NODES, count, node, see)
-        }
-        ElementKind::Triangle6 => {
-            sample_by(&*triangle6::RULE, &triangle6::NODES, count, node, see)
-        }
+        ElementKind::Triangle3 => sample_by(&*triangle3::RULE, &triangle3::NODES, count, node, see),
+        ElementKind::Triangle6 => sample_by(&*triangle6::RULE, &triangle6::NODES, count, node, see),
         ElementKind::Quad4 => sample_by(&*quad4::RULE, &quad4::NODES, count, node, see),
         ElementKind::Quad8 => sample_by(&*quad8::RULE, &quad8::NODES, count, node, see),
         ElementKind::Quad8Reduced => sample_by(&*quad8::REDUCED, &quad8::NODES, count, node, see),

@@ -155,8 +155,12 @@ fn deformations(model: &Model, state: &State, grid: &mut Grid) {
     let mut numbers = [0, 1].map(|_| vec![f64::NAN; grid.cells.len()]);
     let found = deformation::by_element(model, &state.u);
     let found = found.iter().flatten();
-    let of_line =
-        |cell: &Cell| matches!(cell.kind, CellKind::Line2 | CellKind::Line3 | CellKind::Point);
+    let of_line = |cell: &Cell| {
+        matches!(
+            cell.kind,
+            CellKind::Line2 | CellKind::Line3 | CellKind::Point
+        )
+    };
     let places = (0..grid.cells.len()).filter(|&place| !of_line(&grid.cells[place]));
     for (place, measures) in places.zip(found) {
         for (list, value) in numbers.iter_mut().zip(measures) {
@@ -164,7 +168,8 @@ fn deformations(model: &Model, state: &State, grid: &mut Grid) {
         }
     }
     for (name, values) in ["stretch", "det_F"].into_iter().zip(numbers) {
-        grid.on_cells.push(array(name, &[], Values::Numbers(values)));
+        grid.on_cells
+            .push(array(name, &[], Values::Numbers(values)));
     }
 }
 

@@ -7,8 +7,8 @@ use crate::contact::element::Element;
 use crate::contact::projection::tangent;
 use crate::explain::examination::Examination;
 use crate::explain::number;
-use crate::explain::strain;
 use crate::explain::outline::{self, Bounds, Point, bounds, curve};
+use crate::explain::strain;
 use crate::fem::deformation::{PointDeformation, deformation};
 use crate::fem::lagrange;
 use crate::model::{BodyKind, Contact, Solid, SolidElement};
@@ -458,7 +458,10 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &Ap
     if let Some(point) = worst(view) {
         let text = match point.determinant > 0.0 {
             true => format!("   {WORST} stretch {}", number::four(point.stretch)),
-            false => format!("   {WORST} inverted, det F {}", number::four(point.determinant)),
+            false => format!(
+                "   {WORST} inverted, det F {}",
+                number::four(point.determinant)
+            ),
         };
         let element = strain::element(view.model, &point);
         spans.push(Span::styled(format!("{text}, {element}"), theme.text));

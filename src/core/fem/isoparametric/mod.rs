@@ -127,9 +127,7 @@ pub(super) fn slope_at<const N: usize>(
         [by_x[1][1] / det, -by_x[0][1] / det],
         [-by_x[1][0] / det, by_x[0][0] / det],
     ];
-    let row = |by_u: [f64; 2]| {
-        [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b])
-    };
+    let row = |by_u: [f64; 2]| [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b]);
     (det > FLAT * size * size).then(|| by_u.map(row))
 }
 
