@@ -112,7 +112,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
     }
     if let Some(found) = &audit.stretch {
         text += &format!(
-            "  {:<11}  {:<8}             increment {} (load {}), {}\n",
+            "  {:<11}  {:<8}            increment {} (load {}), {}\n",
             "stretch",
             four(found.point.stretch),
             found.increment,

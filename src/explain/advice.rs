@@ -45,16 +45,21 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
             | Failure::Unmoved
     );
     let finer = refines(failure).then_some(Advice::Finer);
-    let law = Remedy::law(model, state, failure);
     let gaps = [InitialGaps::Ramp, InitialGaps::Adjust]
         .into_iter()
-        .filter_map(|gaps| Remedy::of(Kind::Gaps(gaps), model, state));
+        .filter_map(|gaps| Remedy::of(Kind::Gaps(gaps), model, state))
+        .map(Advice::Remedy);
     let rest: Vec<Advice> = match scene_first {
         true => by_hand.chain(remedies).collect(),
         false => remedies.chain(finer).chain(by_hand).collect(),
     };
-    let first = law.into_iter().chain(gaps).map(Advice::Remedy);
-    first.chain(rest).collect()
+    let law = Remedy::law(model, state, failure);
+    let (first, last) = match law {
+        Some((law, true)) => (Some(law), None),
+        law => (None, law.map(|(law, _)| law)),
+    };
+    let (first, last) = (first.map(Advice::Remedy), last.map(Advice::Remedy));
+    gaps.chain(first).chain(rest).chain(last).collect()
 }
 
 /// Whether a finer mesh can help against a failure.

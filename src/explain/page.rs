@@ -132,9 +132,12 @@ impl Page {
             found: Examination::default(),
         };
         let cause = MaterialCause::of(stepper.model(), state, failure);
-        let cause = cause.map(|cause| cause.words(stepper.model()));
-        page.facts.extend(cause);
+        let certain = cause.filter(MaterialCause::is_certain);
+        let words = |cause: MaterialCause| cause.words(stepper.model());
+        page.facts.extend(certain.map(words));
+        let possible = cause.filter(|cause| !cause.is_certain()).map(words);
         page.explain(stepper, state, failure, stop);
+        page.facts.extend(possible);
         let model = stepper.model();
         for piece in advice(model, state, failure) {
             match piece {
@@ -297,10 +300,9 @@ impl Page {
 
     /// What is tried for the page: the consistent states, and what helps against a failure of the kind.
     fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
-        let law = Remedy::law(model, state, failure);
         let mut all = Remedy::answers(model, &self.found);
         all.truncate(2);
-        if let Some(law) = law {
+        if let Some((law, true)) = Remedy::law(model, state, failure) {
             all.insert(0, law);
         }
         all.extend(

@@ -13,7 +13,7 @@ use crate::model::{
     AtCycle, BoundUpdate, Geometry, InitialGaps, Mode, Model, ResidualMethod, Settings, Sticking,
     Strategy, Touch,
 };
-use crate::scene::gaps::{StartGaps, start_gaps};
+use crate::scene::gaps::{StartGaps, start_gaps, turned};
 use crate::step::event::Failure;
 use crate::step::intervene::{Intervention, Start};
 use crate::step::state::State;
@@ -145,8 +145,9 @@ impl Remedy {
                     InitialGaps::Keep => return None,
                 };
                 let how = How::Restart(vec![("settings.initial_gaps".to_owned(), word)]);
-                (starts && keeps && start_gaps(model).iter().any(inside))
-                    .then(|| remedy(label, how, Vec::new()))
+                let overlaps = starts && keeps && start_gaps(model).iter().any(inside);
+                // Of a surface that is the wrong way round every node is inside.
+                (overlaps && turned(model).is_empty()).then(|| remedy(label, how, Vec::new()))
             }
             Kind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
             Kind::Part(part) => {
@@ -178,8 +179,9 @@ impl Remedy {
         }
     }
 
-    /// Another law for the materials that are outside the range of their own in a failed state. `None` where none is.
-    pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<Remedy> {
+    /// Another law for the materials that are outside the range of their own in a failed state, and whether they are to blame
+    /// for certain. `None` where none is outside.
+    pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<(Remedy, bool)> {
         let cause = MaterialCause::of(model, state, failure)?;
         let points = cause.before.into_iter().chain([cause.point]);
         let mut changes: Vec<(String, &'static str)> = Vec::new();
@@ -193,12 +195,13 @@ impl Remedy {
             format!("{field}: {value}")
         };
         let label = changes.first().map(told)?;
-        Some(Remedy {
+        let law = Remedy {
             kind: Kind::Law,
             label,
             how: How::Restart(changes),
             first: Vec::new(),
-        })
+        };
+        Some((law, cause.is_certain()))
     }
 
     /// Starting from each consistent state that was found.

@@ -133,6 +133,12 @@ impl MaterialCause {
         })
     }
 
+    /// Whether the law is to blame: what was accepted is outside its range already, or an element is inverted. An iterate that
+    /// is outside may be so for other reasons.
+    pub fn is_certain(&self) -> bool {
+        self.before.is_some() || !(self.point.determinant > 0.0)
+    }
+
     /// In words.
     pub fn words(&self, model: &Model) -> String {
         let before = match &self.before {
@@ -143,10 +149,9 @@ impl MaterialCause {
             ),
             _ => String::new(),
         };
-        // Of what was accepted it is certain; an iterate may be wrong for other reasons.
-        let head = match (self.before, self.point.determinant > 0.0) {
-            (None, true) => "where",
-            _ => "why",
+        let head = match self.is_certain() {
+            true => "why",
+            false => "where",
         };
         let told = match self.point.determinant > 0.0 {
             true => outside(model, &self.point),

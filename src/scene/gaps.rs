@@ -126,7 +126,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
 }
 
 /// Surfaces whose outward side looks the same way as that of all bodies whose nodes they are to hold.
-fn turned(model: &Model) -> Vec<String> {
+pub fn turned(model: &Model) -> Vec<String> {
     let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
     let outward = outward(model);
     let looks = |surface: usize| {

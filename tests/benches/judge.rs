@@ -1,5 +1,7 @@
 //! What the judge costs beside the run that it judges: `cargo bench --bench judge`.
 //!
+//! `solids s` is what it costs to find the smallest stretch and det F of all solids, once an increment.
+//!
 //! Every increment is judged once more after it was accepted, from the same positions and forces, and that is timed. A table, not
 //! a statistic: all of a row are measured in the same process.
 
@@ -7,6 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use stickslip::contact::judge::{Judge, Seen};
 use stickslip::contact::laws::Scales;
+use stickslip::fem::deformation::deformation;
 use stickslip::model::Model;
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
@@ -19,8 +22,10 @@ const BLOCKS: &str = concat!(
 );
 
 fn main() {
-    println!("| scene | unknowns | slaves | increments | run s | judge s | part |");
-    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| scene | unknowns | slaves | increments | run s | judge s | part | solids s | part |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
     row("04-cantilever-rigid-circle", &[]);
     row("05-cantilever-elastic-block", &[]);
     for refine in ["2", "6", "13"] {
@@ -38,7 +43,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
     let mut judge = Judge::with_capacity(nodes, model.contacts.len());
     let mut contact = vec![[0.0; 2]; nodes];
     let mut before = positions(&model, stepper.state());
-    let (mut run, mut judged, mut increments) = (0.0, 0.0, 0);
+    let (mut run, mut judged, mut strained, mut increments) = (0.0, 0.0, 0.0, 0);
     loop {
         let began = Instant::now();
         let Some(event) = stepper.step() else { break };
@@ -74,14 +79,18 @@ fn row(name: &str, set: &[(&str, &str)]) {
         let began = Instant::now();
         std::hint::black_box(judge.interface(&seen, &mut contact));
         judged += began.elapsed().as_secs_f64();
+        let began = Instant::now();
+        std::hint::black_box(deformation(&model, &state.start.u));
+        strained += began.elapsed().as_secs_f64();
         before = now;
     }
     println!(
-        "| {} | {} | {} | {increments} | {run:.2} | {judged:.4} | {:.2} % |",
+        "| {} | {} | {} | {increments} | {run:.2} | {judged:.4} | {:.2} % | {strained:.4} | {:.2} % |",
         model.title,
         model.dofs.equations,
         model.contacts.len(),
-        100.0 * judged / run
+        100.0 * judged / run,
+        100.0 * strained / run
     );
 }
 

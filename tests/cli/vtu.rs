@@ -42,6 +42,74 @@ fn collection(text: &str) -> Vec<(f64, String)> {
 }
 
 #[test]
+fn the_smallest_stretch_of_the_cells_is_the_last_column_of_the_table() {
+    let scene = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/failures/minimal-collapse.ron"
+    );
+    let directory = tempfile::tempdir().unwrap();
+    let run = ran(
+        directory.path(),
+        &["run", scene, "--csv", "-", "--stability"],
+    );
+    let told = err(&run);
+    assert_eq!(
+        told.matches("softens below 0.5774").count(),
+        3,
+        "check, once, and the cause: {told}"
+    );
+    assert!(told.contains("suggested, not tried: materials.rubber.law=neohookean"));
+    let table = out(&run);
+    assert!(
+        table
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with(",stability,worst_stretch")
+    );
+    let table = rows(&table);
+    let mut stepper = Stepper::new(Arc::new(Scene::open(scene, &[]).unwrap().model));
+    for row in &table {
+        let _ = stepper.drive(Until::end(), |stepper| match stepper.event().outcome {
+            stickslip::step::event::Outcome::Increment { .. } => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        });
+        let (state, event) = (stepper.state(), stepper.event());
+        let grid = grid(
+            stepper.model(),
+            state,
+            Some(event),
+            event.position,
+            event.load_factor,
+        );
+        let least = |name: &str| {
+            let array = grid
+                .on_cells
+                .iter()
+                .find(|array| array.name == name)
+                .unwrap();
+            let Values::Numbers(values) = &array.values else {
+                panic!("{name}");
+            };
+            values.iter().copied().fold(f64::INFINITY, f64::min)
+        };
+        assert_eq!(
+            least("stretch"),
+            row["worst_stretch"].parse::<f64>().unwrap()
+        );
+        assert!(least("det_F") > 0.0);
+    }
+    let audit = ran(directory.path(), &["audit", scene]);
+    let told = out(&audit);
+    let row = told
+        .lines()
+        .find(|line| line.trim_start().starts_with("stretch "))
+        .unwrap();
+    assert!(row.contains("element 14 of g"), "{told}");
+    assert!(told.contains("from increment 6 (load 0.3) on"), "{told}");
+}
+
+#[test]
 fn a_run_leaves_a_file_for_each_increment_and_a_collection_over_the_load() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();

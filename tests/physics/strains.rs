@@ -3,12 +3,14 @@
 
 use crate::blocks::{block, finished};
 use crate::common::{Run, run, scene};
+use stickslip::explain::page::page;
 use stickslip::fem::deformation::{Deformation, SOFTENING, by_element, deformation};
 use stickslip::model::{BodyKind, ElementKind, Model};
 use stickslip::scene::Scene;
+use stickslip::scene::gaps;
 use stickslip::step::event::{Failure, Outcome};
 
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/findings");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
 
 /// A unit block of elements of a kind.
 fn unit(kind: &str, material: &str) -> Scene {
@@ -228,7 +230,7 @@ fn svk_softens_below_the_limit_of_its_range_and_neo_hookean_does_not() {
 
 #[test]
 fn no_increment_with_an_inverted_element_is_accepted() {
-    let collapses = scene(&format!("{FOLDER}/minimal-collapse.ron"), &[]);
+    let collapses = scene(&format!("{FOLDER}/failures/minimal-collapse.ron"), &[]);
     let run = run(&collapses);
     let [_, determinant] = checked(&run);
     assert!(determinant > 0.0, "{determinant}");
@@ -262,4 +264,54 @@ fn a_cantilever_that_crushes_a_block_of_svk_fails_by_its_law_and_with_neo_hookea
     let neo = run(&scene("05-cantilever-elastic-block", &law));
     assert!(neo.failure.is_none());
     assert!(checked(&neo)[1] > 0.0);
+}
+
+#[test]
+fn a_wheel_that_crushes_its_soil_is_told_so_and_the_law_that_helps_was_tried() {
+    let wheel = scene(&format!("{FOLDER}/findings/wheel.ron"), &[]);
+    let mut run = run(&wheel);
+    assert!(run.failure.is_some());
+    assert!(checked(&run)[1] > 0.0);
+    let state = run.stepper.state().clone();
+    let spec = Some(&wheel.spec);
+    let found = page(&mut run.stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
+    let first = |head: &str| {
+        found
+            .lines
+            .iter()
+            .find(|line| line.starts_with(head))
+            .unwrap()
+    };
+    let why = first("why: ");
+    for part in [
+        "of soil",
+        "a stretch of 0.2883",
+        "softens below 0.5774",
+        "law: svk",
+    ] {
+        assert!(why.contains(part), "{why}");
+    }
+    assert!(first("do: 1. ").contains("--set materials.soil.law=neohookean (tried"));
+}
+
+#[test]
+fn a_motion_that_must_press_svk_out_of_its_range_is_found_before_the_run() {
+    let warned = |set: &[(&str, &str)]| {
+        let scene = scene(&format!("{FOLDER}/failures/minimal-collapse.ron"), set);
+        let told = gaps::warnings(&scene.model);
+        told.iter()
+            .any(|line| line.contains("to 0.300 of its length"))
+    };
+    assert!(warned(&[]));
+    assert!(!warned(&[("materials.rubber.law", "neohookean")]));
+    assert!(!warned(&[("materials.rubber.update", "updated")]));
+    assert!(!warned(&[("loads[0].value", "-0.8")]));
+    assert!(!warned(&[("loads[0].value", "1.4")]), "it moves away");
+    // The block itself, without any contact.
+    let held = unit("quad8", "").model;
+    assert!(
+        gaps::warnings(&held)
+            .iter()
+            .any(|line| line.contains("to 0.000 of its length"))
+    );
 }

@@ -20,7 +20,7 @@ struct Case {
     is_meant: fn(&Failure) -> bool,
 }
 
-const CASES: [Case; 13] = [
+const CASES: [Case; 14] = [
     Case {
         name: "cycle",
         scene: "osc-inclined-cantilever",
@@ -97,6 +97,12 @@ const CASES: [Case; 13] = [
         scene: "wrong-EA1e16",
         set: &[],
         is_meant: |failure| matches!(failure, Failure::RoundOff { .. }),
+    },
+    Case {
+        name: "inverted",
+        scene: "minimal-collapse",
+        set: &[],
+        is_meant: |failure| matches!(failure, Failure::Inverted(_)),
     },
     Case {
         name: "over-constrained",
@@ -198,6 +204,21 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
         assert!(told.contains(part), "{part}: {told}");
     }
     assert_eq!(found.nodes, [0]);
+}
+
+#[test]
+fn an_inverted_element_is_named_first_and_marked_in_the_shape() {
+    let case = CASES.iter().find(|case| case.name == "inverted").unwrap();
+    let mut debugger = at_failure(case);
+    let lines = found(&debugger).lines;
+    let why = lines.iter().find(|line| line.starts_with("why: ")).unwrap();
+    for part in ["element 14 of g", "stretch", "law: svk"] {
+        assert!(why.contains(part), "{why}");
+    }
+    debugger.type_keys("Esc");
+    let screen = debugger.text(120, 40);
+    assert!(screen.matches('◆').count() == 2, "{screen}");
+    assert!(screen.contains("element 14 of g"), "{screen}");
 }
 
 #[test]

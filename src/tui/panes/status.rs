@@ -262,6 +262,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
             unsettled: 0,
             marked: None,
             jumped: false,
+            left_range: None,
             ..
         } => ("✓", theme.good),
         Outcome::Increment { .. } => ("✓", theme.warning),
