@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
+use stickslip_exchange::seal::sealed;
 
 fn command(directory: &Path, words: &str, more: &[&str]) -> Command {
     let words: Vec<&str> = words
@@ -203,7 +204,8 @@ fn logs_of_something_else_are_refused_with_the_reason() {
     );
     // Another value of a cell.
     let last = rest.trim_end().rsplit('\n').next().unwrap();
-    let changed = last.replacen("minors:", "minors:9", 1);
+    let (last, _) = last.rsplit_once('\t').unwrap();
+    let changed = sealed(&last.replacen("minors:", "minors:9", 1));
     std::fs::write(here.join("c.log"), format!("{first}\n{changed}\n")).unwrap();
     for order in [["a.log", "c.log"], ["c.log", "a.log"]] {
         let output = merged(here, MAP, &order.map(str::to_owned), &[]);
@@ -221,7 +223,8 @@ fn logs_of_something_else_are_refused_with_the_reason() {
     // A cell of no such map.
     let key = "0".repeat(32);
     let value = last.split_once('\t').unwrap().1;
-    std::fs::write(here.join("d.log"), format!("{text}{key}\t{value}\n")).unwrap();
+    let line = sealed(&format!("{key}\t{value}"));
+    std::fs::write(here.join("d.log"), format!("{text}{line}\n")).unwrap();
     let told = err(&merged(here, MAP, &["d.log".to_owned()], &[]));
     let line = text.lines().count() + 1;
     assert!(told.starts_with(&format!("d.log:{line}:1: ")), "{told}");

@@ -5,9 +5,19 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
-/// The program with these arguments, in a directory, without input.
+/// The program with these arguments, in a directory, without input. What the user of this machine keeps is nothing to it: it has a
+/// home in which nothing can be made.
 pub fn program(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stickslip"));
+    command.env("HOME", "/dev/null");
+    for place in [
+        "XDG_STATE_HOME",
+        "XDG_CONFIG_HOME",
+        "XDG_DATA_HOME",
+        "XDG_CACHE_HOME",
+    ] {
+        command.env_remove(place);
+    }
     command.args(arguments).stdin(Stdio::null());
     command.current_dir(directory);
     command

@@ -85,6 +85,7 @@ impl<'a> Start<'a> {
         for name in ["NO_COLOR", "ENV"] {
             command.env_remove(name);
         }
+        command.env("HOME", state.path());
         command.env("XDG_STATE_HOME", state.path());
         command.env("XDG_CONFIG_HOME", state.path());
         for (name, value) in &self.variables {
