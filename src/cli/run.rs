@@ -11,7 +11,7 @@ use super::table;
 use crate::contact::record::ContactRecord;
 use crate::explain::bond;
 use crate::explain::names;
-use crate::explain::number::six;
+use crate::explain::number::{four, six};
 use crate::explain::page;
 use crate::explain::report;
 use crate::explain::touch::TouchWatch;
@@ -19,7 +19,7 @@ use crate::history::rounds::{self, Watch};
 use crate::history::strip::Strip;
 use crate::linear::norms::Norms;
 use crate::linear::stability::Stability;
-use crate::model::{Control, Model, Touch};
+use crate::model::{Control, Jumps, Model, Touch};
 use crate::outside::files::Output;
 use crate::outside::shown;
 use crate::record::snapshot::Snapshot;
@@ -218,6 +218,9 @@ struct Tally<'a> {
     majors: u64,
     /// Increments that were accepted in spite of something.
     doubtful: u32,
+    /// Load factors of the accepted increments that jumped, and that lost stability.
+    jumps: Vec<f64>,
+    losses: Vec<f64>,
     /// How often the strategy changed or the increment was cut.
     notes: u32,
     /// Norms of the accepted increment whose forces are known the least.
@@ -263,6 +266,8 @@ impl<'a> Run<'a> {
                 accepted: 0,
                 majors: 0,
                 doubtful: 0,
+                jumps: Vec::new(),
+                losses: Vec::new(),
                 notes: 0,
                 noisiest: Norms::default(),
                 quiet,
@@ -348,7 +353,7 @@ impl<'a> Run<'a> {
             }
         };
         match end {
-            RunEnd::Finished | RunEnd::Spent => Exit::Good,
+            RunEnd::Finished | RunEnd::Spent => self.tell_branches(),
             // Who closes the pipe has what he wanted.
             RunEnd::Stopped(Closed::Pipe) => Exit::Good,
             RunEnd::Stopped(Closed::Endless(told)) => {
@@ -386,6 +391,52 @@ impl<'a> Run<'a> {
                 ));
                 Exit::Unconverged
             }
+        }
+    }
+
+    /// Tells whether the accepted states are the stable path that was asked for; the exit code says it, too.
+    fn tell_branches(&self) -> Exit {
+        let Tally {
+            scene,
+            jumps,
+            losses,
+            ..
+        } = &self.tally;
+        let (name, model) = (&scene.name, &scene.model);
+        let loads = |all: &[f64]| {
+            let first: Vec<String> = all.iter().take(MOST_STRETCHES).map(|&x| four(x)).collect();
+            let more = match all.len().saturating_sub(MOST_STRETCHES) {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            first.join(", ") + &more
+        };
+        if !jumps.is_empty() {
+            let at = loads(jumps);
+            tell(&format!(
+                "{name}: jumped to another branch of equilibrium at load {at}"
+            ));
+        }
+        let event = self.solver.event();
+        if event.is_cut_short(model) {
+            let (arc, load) = (four(event.arc.unwrap_or(f64::NAN)), event.load_factor);
+            tell(&format!(
+                "{name}: the path is not completed: it came to the bound on its length, {arc}, at load {}, and not to load {}; page limit-points",
+                four(load),
+                model.path.last().unwrap_or(&f64::NAN)
+            ));
+            return Exit::Unconverged;
+        }
+        if losses.is_empty() {
+            return Exit::Good;
+        }
+        let at = loads(losses);
+        tell(&format!(
+            "{name}: equilibrium lost its stability at load {at}; what follows is no answer that a structure stays in (--stability shows each state, page jumps)"
+        ));
+        match model.jumps {
+            Jumps::Accept => Exit::Good,
+            _ => Exit::Unconverged,
         }
     }
 
@@ -550,9 +601,20 @@ impl Tally<'_> {
 
     /// Tells what the last increment was accepted in spite of.
     fn warn(&mut self, event: &Event) {
-        let Outcome::Increment { after, .. } = event.outcome else {
+        let Outcome::Increment {
+            after,
+            jumped,
+            unstable,
+            ..
+        } = event.outcome
+        else {
             return;
         };
+        match unstable {
+            Some(_) => self.losses.push(event.load_factor),
+            None if jumped => self.jumps.push(event.load_factor),
+            None => {}
+        }
         if after.noise > self.noisiest.noise {
             self.noisiest = after;
         }

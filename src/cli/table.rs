@@ -4,7 +4,7 @@
 //! and `-inf`.
 //!
 //! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
-//! is 1 where it ends on another branch of equilibrium than it began on, else 0. With `history.jumps: dynamic` there are three
+//! is 1 where it leaves the branch of stable equilibrium that it began on (it ends on another one, or in an unstable state), else 0. With `history.jumps: dynamic` there are three
 //! columns more, of the damped motion that a jump is: `let_go`, the load factor of the last equilibrium, `steps`, and
 //! `dissipated`, the work that its viscosity took. With `--stability` that of the accepted state comes last
 //! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`. In a scene with solids the very last column is

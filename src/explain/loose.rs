@@ -3,7 +3,7 @@
 
 use super::names::slave;
 use super::number::four;
-use crate::contact::projection::projection_at;
+use crate::contact::projection::{Projection, projection_at, tangent};
 use crate::fem::pressure::Pressures;
 use crate::linear::singular::{Motion, RigidMotion, Singular};
 use crate::model::{Factor, Mode, Model};
@@ -30,7 +30,7 @@ pub struct Loose {
 }
 
 /// A rigid motion of a body, with the sign in which the loads push it.
-struct Moving<'a> {
+pub(super) struct Moving<'a> {
     model: &'a Model,
     places: &'a [[f64; 2]],
     body: usize,
@@ -64,7 +64,7 @@ pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> L
 }
 
 impl<'a> Moving<'a> {
-    fn new(
+    pub(super) fn new(
         model: &'a Model,
         places: &'a [[f64; 2]],
         state: &State,
@@ -88,7 +88,7 @@ impl<'a> Moving<'a> {
         Some(moving)
     }
 
-    fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         &self.model.bodies[self.body].name
     }
 
@@ -201,23 +201,41 @@ impl<'a> Moving<'a> {
         self.nodes.contains(&node)
     }
 
+    /// How a contact stands over its surface.
+    fn over(&self, state: &State, s: usize) -> Option<Projection> {
+        let at = self.places[self.model.contacts[s].node];
+        let spot = state.nodes[s].spot?;
+        Some(projection_at(&self.model.surfaces, spot, self.places, at))
+    }
+
+    fn gap(&self, state: &State, s: usize) -> f64 {
+        self.over(state, s).map_or(0.0, |over| over.gap)
+    }
+
+    /// The contacts of the body that stand over a surface, each with its velocity against that: along n, and along t.
+    pub(super) fn rates(&self, state: &State) -> Vec<(usize, [f64; 2])> {
+        let rate = |s: usize| {
+            let (node, over) = (self.model.contacts[s].node, self.over(state, s)?);
+            let (v, side) = match self.has(node) {
+                true => (self.velocity(self.places[node]), 1.0),
+                false => (self.velocity(over.foot), -1.0),
+            };
+            let [n, t] = [over.normal, tangent(over.normal)];
+            let along = |d: [f64; 2]| side * (v[0] * d[0] + v[1] * d[1]);
+            Some((s, [along(n), along(t)]))
+        };
+        self.own().filter_map(rate).collect()
+    }
+
     /// Which contact or support would stop the motion.
     fn stopped(&self, state: &State) -> String {
         let mut closing: Vec<(f64, usize)> = Vec::new();
         let mut sliding = Vec::new();
-        for s in self.own() {
-            let (contact, node) = (&self.model.contacts[s], &state.nodes[s]);
-            let Some(spot) = node.spot else { continue };
-            let at = self.places[contact.node];
-            let over = projection_at(&self.model.surfaces, spot, self.places, at);
-            let (v, side) = match self.has(contact.node) {
-                true => (self.velocity(at), 1.0),
-                false => (self.velocity(over.foot), -1.0),
-            };
-            let rate = side * (v[0] * over.normal[0] + v[1] * over.normal[1]);
-            let size = v[0].hypot(v[1]);
+        for (s, [rate, along]) in self.rates(state) {
+            let (node, size) = (&state.nodes[s], rate.hypot(along));
             if node.mode == Mode::Free && rate < -NONE * size {
-                closing.push((over.gap.max(0.0) / -rate * size, s));
+                let gap = self.gap(state, s).max(0.0);
+                closing.push((gap / -rate * size, s));
             }
             if node.mode == Mode::Sliding && size > 0.0 {
                 sliding.push(s);

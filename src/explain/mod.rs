@@ -28,6 +28,8 @@ pub mod finer;
 pub mod indefinite;
 pub mod influence;
 pub mod judged;
+pub mod jumped;
+pub mod limit_load;
 pub mod loose;
 pub mod majors;
 pub mod names;

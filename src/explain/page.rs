@@ -11,6 +11,8 @@ use super::examination::{DONE, Examination, NOT_CONDENSED, frozen};
 use super::finer::{Finer, finer};
 use super::indefinite::{self, indefinite};
 use super::judged;
+use super::jumped::leads_away;
+use super::limit_load::limit_load;
 use super::loose::loose;
 use super::majors;
 use super::names;
@@ -77,6 +79,7 @@ pub fn page(
             return None;
         }
     }
+    page.facts.extend(limit_load(stepper, state, failure, stop));
     if page.asks_how_far(failure) {
         tell(&page.shown("looking how far smaller steps come …"));
         let reached = reach(stepper, state, stop)?;
@@ -96,6 +99,7 @@ pub fn facts(
     let page = Page::of(stepper, state, failure, stop);
     let mut lines = page.facts;
     lines.extend(page.found.lines);
+    lines.extend(limit_load(stepper, state, failure, stop));
     lines
 }
 
@@ -238,7 +242,16 @@ impl Page {
             Failure::Singular(Singular::Unexplained) => {
                 self.facts.push(unexplained(stepper.model()).into());
             }
-            Failure::Leapt { motion, predicted } => {
+            Failure::Leapt {
+                unstable: Some(stability),
+                ..
+            } => self.facts.push(format!(
+                "why: {}, and the least increment still ends there: no stable equilibrium is near",
+                leads_away(*stability)
+            )),
+            Failure::Leapt {
+                motion, predicted, ..
+            } => {
                 self.facts.push(format!(
                     "why: {:.1} times the motion that tangent and last increments predict, and the least increment still does it: between the two states lies a part of the path that this load does not hold in equilibrium",
                     motion / predicted.max(f64::MIN_POSITIVE)

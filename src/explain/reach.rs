@@ -3,6 +3,7 @@
 
 use super::number::six;
 use super::report;
+use crate::linear::singular::Singular;
 use crate::model::Model;
 use crate::step::drive::{RunEnd, Until};
 use crate::step::event::{Failure, Moves, Outcome};
@@ -28,6 +29,8 @@ pub struct Reach {
     pub from: f64,
     /// Load factor that failed.
     pub wanted: f64,
+    /// The state that was come to.
+    pub at: Box<State>,
     /// Size of the step that failed last, and of what. `None` where the load that failed was come to, or the number of
     /// trials was used up.
     pub ends: Option<(f64, Failure)>,
@@ -84,6 +87,7 @@ pub fn reach(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> O
         }
     }
     Some(Reach {
+        at: Box::new(good),
         load,
         from,
         wanted,
@@ -102,7 +106,11 @@ fn step(
     stepper.intervene(&Intervention::Increment(size)).ok()?;
     let until = Until::end().minors(MINORS).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| match &stepper.event().outcome {
-        Outcome::Increment { .. } => ControlFlow::Break(Ok(stepper.state().clone())),
+        Outcome::Increment { jumped: false, .. } => ControlFlow::Break(Ok(stepper.state().clone())),
+        // What has left the branch is no answer near the last one.
+        Outcome::Increment { .. } => {
+            ControlFlow::Break(Err(Failure::Singular(Singular::Unexplained)))
+        }
         // Cutting is done here.
         Outcome::Cut { why, .. }
         | Outcome::Leaps { why, .. }

@@ -3,6 +3,7 @@
 use crate::contact::record::ContactRecord;
 use crate::contact::table2::{Decision, Rule, Tested};
 use crate::explain::judged;
+use crate::explain::jumped;
 use crate::explain::names::{mode, position, slave};
 use crate::explain::number::{four, six};
 use crate::explain::strain;
@@ -209,7 +210,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             judged::finding(model, why)
         ),
         Outcome::Increment { after, last, .. } => {
-            let end = if *last { "; the history is done" } else { "" };
+            let end = if *last { jumped::end(model, event) } else { "" };
             let left = accuracy(after).map_or(String::new(), |left| format!("; {left}"));
             format!(
                 "{at}: load {} accepted{}{left}{end}",
@@ -287,6 +288,7 @@ pub fn reservations(model: &Model, event: &Event) -> String {
         unsettled,
         marked,
         jumped,
+        unstable,
         motion,
         left_range,
         ..
@@ -328,9 +330,7 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     if let Some(point) = left_range {
         text += &format!(", although {}", strain::left(model, point));
     }
-    if *jumped {
-        text += ", jumped: another branch from here";
-    }
+    text += &jumped::reservation(*jumped, unstable.as_ref());
     if let Some(motion) = motion {
         text += &format!(
             ", by a damped motion of {} steps from the equilibrium at load {}, viscosity took {}",
@@ -497,9 +497,11 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         Failure::Restless { steps } => {
             format!("a damped motion of {steps} steps came to no rest")
         }
-        Failure::Leapt { motion, predicted } => format!(
-            "a jump to another branch: it moves by {motion:.3e}, where its tangent and the increments before predict {predicted:.1e}"
-        ),
+        Failure::Leapt {
+            motion,
+            predicted,
+            unstable,
+        } => jumped::jump(*motion, *predicted, *unstable),
         Failure::DoubledBack => {
             "along the path, the increment would go back the way that it came".into()
         }

@@ -1,4 +1,4 @@
-//! A stability map of scenes: a cell for each combination of settings.
+//! A convergence map of scenes: a cell for each combination of settings.
 //!
 //! A run that goes to its end may have gone there on a wrong branch. Its end is compared with that of a reference: of
 //! all runs that differ from it in nothing but how they are computed (`settings.…`, `history.increment`), the one with the
@@ -77,7 +77,7 @@ pub struct Cell {
     pub reference: Option<(usize, f64)>,
 }
 
-/// A stability map.
+/// A convergence map.
 #[derive(Debug, Clone)]
 pub struct Map {
     /// What was run.
@@ -459,7 +459,7 @@ fn reference(plan: &Plan, members: &[usize], ended: &[Option<Ended>]) -> Option<
 
 fn title(plan: &Plan) -> String {
     match plan.study.scenes.as_slice() {
-        [_] => format!("Stability of “{}”", plan.title),
-        scenes => format!("Stability of {} scenes", scenes.len()),
+        [_] => format!("Convergence of “{}”", plan.title),
+        scenes => format!("Convergence of {} scenes", scenes.len()),
     }
 }

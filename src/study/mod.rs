@@ -10,7 +10,7 @@
 //!
 //! Values that are known from elsewhere: [`benchmarks`].
 //!
-//! Stability maps:
+//! Convergence maps:
 //!
 //! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, judged; [`survey`]: all of them.
 //! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures; [`sheet`]: pictures as plain data.

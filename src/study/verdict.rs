@@ -1,4 +1,4 @@
-//! What a run is worth: the words that stability maps sort runs by.
+//! What a run is worth: the words that convergence maps sort runs by.
 
 use super::reason::Reason;
 use crate::interface::method::NotFound;

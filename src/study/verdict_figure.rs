@@ -1,4 +1,4 @@
-//! Stability maps as pictures: random problems as a bar for each strategy, scenes as a grid of cells.
+//! Convergence maps as pictures: random problems as a bar for each strategy, scenes as a grid of cells.
 
 use super::drawn::PlotError;
 use super::map::{Map, Panel};

@@ -1,15 +1,17 @@
-//! What the judge costs beside the run that it judges: `cargo bench --bench judge`.
+//! What the judge, and looks at stability, cost beside the run that they judge: `cargo bench --bench judge`.
 //!
 //! `solids s` is what it costs to find the smallest stretch and det F of all solids, once an increment.
 //!
-//! Every increment is judged once more after it was accepted, from the same positions and forces, and that is timed. A table, not
-//! a statistic: all of a row are measured in the same process.
+//! Every increment is judged once more after it was accepted, from the same positions and forces, and its stability is looked at;
+//! both are timed. The last columns compare the cost of a look with the counted one, in major iterations, and give the
+//! part of the run that the looks cost which it takes by itself. A table, not a statistic: all of a row are measured in the same process.
 
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::contact::judge::{Judge, Seen};
 use stickslip::contact::laws::Scales;
 use stickslip::fem::deformation::deformation;
+use stickslip::linear::estimate::Estimate;
 use stickslip::model::Model;
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
@@ -23,9 +25,9 @@ const BLOCKS: &str = concat!(
 
 fn main() {
     println!(
-        "| scene | unknowns | slaves | increments | run s | judge s | part | solids s | part |"
+        "| scene | unknowns | slaves | increments | run s | judge s | part | solids s | part | look, majors | counted | looks | part |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     row("04-cantilever-rigid-circle", &[]);
     row("05-cantilever-elastic-block", &[]);
     for refine in ["2", "6", "13"] {
@@ -44,6 +46,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
     let mut contact = vec![[0.0; 2]; nodes];
     let mut before = positions(&model, stepper.state());
     let (mut run, mut judged, mut strained, mut increments) = (0.0, 0.0, 0.0, 0);
+    let (mut looked, mut looks, mut majors) = (0.0, 0, 0.0);
     loop {
         let began = Instant::now();
         let Some(event) = stepper.step() else { break };
@@ -83,14 +86,27 @@ fn row(name: &str, set: &[(&str, &str)]) {
         std::hint::black_box(deformation(&model, &state.start.u));
         strained += began.elapsed().as_secs_f64();
         before = now;
+        majors += f64::from(stepper.event().position.major);
+        looks += u32::from(stepper.state().watch.majors == 0);
+        // Linearised, which the next increment asks for all the same.
+        let began = Instant::now();
+        std::hint::black_box(stepper.norms());
+        run += began.elapsed().as_secs_f64();
+        let began = Instant::now();
+        std::hint::black_box(stepper.stability());
+        looked += began.elapsed().as_secs_f64();
     }
+    let look = looked / f64::from(increments);
     println!(
-        "| {} | {} | {} | {increments} | {run:.2} | {judged:.4} | {:.2} % | {strained:.4} | {:.2} % |",
+        "| {} | {} | {} | {increments} | {run:.2} | {judged:.4} | {:.2} % | {strained:.4} | {:.2} % | {:.2} | {:.2} | {looks} | {:.2} % |",
         model.title,
         model.dofs.equations,
         model.contacts.len(),
         100.0 * judged / run,
-        100.0 * strained / run
+        100.0 * strained / run,
+        look * majors / run,
+        Estimate::of(&model).stability,
+        100.0 * f64::from(looks) * look / run
     );
 }
 

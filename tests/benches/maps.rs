@@ -1,4 +1,4 @@
-//! Cells of stability maps a second, on one thread and on two: `cargo bench --bench maps`.
+//! Cells of convergence maps a second, on one thread and on two: `cargo bench --bench maps`.
 //!
 //! The last column is the time of the solver by itself, with every model made before and a new solver for each, over that of the
 //! map on one thread. What is missing to 1 goes into making models, judging ends and random problems; it can be above 1, since

@@ -7,7 +7,7 @@ mod program;
 mod run;
 // Studies run what they list, in that order, with the bits of a run alone.
 mod study;
-// Stability maps count honestly, and a kill loses nothing.
+// Convergence maps count honestly, and a kill loses nothing.
 mod map;
 // What is known from elsewhere is found.
 mod benchmarks;

@@ -1,4 +1,4 @@
-//! Stability maps: what they count, how they are judged, and that a kill loses nothing.
+//! Convergence maps: what they count, how they are judged, and that a kill loses nothing.
 
 use crate::program::{code, err, interrupted, program, rows, well};
 use std::collections::HashMap;

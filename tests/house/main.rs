@@ -346,3 +346,32 @@ fn foreign_crates_and_large_folders_are_found() {
     let files = [("src/a/b.rs", 86), ("src/c/d.rs", 14), ("src/lib.rs", 0)];
     assert_eq!(large(files.into_iter()), ["src/a"]);
 }
+
+/// "Stability" is that of equilibrium; a map shows where runs converge.
+#[test]
+fn the_word_stability_is_kept_for_equilibrium() {
+    let mut folders = vec![
+        top().join("src"),
+        top().join("problems"),
+        top().join("tests"),
+    ];
+    let mut misused = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let kind = path.extension().and_then(|kind| kind.to_str());
+            match kind {
+                None if path.is_dir() => folders.push(path),
+                Some("rs" | "md" | "ron" | "txt" | "py") => {
+                    let text = fs::read_to_string(&path).unwrap().to_lowercase();
+                    let map = ["stability", "map"].join(" ");
+                    if text.contains(&map) {
+                        misused.push(path);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(misused.is_empty(), "{misused:?}");
+}

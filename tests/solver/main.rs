@@ -37,6 +37,8 @@ mod compliant;
 mod loose;
 // Jumps to another branch are found, said and decided on; other sudden motions are none.
 mod jumps;
+// Limit loads and lost stability against closed forms; jumps that were once passed without a word.
+mod limits;
 // Paths are followed past limit points: closed forms, corners, bounds.
 mod arc;
 // Answers of zero, other units, stiffnesses that round-off spoils, scenes near the limits of memory.

@@ -176,6 +176,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
         unsettled,
         marked: None,
         jumped: false,
+        unstable: None,
         motion: None,
         left_range: None,
         last: false,

@@ -481,6 +481,10 @@ impl Source for Bodies {
         tangent.stability(system, model, at)
     }
 
+    fn stability_cost(&self) -> f64 {
+        self.system.estimate.stability
+    }
+
     fn work(&self) -> Work {
         self.system.done
     }

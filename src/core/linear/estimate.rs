@@ -33,6 +33,8 @@ const DENSE: f64 = 12e9;
 const MESH_ENTRIES: f64 = 10.0;
 const MESH_OPERATIONS: f64 = 21.0;
 const LU_ENTRIES: f64 = 6.0;
+/// Operations of a look at stability over c³, of c unknowns that are left: the products of conditions and stiffness, and a factorization.
+const LOOK: f64 = 4.0;
 /// Bytes of an unknown, with its share of elements, pattern and stiffness, and of an entry of a given matrix.
 const UNKNOWN: f64 = 2500.0;
 const GIVEN: f64 = 180.0;
@@ -60,6 +62,8 @@ pub struct Estimate {
     pub condensed: Effort,
     /// Whether `auto` stands for condensed.
     pub condenses: bool,
+    /// What a look at stability costs ([`crate::linear::stability`]), counted in major iterations.
+    pub stability: f64,
     /// Bytes that the scene may take.
     pub budget: f64,
 }
@@ -118,7 +122,7 @@ impl Estimate {
         let small = 2 * model.contacts.len() * MANY_TIMES <= model.dofs.equations;
         let pays = small && condensed.seconds <= augmented.seconds;
         let fits = |effort: Effort| effort.bytes <= budget;
-        Estimate {
+        let mut estimate = Estimate {
             augmented,
             condensed,
             condenses: if fits(augmented) {
@@ -126,8 +130,13 @@ impl Estimate {
             } else {
                 fits(condensed)
             },
+            stability: 0.0,
             budget,
-        }
+        };
+        let (major, _) = estimate.with(model.settings.solver);
+        let look = symmetric.seconds + LOOK * kept(model, c).powi(3) / SYMMETRIC;
+        estimate.stability = look / major.seconds.max(f64::MIN_POSITIVE);
+        estimate
     }
 
     /// What a solver takes, and its name.
@@ -302,6 +311,19 @@ fn displacements(model: &Model) -> f64 {
     };
     let nodes = wanted.iter().enumerate().filter(|(_, wanted)| **wanted);
     nodes.map(|(node, _)| of(node)).sum::<usize>() as f64
+}
+
+/// Unknowns that a look at stability keeps in its dense part: `c` of the interface, and all of bodies that want pivoting.
+fn kept(model: &Model, c: f64) -> f64 {
+    let pivoted = model.bodies.iter().map(|body| match &body.kind {
+        BodyKind::Beam(beam) if beam.first_shear.is_some() => {
+            let front = beam.elements.first().map_or(0, Vec::len).saturating_sub(1);
+            3 * body.nodes.len() + front * beam.elements.len()
+        }
+        BodyKind::Linear(linear) if linear.form != Form::Stiffness => 4 * body.nodes.len(),
+        _ => 0,
+    });
+    c + pivoted.sum::<usize>() as f64
 }
 
 /// Whether all bodies of a scene have a stiffness that can be factored without pivoting. Shear-rigid beams have not:

@@ -310,6 +310,11 @@ pub trait Source: Send {
         Stability::NotKnown
     }
 
+    /// What a look at stability costs, counted in major iterations; infinite where it cannot tell.
+    fn stability_cost(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// What it has done so far, as far as it counts.
     fn work(&self) -> Work {
         Work::default()

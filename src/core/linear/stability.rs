@@ -51,6 +51,13 @@ pub enum Stability {
     NotKnown,
 }
 
+impl Stability {
+    /// Whether some admissible motion is known to lead away.
+    pub fn is_unstable(self) -> bool {
+        matches!(self, Stability::Unstable { .. } | Stability::Divergence)
+    }
+}
+
 impl std::fmt::Display for Stability {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

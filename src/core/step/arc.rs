@@ -14,25 +14,24 @@
 //! constraint, and ends exactly there. The next size follows from the number of major iterations; what fails is cut, or begins again behind
 //! the corner of the path that it started at ([`crate::step::turn`]).
 
-use crate::contact::laws::Verdict;
+use crate::contact::laws::{Finding, Verdict};
 use crate::contact::state::ContactState;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::{ArcLength, Jumps, Measured, Mode, Model};
 use crate::step::event::{Failure, Outcome};
+use crate::step::jump::Landing;
 use crate::step::pace::RATIO;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::step::turn::smaller;
-use crate::step::way::{Aim, Change};
+use crate::step::way::{Aim, Change, ROUNDING, farthest};
 use std::sync::Arc;
 
 /// A step that goes back the way of the one before, up to this angle (cosine of its supplement), doubles back.
 const BACK: f64 = 0.999;
 /// Motions below this part of the scene's length are none: round-off makes as much of them.
 const NOTHING: f64 = 1e-9;
-/// Sizes are this exact.
-const ROUNDING: f64 = 1e-9;
 /// The next increment is at least and at most this many times the last.
 const CHANGE: [f64; 2] = [0.5, 2.0];
 
@@ -141,7 +140,12 @@ impl Stepper {
     }
 
     /// Accepts a state that the judge finds right, or cuts an increment that jumps or doubles back.
-    pub(super) fn land_on_way(&mut self, after: Norms, verdict: Verdict) -> Outcome {
+    pub(super) fn land_on_way(
+        &mut self,
+        after: Norms,
+        verdict: Verdict,
+        marked: Option<Finding>,
+    ) -> Outcome {
         let motion = self.source.moved(&self.state.u, &self.state.start.u);
         let predicted = self.state.pace.predicted;
         let moves = motion > NOTHING * self.model.length;
@@ -149,7 +153,11 @@ impl Stepper {
         let why = if self.doubles_back() {
             Some(Failure::DoubledBack)
         } else {
-            leaps.then_some(Failure::Leapt { motion, predicted })
+            leaps.then_some(Failure::Leapt {
+                motion,
+                predicted,
+                unstable: None,
+            })
         };
         let mut jumped = false;
         if let Some(why) = why {
@@ -168,7 +176,11 @@ impl Stepper {
         }
         #[cfg(mutants)]
         let jumped = jumped && !crate::mutants::is_active("arc-jump-unmarked");
-        self.accept(after, verdict, None, jumped)
+        let landing = Landing {
+            jumped,
+            ..Landing::marked(marked)
+        };
+        self.accept(after, verdict, landing)
     }
 
     /// Whether the state lies on the way that the increment before came, or behind its own start.
@@ -327,12 +339,6 @@ fn goes_back(moved: impl Iterator<Item = f64>, last: &[f64]) -> bool {
         (product, here, there) = (product + now * then, here + now * now, there + then * then);
     }
     here > 0.0 && product < -BACK * (here * there).sqrt()
-}
-
-/// Arc at which a history ends at the latest.
-fn farthest(model: &Model) -> f64 {
-    let most = ArcLength::FARTHEST * model.length;
-    model.arc.length.unwrap_or(most)
 }
 
 /// A motion of all degrees of freedom without what is no displacement: rotations, and forces that are unknowns.

@@ -19,12 +19,13 @@
 
 use crate::contact::laws::{Finding, Law, Verdict};
 use crate::linear::norms::Norms;
-use crate::linear::stability::Stability;
 use crate::model::Jumps;
 use crate::step::event::{Failure, Moves, Outcome, Slow};
+use crate::step::jump::Landing;
 use crate::step::motion::Motion;
 use crate::step::pace::Pace;
 use crate::step::stepper::Stepper;
+use crate::step::watch::StabilityWatch;
 use std::sync::Arc;
 
 /// Furthest that a step goes, over the scene's length.
@@ -94,20 +95,14 @@ impl Stepper {
         worst: Option<Finding>,
     ) -> Outcome {
         let Some(motion) = self.state.motion else {
-            return self.accept(after, verdict, worst, false);
+            return self.accept(after, verdict, Landing::marked(worst));
         };
         let moved = self.source.moved(&self.state.u, &self.state.start.u);
         let stride = STRIDE * self.model.length;
-        let unstable = |stability| {
-            matches!(
-                stability,
-                Stability::Unstable { .. } | Stability::Divergence
-            )
-        };
         let slow = match worst.filter(|found| found.law != Law::Touch) {
             Some(found) => Some(Slow::Failed(Failure::Refused(found))),
             None if moved > stride => Some(Slow::Far { motion: moved }),
-            None if unstable(self.source.stability(&self.state.at())) => Some(Slow::Unstable),
+            None if self.source.stability(&self.state.at()).is_unstable() => Some(Slow::Unstable),
             None => None,
         };
         if let Some(slow) = slow {
@@ -123,7 +118,12 @@ impl Stepper {
             // The other branch has a pace of its own.
             self.state.pace = Pace::default();
             let jumped = motion.travelled + moved > JUMP * self.model.length;
-            return self.accept(after, verdict, worst, jumped);
+            self.state.watch = StabilityWatch::default();
+            let landing = Landing {
+                jumped,
+                ..Landing::marked(worst)
+            };
+            return self.accept(after, verdict, landing);
         }
         if motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
             self.next_major();

@@ -7,11 +7,13 @@ use crate::interface::method::NotFound;
 use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
+use crate::linear::stability::Stability;
 use crate::model::{Model, Strategy};
 use crate::step::detour::Detour;
 use crate::step::major_history::MajorCycle;
 use crate::step::motion::Motion;
-use crate::step::way::Change;
+use crate::step::watch::StabilityLoss;
+use crate::step::way::{Change, ROUNDING, farthest};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -66,6 +68,16 @@ impl Event {
             words: Arc::default(),
             outcome: Outcome::Minor,
         }
+    }
+}
+
+impl Event {
+    /// Whether a history along the path ends here at the bound on its length, and has not come to its last corner.
+    pub fn is_cut_short(&self, model: &Model) -> bool {
+        let last = matches!(self.outcome, Outcome::Increment { last: true, .. });
+        let bound = farthest(model) * (1.0 - ROUNDING);
+        let corner = model.path.last() == Some(&self.load_factor);
+        last && !corner && self.arc.is_some_and(|arc| arc >= bound)
     }
 }
 
@@ -151,8 +163,10 @@ pub enum Outcome {
         unsettled: u32,
         /// The law that is broken although the increment is accepted; `None` if all laws hold.
         marked: Option<Finding>,
-        /// Whether it ends on another branch of equilibrium.
+        /// Whether it leaves the branch of stable equilibrium that it began on: it ends on another one, or in an unstable state.
         jumped: bool,
+        /// What the increment ends in, where that is unstable and its start was not known to be.
+        unstable: Option<StabilityLoss>,
         /// The damped motion that it ends, if any.
         motion: Option<Motion>,
         /// The worst point where a solid leaves the range of its law in this increment; `None` where all stay inside, or one
@@ -173,6 +187,7 @@ impl Outcome {
             unsettled: 0,
             marked: None,
             jumped: false,
+            unstable: None,
             motion: None,
             left_range: None,
             last,
@@ -269,6 +284,9 @@ pub enum Failure {
         motion: f64,
         /// How far it was predicted to move (length).
         predicted: f64,
+        /// What it ends in, where that is unstable and its start was not known to be.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        unstable: Option<Stability>,
     },
     /// A damped motion past a limit point came to no rest.
     Restless {

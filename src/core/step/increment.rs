@@ -1,12 +1,13 @@
 //! Increments: accepted, cut into halves, led round, damped, or failed.
 
-use crate::contact::laws::{Finding, Verdict};
+use crate::contact::laws::Verdict;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::{BodyKind, Factor, Jumps, Mode, least};
 use crate::step::brake::Brake;
 use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome, Slow};
+use crate::step::jump::Landing;
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
@@ -227,13 +228,7 @@ impl Stepper {
     }
 
     /// Makes the present state the start of the next increment.
-    pub(super) fn accept(
-        &mut self,
-        after: Norms,
-        verdict: Verdict,
-        marked: Option<Finding>,
-        jumped: bool,
-    ) -> Outcome {
+    pub(super) fn accept(&mut self, after: Norms, verdict: Verdict, landing: Landing) -> Outcome {
         let unsettled = self.state.unsettled;
         let leg = self.leg_reached();
         let bounded = self.go_along(leg);
@@ -257,8 +252,9 @@ impl Stepper {
         Outcome::Increment {
             after,
             unsettled,
-            marked,
-            jumped,
+            marked: landing.marked,
+            jumped: landing.jumped,
+            unstable: landing.unstable,
             motion,
             left_range,
             last,

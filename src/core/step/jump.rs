@@ -1,13 +1,12 @@
 //! Jumps: where the loads pass a limit point, the increment that does so ends on another branch of equilibrium, far from where
 //! it began, and nothing in that state says so.
 //!
-//! A jump is a motion that does not shrink as the increment is halved. So an increment that moves beyond [`RATIO`](crate::step::pace::RATIO) times
-//! what is expected of it is suspected, and the ladder tries its halves: it is cut, down to the least increment. What is
-//! expected is the motion of its first major iteration, with the tangent of its start, and that of the fastest increment
-//! so far; at a limit point the tangent itself is soft, and predicts anything. Smooth motion shrinks with the
-//! increment, and where a tangent only goes soft with its square root. Of a jump all is left but the part that led there; what
-//! has shrunk by less than the fourth root is one, and is accepted marked. A change of modes, a node that opens
-//! or slides or touches, or a load that sets in, shrinks.
+//! A jump is a motion that does not shrink as the increment is halved. So an increment that moves beyond what is expected of it
+//! ([`crate::step::pace`]) is suspected, and so is one that ends in an unstable state ([`crate::step::watch`]): the ladder tries
+//! its halves, down to the least increment. Smooth motion shrinks with the increment, and where a tangent only goes soft with its
+//! square root. Of a jump all is left but the part that led there; what has shrunk by less than the fourth root is one, and is
+//! accepted marked. A change of modes, a node that opens or slides or touches, or a load that sets in, shrinks. Where nothing is
+//! cut, what is suspected is marked.
 //!
 //! A way round ([`crate::step::detour`]) must not jump: what lies on another branch is no answer to halves that fail, and where a
 //! structure lets go may not depend on the increment.
@@ -15,77 +14,164 @@
 //! Near a limit point the halves may have no end at all, where the whole increment has one beyond. Where they fail, the suspected
 //! increment is taken whole after all, and is a jump if it still moves beyond what is expected.
 
-use crate::contact::laws::Verdict;
+use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
+use crate::linear::stability::Stability;
 use crate::model::Jumps;
 use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome};
 use crate::step::pace::{Pace, Suspect};
 use crate::step::stepper::Stepper;
+use crate::step::watch::{FAR, StabilityLoss};
 use crate::strategy;
 
 /// Motions below this part of the scene's length are no jumps: round-off makes as much of them.
 const NOTHING: f64 = 1e-9;
-/// Before a damped motion is to follow, no increment moves beyond this part of the scene's length without its halves being
-/// looked at: on its way it may have passed a limit point.
-const LONGEST: f64 = 0.03;
+
+/// In spite of what a state is accepted.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Landing {
+    /// The law that it breaks.
+    pub marked: Option<Finding>,
+    /// Whether it leaves the branch of stable equilibrium.
+    pub jumped: bool,
+    /// What it is, where it is unstable and its start was not known to be.
+    pub unstable: Option<StabilityLoss>,
+}
+
+/// How far an increment moved.
+#[derive(Clone, Copy)]
+struct Trip {
+    /// Its largest displacement (length).
+    motion: f64,
+    /// Load factors between which it went.
+    span: [f64; 2],
+    /// What it was suspected as when it was whole, or would be now.
+    suspect: Suspect,
+    /// Whether it moved beyond what is expected.
+    exceeds: bool,
+    /// Stability of its end, where it was looked at.
+    found: Option<Stability>,
+}
+
+impl Landing {
+    /// Accepted against a law, if any.
+    pub fn marked(marked: Option<Finding>) -> Self {
+        Landing {
+            marked,
+            ..Landing::default()
+        }
+    }
+}
+
+impl Trip {
+    fn size(&self) -> f64 {
+        (self.span[1] - self.span[0]).abs()
+    }
+
+    /// Whether it is a part of a suspected increment that has shrunk as a smooth motion does.
+    fn follows(&self) -> bool {
+        let size = self.size();
+        self.suspect.size > size && !self.suspect.jumps(self.motion, size)
+    }
+}
 
 impl Stepper {
-    /// Accepts a state that the judge finds right, or cuts the increment where it may have jumped.
-    pub(super) fn land(&mut self, after: Norms, verdict: Verdict) -> Outcome {
-        let state = self.state();
-        let size = (state.load_factor - state.start.load_factor).abs();
-        let motion = self.source.moved(&state.u, &state.start.u);
-        let looks = !strategy::rungs(state.controls.settings.strategy).is_empty();
-        let far = self.can_move() && motion > LONGEST * self.model().length;
-        let sudden = looks && motion > NOTHING * self.model().length;
-        let beyond = far || sudden && state.pace.is_exceeded(motion, size);
-        if !beyond {
-            return self.settle(after, verdict, motion / size);
+    /// Accepts a state that the judge finds right, or that is only `marked`; or cuts the increment where it may have jumped.
+    pub(super) fn land(
+        &mut self,
+        after: Norms,
+        verdict: Verdict,
+        marked: Option<Finding>,
+    ) -> Outcome {
+        if self.state.way.is_some() {
+            return self.land_on_way(after, verdict, marked);
         }
-        let jumps = self.model().jumps;
+        let (mut trip, why) = self.trip();
+        let mut landing = Landing {
+            unstable: self.state.watch.loss(trip.found),
+            ..Landing::marked(marked)
+        };
+        let cuts = matches!(self.model.jumps, Jumps::Cut | Jumps::Stop);
+        if trip.exceeds || landing.unstable.is_some() && cuts {
+            if let Some(tried) = self.try_parts(&trip, &why) {
+                return tried;
+            }
+            landing.jumped = trip.exceeds && (self.state.pace.over || !trip.follows());
+            let found = trip.found.unwrap_or_else(|| self.look());
+            trip.found = Some(found);
+            landing.unstable = self.state.watch.loss(trip.found);
+        }
+        self.touch_down(after, verdict, landing, &trip)
+    }
+
+    /// How far the present increment moved, and what it fails of where that is too far.
+    fn trip(&mut self) -> (Trip, Failure) {
+        let state = &self.state;
+        let span = [state.start.load_factor, state.load_factor];
+        let motion = self.source.moved(&state.u, &state.start.u);
+        let expected = state.pace.expected(&self.model, span);
+        let length = self.model.length;
+        let cuts = !strategy::rungs(state.controls.settings.strategy).is_empty()
+            && self.model.jumps != Jumps::Accept;
+        let far = motion > FAR * length;
+        let sudden = motion > NOTHING * length && expected.is_exceeded(motion, cuts);
+        let exceeds = sudden || far && self.can_move();
+        let (majors, cost) = (state.next.major, self.source.stability_cost());
+        let looks = !exceeds && (far || state.watch.is_due(majors, cost));
         let here = Suspect {
             motion,
-            size,
+            size: (span[1] - span[0]).abs(),
             sub_increment: state.sub_increment,
         };
         let suspect = state.pace.suspect.unwrap_or(here);
+        let found = looks.then(|| self.look());
+        let unstable = self.state.watch.loss(found).map(|loss| loss.stability);
         let why = Failure::Leapt {
             motion,
-            predicted: state.pace.expected(size),
+            predicted: expected.least(),
+            unstable,
         };
-        if jumps == Jumps::Dynamic
-            && size <= state.controls.least
-            && suspect.size > size
-            && !suspect.jumps(motion, size)
-        {
-            return self.settle(after, verdict, motion / size);
+        let trip = Trip {
+            motion,
+            span,
+            suspect,
+            exceeds,
+            found,
+        };
+        (trip, why)
+    }
+
+    /// Stability of the state that is about to be accepted.
+    fn look(&mut self) -> Stability {
+        self.source.stability(&self.state.at())
+    }
+
+    /// Cuts an increment that may have jumped, or fails where a jump is not to be accepted. `None` where it is accepted.
+    fn try_parts(&mut self, trip: &Trip, why: &Failure) -> Option<Outcome> {
+        let (jumps, size) = (self.model.jumps, trip.size());
+        let smallest = size <= self.state.controls.least;
+        if jumps == Jumps::Dynamic && smallest && trip.follows() {
+            return None;
         }
         let round = |route: Route| !matches!(route.by, Detour::Held | Detour::Back);
         if jumps != Jumps::Accept && self.state.detour.is_some_and(round) {
             self.next_major();
-            return self.fail(why);
+            return Some(self.fail(why.clone()));
         }
-        if jumps != Jumps::Accept && !self.state.pace.over {
-            if let Some(cut) = self.cut(&why) {
-                self.state.pace.suspect = Some(suspect);
-                return cut;
-            }
-            if suspect.size > size && !suspect.jumps(motion, size) {
-                return self.settle(after, verdict, motion / size);
-            }
-            if matches!(jumps, Jumps::Stop | Jumps::Dynamic) {
-                self.next_major();
-                return Outcome::Failed(why);
-            }
+        if jumps == Jumps::Accept || self.state.pace.over {
+            return None;
         }
-        // The other branch has a pace of its own.
-        self.state.pace = Pace::default();
-        #[cfg(mutants)]
-        if crate::mutants::is_active("jump-unmarked") {
-            return self.accept(after, verdict, None, false);
+        if let Some(cut) = self.cut(why) {
+            self.state.pace.suspect = Some(trip.suspect);
+            return Some(cut);
         }
-        self.accept(after, verdict, None, true)
+        let ends = matches!(jumps, Jumps::Stop | Jumps::Dynamic);
+        if !ends || trip.exceeds && trip.follows() {
+            return None;
+        }
+        self.next_major();
+        Some(Outcome::Failed(why.clone()))
     }
 
     /// Takes an increment whole whose halves have failed that were to tell whether it jumps.
@@ -97,21 +183,34 @@ impl Stepper {
         }
         let suspect = self.state.pace.suspect.take()?;
         self.state.pace.over = true;
-        self.restart(suspect.sub_increment);
+        let from = self.state.start.load_factor;
+        self.restart(suspect.sub_increment.remaining(from));
         let size = (self.state.load_factor - self.state.start.load_factor).abs();
         let why = why.clone();
         Some(Outcome::Leaps { why, size })
     }
 
-    /// Accepts a state that is no jump.
-    fn settle(&mut self, after: Norms, verdict: Verdict, rate: f64) -> Outcome {
-        let pace = &mut self.state.pace;
-        if rate.is_finite() {
-            pace.fastest = pace.fastest.max(rate);
+    /// Accepts the state.
+    fn touch_down(
+        &mut self,
+        after: Norms,
+        verdict: Verdict,
+        mut landing: Landing,
+        trip: &Trip,
+    ) -> Outcome {
+        let (state, model) = (&mut self.state, &self.model);
+        state.watch.take(trip.span[1], state.next.major, trip.found);
+        if landing.jumped {
+            // The other branch has a pace of its own.
+            state.pace = Pace::default();
+        } else if trip.size() > 0.0 {
+            state.pace.take(model, trip.motion, trip.span);
         }
-        if self.state.sub_increment.next().is_none() {
-            (pace.suspect, pace.over) = (None, false);
+        landing.jumped |= landing.unstable.is_some();
+        #[cfg(mutants)]
+        if crate::mutants::is_active("jump-unmarked") {
+            landing.jumped = false;
         }
-        self.accept(after, verdict, None, false)
+        self.accept(after, verdict, landing)
     }
 }

@@ -219,8 +219,16 @@ impl Stepper {
             .source
             .advance(Arc::make_mut(&mut self.state.u).as_mut_slice());
         self.state.correction = largest / self.model.length;
+        let (whole, part) = (self.state.load_factor, self.state.last_target);
+        let pace = &mut self.state.pace;
         if self.state.next.major == 1 {
-            self.state.pace.predicted = largest;
+            // A damped iteration goes only a part of the way.
+            let from = self.state.start.load_factor;
+            let times = (whole - from) / (part - from);
+            let times = if times.is_finite() { times } else { 1.0 };
+            (pace.predicted, pace.corrected) = (largest * times, 0.0);
+        } else {
+            pace.corrected += largest;
         }
         self.take_load();
         for contact in 0..self.state.nodes.len() {

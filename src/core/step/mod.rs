@@ -40,6 +40,7 @@ pub mod stepper;
 pub mod sub_increment;
 mod turn;
 mod verdict;
+pub mod watch;
 pub mod way;
 
 #[cfg(test)]

@@ -1,5 +1,16 @@
 //! How fast a scene moves, and by that which increments are suspected to have jumped.
+//!
+//! A pace belongs to a way of loading. Over a span of the load factor, load k changes by Δ_k, in parts of its largest value.
+//! Two spans load alike where their vectors Δ are parallel; the motion expected then grows as |Δ|. Where the path turns a corner
+//! or a load's own scale bends, Δ points elsewhere, and nothing is expected from the increments before.
+//!
+//! An increment is suspected where it moves more than [`RATIO`] times what its tangent predicts, or what the fastest increment
+//! before it did; or where the tangent did not hold (its correction is more than [`OFF`] of its prediction) and the motion is more
+//! than [`FASTER`] times that of the increment just before. The last catches a limit point after a soft stretch, whose tangent
+//! and fastest increment both predict large motions. Where nothing is cut no halves can decide, and the fastest increment before
+//! is not asked: a node that begins to slide is no jump.
 
+use crate::model::{Factor, Model};
 use crate::step::sub_increment::SubIncrement;
 use serde::{Deserialize, Serialize};
 
@@ -8,14 +19,29 @@ pub const RATIO: f64 = 4.0;
 
 /// The same where the halves of a suspected increment have failed: there is less doubt.
 const RATIO_OVER: f64 = 2.0;
+/// How many times the motion of the increment before it an increment may move whose tangent does not hold.
+const FASTER: f64 = 2.5;
+/// A tangent holds whose corrections come to no more than this part of its prediction.
+const OFF: f64 = 0.5;
+/// Cosine of the angle between two changes of the loads that count as parallel.
+const PARALLEL: f64 = 0.999;
 
 /// What is known of how fast the scene moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pace {
     /// Largest displacement of the present attempt's first major iteration.
     pub predicted: f64,
-    /// Largest displacement over size of the accepted increments since the last jump.
+    /// Sum of the largest displacements of its further major iterations.
+    #[serde(default)]
+    pub corrected: f64,
+    /// Largest displacement that the fastest accepted increment since the last jump would make over `span`.
     pub fastest: f64,
+    /// Largest displacement of the last accepted increment.
+    #[serde(default)]
+    pub last: f64,
+    /// Load factors between which the last accepted increment went.
+    #[serde(default)]
+    pub span: [f64; 2],
     /// The increment that is suspected, of which the present one is a part.
     pub suspect: Option<Suspect>,
     /// Whether its halves have failed, so that it is not cut for being suspected any more.
@@ -34,20 +60,61 @@ pub struct Suspect {
     pub sub_increment: SubIncrement,
 }
 
+/// The motions that are expected of an increment: each is that of a measure, where it has one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Expected {
+    /// By its tangent.
+    tangent: f64,
+    /// Whether the tangent held.
+    holds: bool,
+    /// By the fastest increment before, and by the last one.
+    before: Option<[f64; 2]>,
+    ratio: f64,
+}
+
 impl Pace {
-    /// The motion that is expected of an increment of this size.
-    pub(super) fn expected(&self, size: f64) -> f64 {
-        if self.fastest > 0.0 {
-            self.predicted.min(self.fastest * size)
-        } else {
-            self.predicted
+    /// The motions that are expected over a span.
+    pub(super) fn expected(&self, model: &Model, span: [f64; 2]) -> Expected {
+        let before = match self.fastest > 0.0 {
+            true => parallel(model, self.span, span),
+            false => None,
+        };
+        Expected {
+            tangent: self.predicted,
+            holds: self.corrected <= OFF * self.predicted,
+            before: before.map(|times| [self.fastest * times, self.last * times]),
+            ratio: if self.over { RATIO_OVER } else { RATIO },
         }
     }
 
-    /// Whether a motion over an increment of this size is beyond what is expected.
-    pub(super) fn is_exceeded(&self, motion: f64, size: f64) -> bool {
-        let ratio = if self.over { RATIO_OVER } else { RATIO };
-        motion > ratio * self.expected(size)
+    /// Takes an accepted motion over a span into account.
+    pub(super) fn take(&mut self, model: &Model, motion: f64, span: [f64; 2]) {
+        let carried = parallel(model, self.span, span).map_or(0.0, |times| self.fastest * times);
+        self.fastest = carried.max(motion);
+        (self.last, self.span) = (motion, span);
+        // A suspected increment that is passed is no place to go back to.
+        let passed = |suspect: &Suspect| {
+            let whole = suspect.sub_increment;
+            (span[1] - whole.target()) * (whole.to - whole.from).signum() >= 0.0
+        };
+        if self.suspect.as_ref().is_some_and(passed) {
+            (self.suspect, self.over) = (None, false);
+        }
+    }
+}
+
+impl Expected {
+    /// The least of the tangent's motion and that at the pace of the fastest increment before.
+    pub(super) fn least(&self) -> f64 {
+        self.before
+            .map_or(self.tangent, |[fastest, _]| self.tangent.min(fastest))
+    }
+
+    /// Whether a motion is beyond what is expected; `cuts` says whether halves can decide.
+    pub(super) fn is_exceeded(&self, motion: f64, cuts: bool) -> bool {
+        let expected = if cuts { self.least() } else { self.tangent };
+        let off = |[_, last]: [f64; 2]| !self.holds && motion > FASTER * last;
+        motion > self.ratio * expected || self.before.is_some_and(off)
     }
 }
 
@@ -58,9 +125,68 @@ impl Suspect {
     }
 }
 
+/// How many times as much the loads, pressures and prescribed motions change over one span of the load factor as over another.
+/// `None` where they change in another way.
+fn parallel(model: &Model, before: [f64; 2], now: [f64; 2]) -> Option<f64> {
+    let loads = model.loads.iter().map(|load| (load.value, &load.scale));
+    let pressures = model
+        .pressures
+        .iter()
+        .map(|pressure| (pressure.value, &pressure.scale));
+    let moved = model
+        .prescribed
+        .iter()
+        .map(|moved| (moved.value, &moved.scale));
+    let (mut product, mut there, mut here) = (0.0, 0.0, 0.0);
+    let mut named = false;
+    let mut add = |a: f64, b: f64| {
+        (product, there, here) = (product + a * b, there + a * a, here + b * b);
+    };
+    for (value, scale) in loads.chain(pressures).chain(moved) {
+        let peak = peak(&model.path, scale);
+        if value != 0.0 && peak > 0.0 {
+            let change = |[from, to]: [f64; 2]| (scale.at(to) - scale.at(from)) / peak;
+            add(change(before), change(now));
+            named = true;
+        }
+    }
+    if !named || model.contacts.iter().any(|contact| contact.overlap != 0.0) {
+        // Overlaps are closed, or nothing is named that loads: the load factor itself is what changes.
+        let whole = peak(&model.path, &Factor::default());
+        let change = |[from, to]: [f64; 2]| (to - from) / whole;
+        add(change(before), change(now));
+    }
+    let both = (there * here).sqrt();
+    (both > 0.0 && product.abs() >= PARALLEL * both).then(|| (here / there).sqrt())
+}
+
+/// Largest size of a factor over the path.
+fn peak(path: &[f64], scale: &Factor) -> f64 {
+    let points = scale.0.iter().map(|point| point.1);
+    let corners = path.iter().map(|&at| scale.at(at));
+    points
+        .chain(corners)
+        .fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Load;
+
+    fn model(scales: &[&[(f64, f64)]]) -> Model {
+        let mut model = Model::of_contacts("t", Vec::new(), Vec::new(), Vec::new());
+        model.path = vec![0.0, 1.0, 2.0];
+        model.loads = scales
+            .iter()
+            .map(|points| Load {
+                dof: 0,
+                value: 3.0,
+                scale: Factor(points.to_vec()),
+            })
+            .collect();
+        model
+    }
 
     #[test]
     fn what_shrinks_with_the_increment_or_its_root_is_no_jump_and_what_stays_is_one() {
@@ -78,18 +204,63 @@ mod tests {
 
     #[test]
     fn an_increment_is_suspected_by_its_tangent_or_by_those_before_it() {
-        let pace = |predicted, fastest| Pace {
-            predicted,
-            fastest,
-            suspect: None,
-            over: false,
+        let model = model(&[&[]]);
+        let exceeds = |predicted: f64, corrected: f64, fastest: f64, last: f64, motion: f64| {
+            let pace = Pace {
+                predicted,
+                corrected,
+                fastest,
+                last,
+                span: [0.0, 0.1],
+                ..Pace::default()
+            };
+            let expected = pace.expected(&model, [0.1, 0.2]);
+            [true, false].map(|cuts| expected.is_exceeded(motion, cuts))
         };
-        assert!(
-            !pace(1.0, 0.0).is_exceeded(3.9, 0.1),
+        assert_eq!(
+            exceeds(1.0, 0.0, 0.0, 0.0, 3.9),
+            [false; 2],
             "nothing moved before"
         );
-        assert!(pace(1.0, 0.0).is_exceeded(4.1, 0.1));
-        assert!(pace(5.0, 1.0).is_exceeded(0.5, 0.1), "a soft tangent");
-        assert!(!pace(5.0, 2.0).is_exceeded(0.5, 0.1));
+        assert_eq!(exceeds(1.0, 0.0, 0.0, 0.0, 4.1), [true; 2]);
+        assert_eq!(
+            exceeds(5.0, 0.0, 0.1, 0.1, 0.5),
+            [true, false],
+            "a soft tangent"
+        );
+        assert_eq!(exceeds(5.0, 0.0, 0.2, 0.2, 0.5), [false; 2]);
+        assert_eq!(
+            exceeds(5.0, 9.0, 2.0, 0.1, 0.5),
+            [true; 2],
+            "a limit point after a soft stretch"
+        );
+        assert_eq!(
+            exceeds(5.0, 1.0, 2.0, 0.1, 0.5),
+            [false; 2],
+            "the tangent holds"
+        );
+    }
+
+    #[test]
+    fn a_pace_is_that_of_a_way_of_loading() {
+        let pressed: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 1.0)];
+        let pulled: &[(f64, f64)] = &[(1.0, 0.0), (2.0, 5.0)];
+        let two_steps = model(&[pressed, pulled]);
+        assert_eq!(parallel(&two_steps, [0.0, 0.5], [0.5, 0.75]), Some(0.5));
+        assert_eq!(
+            parallel(&two_steps, [0.9, 1.0], [1.0, 1.1]),
+            None,
+            "the next step"
+        );
+        let faster = model(&[&[(0.0, 0.0), (0.5, 0.02), (1.0, 1.0)]]);
+        let times = parallel(&faster, [0.4, 0.5], [0.5, 0.6]).unwrap();
+        assert!((times - 49.0).abs() < 1e-9, "{times}");
+        let held = model(&[&[(0.0, 0.0), (0.5, 1.0), (2.0, 1.0)]]);
+        assert_eq!(
+            parallel(&held, [0.4, 0.5], [0.5, 0.6]),
+            None,
+            "nothing changes any more"
+        );
+        assert_eq!(parallel(&model(&[]), [0.0, 0.1], [0.1, 0.2]), Some(1.0));
     }
 }

@@ -19,6 +19,7 @@ use crate::step::major_history::MajorHistory;
 use crate::step::motion::Motion;
 use crate::step::pace::Pace;
 use crate::step::sub_increment::SubIncrement;
+use crate::step::watch::StabilityWatch;
 use crate::step::way::Way;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
@@ -73,6 +74,9 @@ pub struct State {
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
+    /// What is known of the stability of the accepted states.
+    #[serde(default)]
+    pub watch: StabilityWatch,
     /// How sliding is held back in the present attempt ([`crate::step::brake`]). `None` where it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub brake: Option<Brake>,
@@ -230,6 +234,7 @@ impl State {
             correction: 0.0,
             factored: None,
             pace: Pace::default(),
+            watch: StabilityWatch::default(),
             brake: None,
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             motion: None,

@@ -45,6 +45,30 @@ impl SubIncrement {
         }
     }
 
+    /// What is left of this part from a load factor on, where its halves have come to; what follows it follows that.
+    pub fn remaining(self, from: f64) -> Self {
+        let begin = match self.part {
+            0 => self.from,
+            part => SubIncrement {
+                part: part - 1,
+                ..self
+            }
+            .target(),
+        };
+        if from == begin {
+            return self;
+        }
+        let to = self.target();
+        let end = self.rest.unwrap_or(self.to);
+        SubIncrement {
+            from,
+            to,
+            cut: 0,
+            part: 0,
+            rest: (to != end).then_some(end),
+        }
+    }
+
     /// The first part of its golden section; the other one follows when this is done.
     pub fn section(self) -> Self {
         SubIncrement {
@@ -126,6 +150,29 @@ fn tidy(load_factor: f64, path: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_left_of_a_part_begins_where_its_halves_have_come_to_and_never_before() {
+        let quarter = SubIncrement {
+            from: 1.0,
+            to: 2.0,
+            cut: 2,
+            part: 1,
+            rest: None,
+        };
+        assert_eq!(quarter.remaining(1.25), quarter);
+        let mut left = quarter.remaining(1.375);
+        assert_eq!((left.target(), left.size()), (1.5, 0.125));
+        left = left.halved();
+        let mut ends = vec![left.target()];
+        while let Some(next) = left.next() {
+            ends.push(next.target());
+            left = next;
+        }
+        assert_eq!(ends, [1.4375, 1.5, 2.0]);
+        let last = SubIncrement { part: 3, ..quarter };
+        assert_eq!(last.remaining(1.875).next(), None);
+    }
 
     #[test]
     fn a_section_and_what_follows_it_make_up_the_increment_however_it_is_cut() {

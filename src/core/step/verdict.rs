@@ -42,13 +42,10 @@ impl Stepper {
             };
         }
         let Some(worst) = worst_of(&verdict) else {
-            return match self.state.way {
-                Some(_) => self.land_on_way(after, verdict),
-                None => self.land(after, verdict),
-            };
+            return self.land(after, verdict, None);
         };
         if self.only_marks() {
-            return self.accept(after, verdict, Some(worst), false);
+            return self.land(after, verdict, Some(worst));
         }
         if is_slip(worst.law) && !self.state.net {
             self.count_net_slip();
@@ -57,7 +54,7 @@ impl Stepper {
         let why = Failure::Refused(worst);
         match self.cut(&why) {
             Some(cut) => cut,
-            None if worst.law == Law::Touch => self.accept(after, verdict, Some(worst), false),
+            None if worst.law == Law::Touch => self.land(after, verdict, Some(worst)),
             None => self.detour(&why).unwrap_or_else(|| {
                 self.next_major();
                 Outcome::Failed(why)

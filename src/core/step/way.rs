@@ -3,7 +3,7 @@
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::linear::source::Along;
-use crate::model::{Friction, Measured, Mode, Model};
+use crate::model::{ArcLength, Friction, Measured, Mode, Model};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -84,6 +84,15 @@ pub enum Aim {
     Slip(usize),
     /// The load factor comes to a value.
     Load(f64),
+}
+
+/// Sizes are this exact.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// Arc at which a history ends at the latest.
+pub(super) fn farthest(model: &Model) -> f64 {
+    let most = ArcLength::FARTHEST * model.length;
+    model.arc.length.unwrap_or(most)
 }
 
 impl Way {
