@@ -25,11 +25,13 @@ use super::strain::MaterialCause;
 use crate::format::spec::Spec;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::{Body, BodyKind, Model};
+use crate::model::{Body, BodyKind, InitialGaps, Model};
 use crate::step::event::Failure;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 
+/// What is told where the first increment fails and nodes start inside their surface.
+const OVERLAP: &str = "where: nodes start inside their surface; settings.initial_gaps=ramp pushes them out over the first leg, adjust moves them onto the surface";
 /// Most remedies that are tried for a page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
 
@@ -138,6 +140,8 @@ impl Page {
         let cause = MaterialCause::of(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
         let words = |cause: MaterialCause| cause.words(stepper.model());
+        let overlap = Remedy::of(Kind::Gaps(InitialGaps::Ramp), stepper.model(), state);
+        page.facts.extend(overlap.map(|_| OVERLAP.to_owned()));
         page.facts.extend(certain.map(words));
         let possible = cause.filter(|cause| !cause.is_certain()).map(words);
         page.explain(stepper, state, failure, stop);

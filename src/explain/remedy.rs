@@ -140,8 +140,8 @@ impl Remedy {
                 let keeps = model.settings.initial_gaps == InitialGaps::Keep;
                 let inside = |found: &StartGaps| !found.inside.is_empty();
                 let (word, label) = match gaps {
-                    InitialGaps::Adjust => ("adjust", "start gaps: adjust"),
-                    InitialGaps::Ramp => ("ramp", "start gaps: ramp"),
+                    InitialGaps::Adjust => ("adjust", "initial_gaps: adjust"),
+                    InitialGaps::Ramp => ("ramp", "initial_gaps: ramp"),
                     InitialGaps::Keep => return None,
                 };
                 let how = How::Restart(vec![("settings.initial_gaps".to_owned(), word)]);

@@ -136,7 +136,8 @@ impl MaterialCause {
     /// Whether the law is to blame: what was accepted is outside its range already, or an element is inverted. An iterate that
     /// is outside may be so for other reasons.
     pub fn is_certain(&self) -> bool {
-        self.before.is_some() || !(self.point.determinant > 0.0)
+        let upright = self.point.determinant > 0.0;
+        self.before.is_some() || !upright
     }
 
     /// In words.

@@ -206,8 +206,8 @@ fn a_remedy_converges_where_it_reaches_the_load_that_failed() {
     ] {
         let mut stepper = failed(name);
         let failed = stepper.state().clone();
-        for remedy in remedies::all(&mut stepper, &failed, &|| false) {
-            let trial = remedies::attempt(&mut stepper, &failed, &remedy, &|| false).unwrap();
+        for remedy in remedies::all(&mut stepper, &failed, None, &|| false) {
+            let trial = remedies::attempt(&mut stepper, &failed, None, &remedy, &|| false).unwrap();
             let reached = stepper.state().start.load_factor;
             let short = (failed.load_factor - reached) > 1e-9;
             if trial.end == TrialEnd::Converged {
@@ -238,8 +238,8 @@ fn no_remedy_that_ends_against_a_law_is_called_converged() {
             stepper.intervene(&force).unwrap();
         }
         let failed = stepper.state().clone();
-        for remedy in remedies::all(&mut stepper, &failed, &|| false) {
-            let trial = remedies::attempt(&mut stepper, &failed, &remedy, &|| false).unwrap();
+        for remedy in remedies::all(&mut stepper, &failed, None, &|| false) {
+            let trial = remedies::attempt(&mut stepper, &failed, None, &remedy, &|| false).unwrap();
             let verdict = stepper.state().start.verdict;
             let broken = verdict.is_some_and(|verdict| verdict.broken().next().is_some());
             assert!(

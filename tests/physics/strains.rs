@@ -3,7 +3,9 @@
 
 use crate::blocks::{block, finished};
 use crate::common::{Run, run, scene};
-use stickslip::explain::page::page;
+use stickslip::explain::page;
+use stickslip::explain::remedies::{TrialEnd, attempt};
+use stickslip::explain::remedy::Remedy;
 use stickslip::fem::deformation::{Deformation, SOFTENING, by_element, deformation};
 use stickslip::model::{BodyKind, ElementKind, Model};
 use stickslip::scene::Scene;
@@ -15,7 +17,7 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
 /// A unit block of elements of a kind.
 fn unit(kind: &str, material: &str) -> Scene {
     let text = format!(
-        "(title: \"t\", nodes: [Block(id: \"k\", corners: [(1, 0), (2, 1)], elements: (2, 2), kind: {kind})],
+        "(title: \"t\", nodes: [Block(id: \"k\", corners: [(1, 0), (2, 1)], elements: (2, 2), element: {kind})],
           materials: [Elastic(id: \"m\", E: 10, nu: 0.3, {material})],
           bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
           supports: [(node: \"k.bottom\", fix: [x, y])],
@@ -42,14 +44,14 @@ fn a_homogeneous_deformation_has_the_stretches_that_it_was_made_of() {
         [c * x - s * y, s * x + c * y]
     };
     for kind in [
-        "Triangle3",
-        "Triangle6",
-        "Quad4",
-        "Quad8",
-        "Quad8Reduced",
-        "Quad9",
+        "triangle3",
+        "triangle6",
+        "quad4",
+        "quad8",
+        "quad8r",
+        "quad9",
     ] {
-        let model = unit(&kind.to_lowercase(), "").model;
+        let model = unit(kind, "").model;
         for [a, b] in [[0.4, 1.3], [0.05, 0.9], [-0.2, 1.1], [1.2, 1.5]] {
             let map = |at: [f64; 2]| {
                 let [p, q] = turned(0.7, at);
@@ -272,26 +274,40 @@ fn a_wheel_that_crushes_its_soil_is_told_so_and_the_law_that_helps_was_tried() {
     let mut run = run(&wheel);
     assert!(run.failure.is_some());
     assert!(checked(&run)[1] > 0.0);
-    let state = run.stepper.state().clone();
-    let spec = Some(&wheel.spec);
-    let found = page(&mut run.stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
-    let first = |head: &str| {
-        found
-            .lines
-            .iter()
-            .find(|line| line.starts_with(head))
-            .unwrap()
-    };
-    let why = first("why: ");
+    let (state, failure) = (run.stepper.state().clone(), run.failure.unwrap().1);
+    let facts = page::facts(&mut run.stepper, &state, &failure, &|| false);
     for part in [
+        "why: ",
         "of soil",
         "a stretch of 0.2883",
         "softens below 0.5774",
         "law: svk",
     ] {
-        assert!(why.contains(part), "{why}");
+        assert!(facts[0].contains(part), "{facts:#?}");
     }
-    assert!(first("do: 1. ").contains("--set materials.soil.law=neohookean (tried"));
+    let (law, certain) = Remedy::law(run.stepper.model(), &state, &failure).unwrap();
+    assert!(certain);
+    assert_eq!(law.how.typed(), "--set materials.soil.law=neohookean");
+    let spec = Some(&wheel.spec);
+    let trial = attempt(&mut run.stepper, &state, spec, &law, &|| false).unwrap();
+    assert_eq!(trial.end, TrialEnd::Converged);
+}
+
+#[test]
+fn the_law_of_an_inverted_element_is_the_first_that_is_tried_and_helps() {
+    let collapses = scene(&format!("{FOLDER}/failures/minimal-collapse.ron"), &[]);
+    let mut run = run(&collapses);
+    let state = run.stepper.state().clone();
+    let spec = Some(&collapses.spec);
+    let found = page::page(&mut run.stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
+    let first = |head: &str| {
+        let mut lines = found.lines.iter();
+        lines.find(|line| line.starts_with(head)).unwrap()
+    };
+    assert!(first("why: ").contains("element 14 of g"));
+    let helps =
+        "do: 1. law: neohookean: --set materials.rubber.law=neohookean (tried from the start";
+    assert!(first("do: ").starts_with(helps), "{:#?}", found.lines);
 }
 
 #[test]

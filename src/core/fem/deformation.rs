@@ -105,13 +105,13 @@ pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
             flattest: point,
             outside: None,
         });
-        if !(point.determinant >= worst.flattest.determinant) {
+        if is_less(point.determinant, worst.flattest.determinant) {
             worst.flattest = point;
         }
         if !integrates {
             return;
         }
-        if !(point.stretch >= worst.smallest.stretch) {
+        if is_less(point.stretch, worst.smallest.stretch) {
             worst.smallest = point;
         }
         let uses = Range::of(elastic).used(&point);
@@ -120,6 +120,11 @@ pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
         }
     });
     worst
+}
+
+/// Whether a number is less than another, or is none.
+fn is_less(one: f64, other: f64) -> bool {
+    one.is_nan() || one < other
 }
 
 /// Smallest principal stretch at the integration points and smallest det F at all points of each solid element, by body and

@@ -11,6 +11,7 @@ use crate::step::jump::Landing;
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
+use crate::step::verdict::range_left;
 use crate::strategy;
 use std::sync::Arc;
 
@@ -234,7 +235,7 @@ impl Stepper {
         let bounded = self.go_along(leg);
         self.settle_contacts();
         let motion = self.state.motion.take();
-        let left_range = self.range_left();
+        let left_range = range_left(&*self.source, &self.state);
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         let turned = leg != start.leg;

@@ -14,8 +14,10 @@ use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::fem::deformation::PointDeformation;
 use crate::linear::norms::Norms;
+use crate::linear::source::Source;
 use crate::model::{SlipCount, Sticking, Ties};
 use crate::step::event::{Failure, Outcome};
+use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
 impl Stepper {
@@ -77,12 +79,6 @@ impl Stepper {
         self.fail(Failure::Inverted(point))
     }
 
-    /// The worst point outside the range of its law, where none was outside in the last accepted state.
-    pub(super) fn range_left(&self) -> Option<PointDeformation> {
-        let outside = |u: &[f64]| self.source.deformation(u)?.outside;
-        outside(&self.state.u).filter(|_| outside(&self.state.start.u).is_none())
-    }
-
     /// Whether states against a law are accepted, since the user asked for what leads to them.
     fn only_marks(&self) -> bool {
         let settings = &self.state.controls.settings;
@@ -107,6 +103,12 @@ impl Stepper {
         self.state.forget_majors();
         self.linearised = false;
     }
+}
+
+/// The worst point of a state outside the range of its law, where none was outside in the last accepted state.
+pub(super) fn range_left(source: &dyn Source, state: &State) -> Option<PointDeformation> {
+    let outside = |u: &[f64]| source.deformation(u)?.outside;
+    outside(&state.u).filter(|_| outside(&state.start.u).is_none())
 }
 
 /// Whether a law is about the net slip of a node.
