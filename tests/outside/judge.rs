@@ -296,10 +296,10 @@ impl Sides<'_> {
                 }
             }
         }
-        for one in 0..stands.len() {
-            for other in one + 1..stands.len() {
-                if let Some(first) = first_of(&stands[one], &stands[other]) {
-                    pairs.push(if first { (one, other) } else { (other, one) });
+        for (k, one) in stands.iter().enumerate() {
+            for (l, other) in stands.iter().enumerate().skip(k + 1) {
+                if let Some(first) = first_of(one, other) {
+                    pairs.push(if first { (k, l) } else { (l, k) });
                 }
             }
         }
