@@ -28,6 +28,7 @@ fn model() -> Model {
         overlap: 0.0,
         bond: Default::default(),
         area: None,
+        facing: None,
     };
     Model {
         title: String::new(),

@@ -5,6 +5,7 @@ use crate::format::paths;
 use crate::scene::Scene;
 use crate::scene::cost::Cost;
 use crate::scene::gaps;
+use crate::scene::precision;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -31,6 +32,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             tell(&format!("note: {note}"));
         }
         for warning in gaps::warnings(&scene.model) {
+            tell(&format!("warning: {warning}"));
+        }
+        if let Some(warning) = precision::warning(&scene.model) {
             tell(&format!("warning: {warning}"));
         }
     }

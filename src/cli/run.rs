@@ -9,6 +9,7 @@ use super::sink::{Sent, Sink};
 use super::solver::{Subject, SubjectArgs};
 use super::table;
 use crate::contact::record::ContactRecord;
+use crate::explain::accuracy;
 use crate::explain::bond;
 use crate::explain::names;
 use crate::explain::number::{four, six};
@@ -225,6 +226,8 @@ struct Tally<'a> {
     notes: u32,
     /// Norms of the accepted increment whose forces are known the least.
     noisiest: Norms,
+    /// Largest error of an accepted increment that is within round-off (relative).
+    reached: f64,
     quiet: bool,
     /// Stability of the accepted states, where it is asked for.
     stability: Option<Stretches>,
@@ -270,6 +273,7 @@ impl<'a> Run<'a> {
                 losses: Vec::new(),
                 notes: 0,
                 noisiest: Norms::default(),
+                reached: 0.0,
                 quiet,
                 most: args
                     .subject
@@ -324,8 +328,14 @@ impl<'a> Run<'a> {
                 self.tally.doubtful
             ));
         }
-        if let Some(left) = report::accuracy(&self.tally.noisiest) {
+        if let Some(left) = accuracy::left(&self.tally.noisiest) {
             tell(&format!("warning: {left}"));
+        }
+        let tolerance = self.tally.scene.model.settings.tolerance;
+        if let Some(raised) =
+            accuracy::raised(tolerance, self.tally.reached).filter(|_| !args.quiet)
+        {
+            tell(&format!("note: {raised}"));
         }
         if self.tally.notes > MOST_WARNINGS && !args.quiet {
             tell(&format!(
@@ -617,6 +627,10 @@ impl Tally<'_> {
         }
         if after.noise > self.noisiest.noise {
             self.noisiest = after;
+        }
+        let error = after.relative.max(after.interface);
+        if error <= after.limit {
+            self.reached = self.reached.max(error);
         }
         let although = report::reservations(&self.scene.model, event);
         if although.is_empty() {

@@ -49,6 +49,7 @@
 //!         overlap: 0.0,
 //!         bond: Default::default(),
 //!         area: None,
+//!         facing: None,
 //!     }],
 //!     // Only the slave node has unknowns: its x and its y.
 //!     dofs: Dofs {

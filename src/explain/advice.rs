@@ -142,6 +142,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
         | Failure::Restless { .. }
         | Failure::RoundOff { .. }
         | Failure::Inverted(_)
+        | Failure::CutTooOften { .. }
         | Failure::OverConstrained { .. } => {}
         // Its method is not ours, and what it takes it says itself.
         Failure::Reported { .. } => {}
@@ -187,6 +188,9 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
         Failure::Refused(_) => &["a smaller history.least"],
         Failure::Inverted(_) => &["a load or prescribed motion that presses the element less"],
         Failure::Restless { .. } => &["a support, or a surface, that stops what moves"],
+        Failure::CutTooOften { .. } => {
+            &["the debugger, to see between which states it goes to and fro"]
+        }
         Failure::Leapt { .. } => match model.jumps {
             Jumps::Stop => &[
                 "history.jumps=cut, to go on on the other branch",

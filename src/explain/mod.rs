@@ -16,6 +16,7 @@
 //! - [`past`]: a run of another program that is over: what cycled in it, and who chattered.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
+pub mod accuracy;
 pub mod advice;
 pub mod attached;
 pub mod attempt;

@@ -239,6 +239,10 @@ impl Page {
                     found.law.name(), found.amount, found.allowed
                 ));
             }
+            Failure::CutTooOften { slave, last, .. } => {
+                self.found.nodes.push(*slave);
+                self.explain(stepper, state, last, stop);
+            }
             Failure::OverConstrained { slave, .. } => {
                 self.found.nodes.push(*slave);
                 self.facts.extend(over_constrained(stepper, state, *slave));

@@ -430,6 +430,7 @@ pub fn end_words(end: &TrialEnd) -> String {
         TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
         TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
         TrialEnd::Failed(Failure::Inverted(_)) => "inverted".into(),
+        TrialEnd::Failed(Failure::CutTooOften { .. }) => "cut too often".into(),
         TrialEnd::Failed(Failure::Restless { .. }) => "no rest".into(),
         TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
         TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),

@@ -2,6 +2,7 @@
 
 use crate::contact::record::ContactRecord;
 use crate::contact::table2::{Decision, Rule, Tested};
+use crate::explain::accuracy;
 use crate::explain::judged;
 use crate::explain::jumped;
 use crate::explain::names::{mode, position, slave};
@@ -211,7 +212,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
         ),
         Outcome::Increment { after, last, .. } => {
             let end = if *last { jumped::end(model, event) } else { "" };
-            let left = accuracy(after).map_or(String::new(), |left| format!("; {left}"));
+            let left = accuracy::left(after).map_or(String::new(), |left| format!("; {left}"));
             format!(
                 "{at}: load {} accepted{}{left}{end}",
                 event.load_factor,
@@ -494,6 +495,11 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         Failure::Inverted(point) => {
             format!("refused, since {}", strain::inverted(model, point))
         }
+        Failure::CutTooOften { slave: s, cuts, last } => format!(
+            "the increment was cut {cuts} times because of {}: {}",
+            slave(model, *s),
+            describe_failure(model, last)
+        ),
         Failure::Restless { steps } => {
             format!("a damped motion of {steps} steps came to no rest")
         }
@@ -551,16 +557,6 @@ fn not_found(why: NotFound) -> String {
             if states == 1 { "it" } else { "one" }
         ),
     }
-}
-
-/// What accuracy round-off leaves; `None` if it leaves enough.
-pub fn accuracy(norms: &Norms) -> Option<String> {
-    (norms.noise > Norms::AUDIBLE).then(|| {
-        format!(
-            "forces are known to about {:.0e} of the loads: that is the round-off of the stiffest ones",
-            norms.noise
-        )
-    })
 }
 
 fn motion(rigid: &RigidMotion) -> String {

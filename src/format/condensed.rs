@@ -192,6 +192,7 @@ impl Problem {
                 reverse: false,
                 endless: true,
                 smooth: false,
+                cut: false,
             }],
             slaves: self.contacts.iter().map(slave).collect(),
             friction: FrictionSpec::default(),

@@ -13,8 +13,8 @@ described! {
         #[default]
         Hard,
         /// The surface gives way in proportion to the pressure: g + F_n / (K A) = 0 while the node touches, with the total F_n and
-        /// the node's tributary area A. To the interface it is a compliance 1 / (K A) in series. A node whose A is zero, as on the
-        /// axis of some axisymmetric bodies, bears no force.
+        /// the node's tributary area A. To the interface it is a compliance 1 / (K A) in series. A node on the axis of an
+        /// axisymmetric body bears no force; what it has of the area goes to its neighbour.
         Penalty {
             /// K, a pressure by length of penetration.
             stiffness: f64,

@@ -494,6 +494,11 @@ described! {
         /// own.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         pub smooth: bool,
+        /// Cut at convex corners of more than 30 degrees into surfaces `ID.1`, `ID.2`, ..., of which a slave node of a solid touches
+        /// only those that its own side faces. A node that goes past a corner at a small depth is nearer to the other side for a
+        /// moment, and would be pressed out there. Default: false.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        pub cut: bool,
     }
 }
 

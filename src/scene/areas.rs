@@ -27,11 +27,12 @@ struct Side<'a> {
 }
 
 /// Areas of the nodes of a scene that are slaves, `pair_of` being the pair of each; `None` for all others, and where a node is
-/// on no side.
+/// on no side. In a pair that `gives` way, a node on the axis has none.
 pub(super) fn tributary(
     nodes: &[Node],
     bodies: &[Body],
     pair_of: &[Option<usize>],
+    gives: impl Fn(usize) -> bool,
 ) -> Vec<Option<f64>> {
     let sides: Vec<Side<'_>> = bodies.iter().flat_map(sides).collect();
     let mut areas = vec![None; nodes.len()];
@@ -39,7 +40,10 @@ pub(super) fn tributary(
     for side in &sides {
         let pair = pair_of[side.nodes[0]];
         if pair.is_some() && side.nodes.iter().all(|&node| pair_of[node] == pair) {
-            let shares = shares(side, nodes);
+            let mut shares = shares(side, nodes);
+            if pair.is_some_and(&gives) {
+                off_axis(side, nodes, &mut shares);
+            }
             side.nodes
                 .iter()
                 .zip(shares)
@@ -55,6 +59,26 @@ pub(super) fn tributary(
     }
     let both = areas.into_iter().zip(alone);
     both.map(|(area, alone)| area.or(alone)).collect()
+}
+
+/// Gives what a node on the axis has of a side to the next one. Its ring has no length, so no pressure acts on it; and at the
+/// end of a surface that is dented there, its normal leans off the axis by what the elements leave of the symmetry.
+fn off_axis(side: &Side<'_>, nodes: &[Node], shares: &mut [f64]) {
+    let Some(made_of) = side.made_of else {
+        return;
+    };
+    let widths = side
+        .nodes
+        .iter()
+        .map(|&node| made_of.width(nodes[node].at[0]));
+    let widths: Vec<f64> = widths.collect();
+    let widest = widths.iter().copied().fold(0.0, f64::max);
+    for (k, width) in widths.iter().enumerate() {
+        if *width <= NONE * widest {
+            let share = std::mem::take(&mut shares[k]);
+            shares[if k == 0 { 1 } else { k - 1 }] += share;
+        }
+    }
 }
 
 /// The sides of a body.
@@ -184,18 +208,26 @@ mod tests {
             &row(3, 2.0),
             &[beam(vec![vec![0, 1], vec![1, 2]])],
             &[Some(0); 3],
+            |_| false,
         );
         close(&linear, &[0.5, 1.0, 0.5]);
-        let quadratic = tributary(&row(3, 3.0), &[beam(vec![vec![0, 1, 2]])], &[Some(0); 3]);
+        let quadratic = tributary(
+            &row(3, 3.0),
+            &[beam(vec![vec![0, 1, 2]])],
+            &[Some(0); 3],
+            |_| false,
+        );
         close(&quadratic, &[0.5, 2.0, 0.5]);
     }
 
     #[test]
     fn a_slave_by_itself_has_half_of_the_sides_that_it_is_on() {
         let bodies = [beam(vec![vec![0, 1], vec![1, 2]])];
-        let found = tributary(&row(3, 2.0), &bodies, &[None, Some(0), None]);
+        let found = tributary(&row(3, 2.0), &bodies, &[None, Some(0), None], |_| false);
         assert_eq!(found, [None, Some(1.0), None]);
-        let apart = tributary(&row(3, 2.0), &bodies, &[Some(1), Some(0), Some(1)]);
+        let apart = tributary(&row(3, 2.0), &bodies, &[Some(1), Some(0), Some(1)], |_| {
+            false
+        });
         assert_eq!(apart, [Some(0.5), Some(1.0), Some(0.5)]);
     }
 
@@ -209,7 +241,12 @@ mod tests {
             }
         };
         let nodes: Vec<Node> = (0..5).map(place).collect();
-        let found = tributary(&nodes, &[beam(vec![(0..5).collect()])], &[Some(0); 5]);
+        let found = tributary(
+            &nodes,
+            &[beam(vec![(0..5).collect()])],
+            &[Some(0); 5],
+            |_| false,
+        );
         let sum: f64 = found.iter().flatten().sum();
         assert!((sum - 0.5 * std::f64::consts::PI).abs() < 1e-4, "{sum}");
     }
@@ -221,6 +258,7 @@ mod tests {
                 &row(m, 1.0),
                 &[beam(vec![(0..m).collect()])],
                 &[Some(0); 9][..m],
+                |_| false,
             );
             assert!(
                 found.iter().all(|area| area.unwrap() > 0.0),

@@ -318,6 +318,7 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             overlap: 0.0,
             bond: bond(told),
             area: told.area,
+            facing: None,
         });
     }
     Ok(contacts)

@@ -2,6 +2,7 @@
 //! doubtful about them, and what `settings.initial_gaps` makes of them.
 
 use crate::contact::element::Element;
+use crate::contact::facing::{MOST as MOST_SURFACES, faced};
 use crate::contact::projection::{SurfacePoint, project, projection_at};
 use crate::fem::lagrange;
 use crate::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
@@ -37,7 +38,9 @@ fn stands(
     let places: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
     let stand = |contact: &Contact| {
         let at = places[contact.node];
-        let spot = project(at, surfaces, &contact.surfaces, &places, None)?;
+        let mut room = [0; MOST_SURFACES];
+        let on = faced(contact, surfaces, &places, &mut room);
+        let spot = project(at, surfaces, on, &places, None)?;
         Some((spot, projection_at(surfaces, spot, &places, at).gap))
     };
     contacts.iter().map(stand).collect()
@@ -305,7 +308,9 @@ pub(super) fn adjust(nodes: &mut [Node], surfaces: &[Surface], contacts: &[Conta
         // One after the other, since a master's nodes may be slaves, too.
         let places: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
         let at = places[contact.node];
-        if let Some(spot) = project(at, surfaces, &contact.surfaces, &places, None) {
+        let mut room = [0; MOST_SURFACES];
+        let on = faced(contact, surfaces, &places, &mut room);
+        if let Some(spot) = project(at, surfaces, on, &places, None) {
             let over = projection_at(surfaces, spot, &places, at);
             if over.gap <= within {
                 nodes[contact.node].at = over.foot;

@@ -20,12 +20,14 @@ pub mod import;
 pub mod limits;
 pub mod memory;
 pub mod nodes;
+pub mod precision;
 pub mod problems;
 pub mod solver;
 
 mod areas;
 mod blocks;
 mod compile;
+mod corners;
 mod curves;
 mod deck;
 mod geometry;

@@ -71,6 +71,7 @@ impl From<&Failure> for Reason {
             Failure::Diverged { .. } => Reason::Diverged,
             Failure::OverConstrained { .. } => Reason::OverConstrained,
             Failure::Refused(_) => Reason::Refused,
+            Failure::CutTooOften { last, .. } => Reason::from(last.as_ref()),
             Failure::NoAnswer { .. } => Reason::NoAnswer,
             Failure::Restless { .. } => Reason::Restless,
             Failure::Leapt { .. } => Reason::Jump,

@@ -321,3 +321,40 @@ fn problem_02_gets_past_the_kinks_between_its_elements_with_any_increment() {
         }
     }
 }
+
+/// A node on two soft springs, pressed into a valley of slopes β by 1 and pulled aside by H. It stays at the bottom until
+/// H = tan(β + φ); what it slides to beyond the ends of the surface is no answer before.
+#[test]
+fn a_node_at_the_bottom_of_a_valley_stays_there_while_both_sides_hold_it() {
+    let text = std::fs::read_to_string("tests/findings/valley-soft-springs.ron").unwrap();
+    for slope in [5.0, 10.0, 20.0, 30.0, 40.0] {
+        for friction in [2.0, 5.0, 10.0, 25.0] {
+            let height = format!("{:?}", 5.0 * tan(slope));
+            let text = text.replace("0.8816349035423249", &height).replace(
+                "friction: (angle: 5.0)",
+                &format!("friction: (angle: {friction:?})"),
+            );
+            let valley = Scene::from_text("valley.ron", &text, &[]).unwrap();
+            let run = run(&valley);
+            let limit = tan(slope + friction);
+            for step in &run.accepted {
+                let (pull, x) = (3.0 * (step.load - 1.0), step.monitors["x"]);
+                assert!(
+                    pull > limit - 1e-9 || x.abs() < 1e-9,
+                    "{slope}, {friction}: x = {x} at {pull}, held to {limit}"
+                );
+                if pull > 0.0 && pull < limit {
+                    assert!((step.monitors["fx"] + pull).abs() < 1e-9);
+                }
+            }
+            let held = run
+                .accepted
+                .iter()
+                .filter(|step| 3.0 * (step.load - 1.0) < limit);
+            assert!(
+                held.count() >= 100 + (limit / 0.03) as usize,
+                "{slope}, {friction}"
+            );
+        }
+    }
+}

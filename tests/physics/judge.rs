@@ -100,6 +100,7 @@ fn slave(surfaces: &[Surface], friction: Friction, bond: Bond) -> Contact {
         overlap: 0.0,
         bond,
         area: None,
+        facing: None,
     }
 }
 

@@ -25,6 +25,8 @@ mod bonds;
 mod decks;
 // The paper's problems meet solutions found without any contact algorithm, at the rate that they claim.
 mod references;
+// What round-off leaves: press fits, soft springs, far from the origin, far too stiff.
+mod round_off;
 // A cantilever beside an elastic block: its end, its work, its mesh, the paper's figures.
 mod problem_05;
 // A rigid cylinder presses a block as Hertz says.
@@ -37,6 +39,8 @@ mod pairing;
 mod corners;
 // What a node bears that slid to where two sides meet, as the kink goes to zero.
 mod corner_law;
+// Masters cut at their corners: what goes past one at a depth.
+mod cut_masters;
 // Elements of every kind in whole scenes: patches, closed forms, rates, locking, loads that follow.
 mod elements;
 // Stuck nodes stay where they stuck; without an anchor they drift in third order.

@@ -193,6 +193,11 @@ pub fn place(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> [f64; 2] 
     blend(element.nodes, positions, &element.shape(xi).n)
 }
 
+/// |dx/dξ| at a point of an element (length).
+pub fn speed(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> f64 {
+    length(blend(element.nodes, positions, &element.slopes(xi)))
+}
+
 /// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
 pub fn direction(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
     let d = blend(element.nodes, positions, &element.slopes(xi));

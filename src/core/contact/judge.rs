@@ -20,12 +20,14 @@
 
 use crate::contact::corner::Side;
 use crate::contact::element::{Element, closed};
-use crate::contact::feet::{self, Foot, direction, place};
+use crate::contact::facing::{MOST, faced};
+use crate::contact::feet::{self, Foot, direction, place, speed};
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::side_laws::{Amounts, Past, Touching};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
+use crate::contact::stood::{FEW, Stood};
 use crate::model::Friction;
 use crate::model::{Contact, Surface};
 
@@ -88,53 +90,6 @@ pub struct Judge {
     next: Stood,
 }
 
-/// Where all slave nodes stood in a state.
-#[derive(Debug)]
-struct Stood {
-    /// Positions of all nodes, and the length up to which places were the same.
-    at: Vec<[f64; 2]>,
-    near: f64,
-    /// Feet of all slave nodes, one after the other, and where each one's end.
-    feet: Vec<Foot>,
-    ends: Vec<usize>,
-}
-
-impl Stood {
-    fn with_capacity(nodes: usize, slaves: usize) -> Self {
-        Stood {
-            at: Vec::with_capacity(nodes),
-            near: 0.0,
-            // On a border of elements a node has two feet.
-            feet: Vec::with_capacity(2 * slaves + FEW),
-            ends: Vec::with_capacity(slaves),
-        }
-    }
-
-    fn clear(&mut self) {
-        self.feet.clear();
-        self.ends.clear();
-    }
-
-    fn add(&mut self, feet: &[Foot]) {
-        self.feet.extend_from_slice(feet);
-        self.ends.push(self.feet.len());
-    }
-
-    /// Feet of a slave node.
-    fn of(&self, slave: usize) -> &[Foot] {
-        let from = slave.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.feet[from..self.ends[slave]]
-    }
-
-    /// Whether it is this state, seen as sharply.
-    fn is(&self, at: &[[f64; 2]], near: f64, slaves: usize) -> bool {
-        self.ends.len() == slaves && self.near == near && self.at == at
-    }
-}
-
-/// Feet and sides that a node has at most, as a rule.
-const FEW: usize = 16;
-
 impl Judge {
     /// A judge with memory for a scene of so many nodes and slave nodes.
     pub fn with_capacity(nodes: usize, slaves: usize) -> Self {
@@ -177,19 +132,18 @@ impl Judge {
         positions: &[[f64; 2]],
         near: f64,
     ) -> Option<SurfacePoint> {
-        let mut feet = Vec::new();
-        feet::find(at, surfaces, &slave.surfaces, positions, 0.0, &mut feet);
+        let (mut feet, mut room) = (Vec::new(), [0; MOST]);
+        let on = faced(slave, surfaces, positions, &mut room);
+        feet::find(at, surfaces, on, positions, 0.0, &mut feet);
         let foot = feet.first().filter(|foot| foot.distance <= near)?;
         (!is_past_end_at(foot, at, surfaces, positions, near)).then_some(foot.spot)
     }
 
     fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
-        let Contact {
-            node,
-            surfaces,
-            bond,
-            ..
-        } = &seen.contacts[slave];
+        let contact_of = &seen.contacts[slave];
+        let Contact { node, bond, .. } = contact_of;
+        let mut room = [0; MOST];
+        let surfaces = faced(contact_of, seen.surfaces, seen.now, &mut room);
         let (mut point, force) = (seen.point(slave), seen.forces[slave]);
         let Scales { length, forces, .. } = seen.scales;
         let near = seen.scales.near();
@@ -241,7 +195,9 @@ impl Judge {
             return;
         };
         let gap = signed_gap(&foot, point, seen.surfaces, seen.now);
-        let through = through(seen, slave, foot.spot.surface, near, &mut self.others);
+        let others = surfaces.iter().copied();
+        let others = others.filter(|&other| other != foot.spot.surface);
+        let through = through(seen, slave, others, near, &mut self.others);
         if through > near {
             let numbers = Numbers {
                 gap: -through,
@@ -254,7 +210,9 @@ impl Judge {
             ..Numbers::default()
         };
         if !pressed {
-            report(Law::Penetration, (-gap / length).max(0.0), numbers);
+            // A spring so soft that its force is nothing lets the node in.
+            let soft = bond.give()[0] * forces * seen.scales.force;
+            report(Law::Penetration, ((-gap - soft) / length).max(0.0), numbers);
             return;
         }
         let [law_of_gap, law_of_slip] = match bond.give().map(|give| give > 0.0) {
@@ -297,7 +255,8 @@ impl Judge {
             self.earlier.extend_from_slice(self.last.of(slave));
             return;
         }
-        let (was, surfaces) = (seen.was(slave), &seen.contacts[slave].surfaces);
+        let (was, mut room) = (seen.was(slave), [0; MOST]);
+        let surfaces = faced(&seen.contacts[slave], seen.surfaces, seen.before, &mut room);
         let earlier = &mut self.earlier;
         feet::find(
             was,
@@ -384,10 +343,15 @@ impl Judge {
 }
 
 /// How far a slave node has gone through one of its surfaces since the last accepted state (length), without being nearest
-/// to it; 0 where it has not. Only where it was over the surface and now is under it, not where it went round an end.
-fn through(seen: &Seen, slave: usize, nearest: usize, near: f64, feet: &mut Vec<Foot>) -> f64 {
-    let surfaces = &seen.contacts[slave].surfaces;
-    let others = surfaces.iter().filter(|&&other| other != nearest);
+/// to it; 0 where it has not. Only where it was over the surface and now is under it, not where it went round an end. `others`
+/// are the surfaces that it may touch, but for the nearest.
+fn through(
+    seen: &Seen,
+    slave: usize,
+    others: impl Iterator<Item = usize>,
+    near: f64,
+    feet: &mut Vec<Foot>,
+) -> f64 {
     let mut over = |other: usize, point: [f64; 2], positions: &[[f64; 2]]| {
         feet::find(point, seen.surfaces, &[other], positions, 0.0, feet);
         let foot = feet.first()?;
@@ -395,7 +359,7 @@ fn through(seen: &Seen, slave: usize, nearest: usize, near: f64, feet: &mut Vec<
         let at_end = ends && beyond_border(seen.surfaces, foot.spot).is_none();
         (!at_end).then(|| signed_gap(foot, point, seen.surfaces, positions))
     };
-    others.fold(0.0, |most: f64, &other| {
+    others.fold(0.0, |most: f64, other| {
         let now = over(other, seen.point(slave), seen.now).filter(|gap| *gap < -near);
         let Some(gap) = now else {
             return most;
@@ -438,13 +402,25 @@ fn touching(
     };
     let way =
         |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave] + elastic;
+    // The elastic slip of the last accepted state is a length of surface, which has stretched since; what of it came before the
+    // node last slid has not.
+    let beyond_stretch = |way: f64, foot: &Foot| {
+        let give = seen.contacts[slave].bond.give()[1];
+        if give == 0.0 {
+            return way;
+        }
+        let element = Element::of(surface, foot.spot.element);
+        let [now, before] = [seen.now, seen.before].map(|at| speed(element, at, foot.spot.xi));
+        let stretched = give * seen.earlier[slave].abs() * (now / before - 1.0).abs();
+        way.signum() * (way.abs() - stretched).max(0.0)
+    };
     let here = earlier.iter().find(|f| f.spot.surface == spot.surface);
     let was = seen.was(slave);
     let past = match here {
         Some(foot) if is_past_end_at(foot, was, seen.surfaces, seen.before, near) => {
             Past::Elsewhere
         }
-        Some(foot) if foot.distance <= near => Past::Touched(way(foot)),
+        Some(foot) if foot.distance <= near => Past::Touched(beyond_stretch(way(foot), foot)),
         Some(foot) => Past::Open(way(foot)),
         None => Past::Elsewhere,
     };

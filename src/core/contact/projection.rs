@@ -17,6 +17,8 @@ const END_TOLERANCE: f64 = 1e-9;
 const STAY_TOLERANCE: f64 = 1e-12;
 /// Part of a distance by which another may be larger and still be the same but for round-off.
 const NEARLY: f64 = 1e-9;
+/// Coordinates ξ closer than this are those of one closest point, which distances do not tell apart.
+const NEXT_TO: f64 = 1e-6;
 
 /// A point of a chain of interface elements.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -85,6 +87,18 @@ pub fn project(
     positions: &[[f64; 2]],
     previous: Option<SurfacePoint>,
 ) -> Option<SurfacePoint> {
+    let spot = closest_point(slave, surfaces, candidates, positions, previous)?;
+    (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
+}
+
+/// The same where S* may be an end of a chain past which the node lies.
+pub fn closest_point(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    candidates: &[usize],
+    positions: &[[f64; 2]],
+    previous: Option<SurfacePoint>,
+) -> Option<SurfacePoint> {
     let mut best: Option<Best> = None;
     if let Some(spot) = previous {
         consider(slave, surfaces, positions, spot, true, &mut best);
@@ -116,8 +130,31 @@ pub fn project(
             }
         }
     }
-    let Best { spot, .. } = best?;
-    (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
+    best.map(|best| best.spot)
+}
+
+/// S* as exact as Newton's method alone finds it, from a spot next to it.
+///
+/// [`project`] compares distances, and two points of a surface are equally far from a node at the distance g where they are
+/// closer together than about √(g · round-off). That is nothing where a node lies on its surface. Where it presses from a
+/// distance, it moves forces by more than any tolerance.
+pub fn sharpen(
+    slave: [f64; 2],
+    surfaces: &[Surface],
+    spot: SurfacePoint,
+    positions: &[[f64; 2]],
+) -> SurfacePoint {
+    let surface = &surfaces[spot.surface];
+    if surface.endless || spot.xi.abs() == 1.0 {
+        return spot;
+    }
+    let element = Element::of(surface, spot.element);
+    let places = Places::of(element.nodes, positions);
+    let xi = descend(element, &places, slave, spot.xi);
+    match (xi - spot.xi).abs() <= NEXT_TO {
+        true => SurfacePoint { xi, ..spot },
+        false => spot,
+    }
 }
 
 /// Distance to the closest node of surfaces whose elements go through their nodes.

@@ -13,9 +13,10 @@
 
 use crate::contact::corner;
 use crate::contact::crossing;
+use crate::contact::facing::{MOST, faced, is_piece};
 use crate::contact::projection::{
     STRAIGHT, SurfacePoint, beside, border, element_size, half_angle, normal, project,
-    projection_at, tangent,
+    projection_at, sharpen, tangent,
 };
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
@@ -49,14 +50,14 @@ impl Ground<'_> {
         let (previous, force, was_held) = (node.spot, node.force(), node.corner.is_some());
         let (second, mean) = (node.second, node.normal);
         let mut is_released = false;
-        if !slave.bond.is_hard() {
-            // What gives way is not held in corners: each law is that of one side.
-            node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
+        if !slave.bond.is_hard() || slave.overlap > 0.0 {
+            // What presses from a distance is not held in corners: each law is that of one side.
+            node.spot = self.find(slave, at, previous);
         } else if self.stays_in_corner(node, friction) {
             is_released = self.release(node, friction);
         } else {
             (node.corner, node.second) = (None, None);
-            node.spot = project(at, self.surfaces, &slave.surfaces, self.positions, previous);
+            node.spot = self.find(slave, at, previous);
             if !was_held {
                 self.cross(node, previous);
             }
@@ -99,6 +100,24 @@ impl Ground<'_> {
             node.anchor_at(node.spot, slave.bond.give()[1]);
         }
         self.find_anchor(node, slave);
+    }
+
+    /// S* of a node among the surfaces that it may touch; `previous` is that of the last major iteration.
+    fn find(
+        &self,
+        slave: &Contact,
+        at: [f64; 2],
+        previous: Option<SurfacePoint>,
+    ) -> Option<SurfacePoint> {
+        let mut room = [0; MOST];
+        let on = faced(slave, self.surfaces, self.positions, &mut room);
+        let previous = previous.filter(|spot| on.contains(&spot.surface));
+        let spot = project(at, self.surfaces, on, self.positions, previous)?;
+        let touches = slave.bond.is_hard() && slave.overlap == 0.0;
+        Some(match touches {
+            true => spot,
+            false => sharpen(at, self.surfaces, spot, self.positions),
+        })
     }
 
     /// A tied node stays at its point of the surface, and its force keeps its direction: the surface may have turned.
@@ -284,7 +303,9 @@ impl Ground<'_> {
         let others = slave
             .surfaces
             .iter()
-            .filter(|&&other| other != spot.surface && self.surfaces[other].rigid);
+            .filter(|&&other| other != spot.surface && self.surfaces[other].rigid)
+            // Pieces of one master meet where it is convex: inside both is inside the one.
+            .filter(|other| !is_piece(slave, **other));
         for &other in others {
             let Some(across) = project(at, self.surfaces, &[other], self.positions, None) else {
                 continue;
@@ -312,7 +333,7 @@ impl Ground<'_> {
     /// Holds a node whose S* is just where two sides meet: in a concave corner, since it is out over both sides; on a convex
     /// vertex where friction can hold it. Else it stands on a side of the vertex. A mode that the user forces stays.
     fn meet_both(&self, node: &mut ContactState, at: [f64; 2], friction: &Friction) {
-        let Some(spot) = node.spot else {
+        let Some(spot) = node.spot.map(|spot| self.at_bottom(node, spot)) else {
             return;
         };
         let half = half_angle(&self.surfaces[spot.surface], spot, self.positions);
@@ -320,9 +341,12 @@ impl Ground<'_> {
             return;
         };
         if half > 0.0 {
-            // What sticks between two elements that bend needs no corner's friction.
-            if node.mode == Mode::Sliding && !node.is_forced() {
-                (node.corner, node.mode) = (Some(half), Mode::Fixed);
+            // What sticks between two elements that bend needs no corner's friction. Of a rigid surface the corner is one
+            // from the start: with the friction of one side alone the node would slide out under forces that both sides hold.
+            let rigid = self.surfaces[spot.surface].rigid;
+            let held = node.mode == Mode::Sliding || rigid && node.mode == Mode::Fixed;
+            if held && !node.is_forced() {
+                (node.spot, node.corner, node.mode) = (Some(spot), Some(half), Mode::Fixed);
             }
         } else if node.mode != Mode::Sliding && corner::holds(friction, half) {
             node.corner = Some(half);
@@ -339,6 +363,20 @@ impl Ground<'_> {
                 }
             }
         }
+    }
+
+    /// S* of a node that sticks on a rigid surface: the concave border of two elements where it lies there but for round-off.
+    fn at_bottom(&self, node: &ContactState, spot: SurfacePoint) -> SurfacePoint {
+        let surface = &self.surfaces[spot.surface];
+        let near = 1.0 - spot.xi.abs() <= 2.0 * AT_VERTEX;
+        let end = SurfacePoint {
+            xi: spot.xi.signum(),
+            ..spot
+        };
+        let sticks = node.mode == Mode::Fixed && surface.rigid && !surface.endless && near;
+        let is_corner =
+            || half_angle(surface, end, self.positions).is_some_and(|half| half > STRAIGHT);
+        if sticks && is_corner() { end } else { spot }
     }
 
     /// Anchors a touching node that has no anchor where it stands, removes the anchor of a free node that does not keep it,

@@ -155,7 +155,8 @@ fn is_laid_out_alike(one: &Model, other: &Model) -> bool {
     let memory = |model: &Model| (model.settings.memory, model.budget, model.length);
     let mut contacts = one.contacts.iter().zip(&other.contacts);
     let stands_alike = |(a, b): (&Contact, &Contact)| {
-        (a.node, &a.surfaces, a.overlap, a.bond) == (b.node, &b.surfaces, b.overlap, b.bond)
+        (a.node, &a.surfaces, &a.facing, a.overlap, a.bond)
+            == (b.node, &b.surfaces, &b.facing, b.overlap, b.bond)
     };
     one.contacts.len() == other.contacts.len()
         && contacts.all(stands_alike)

@@ -107,6 +107,7 @@ impl Constant {
             overlap: 0.0,
             bond: Bond::Hard,
             area: None,
+            facing: None,
         };
         let node = |k: usize| Node {
             name: format!("contact.{}", k + 1),

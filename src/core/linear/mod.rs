@@ -25,7 +25,7 @@ mod ordering;
 mod reduced;
 mod residual;
 pub mod singular;
-mod sizes;
+pub mod sizes;
 pub mod source;
 pub mod stability;
 mod system;

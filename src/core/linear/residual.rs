@@ -43,7 +43,12 @@ impl System {
                 self.residual[*equation] = balance;
             }
         }
-        let [floor, length_floor] = self.floors;
+        let [floor, mut length_floor] = self.floors;
+        // Places are known to their own round-off, which counts where that is more than the tolerance.
+        let placed = ROUND_OFF * f64::EPSILON * self.reach;
+        if placed > tolerance * model.length {
+            length_floor = length_floor.max(placed);
+        }
         let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
         let wanted = self.sizes.wanted(model, at, |dof| self.nodal_force(dof));
         let noise = if floor > 0.0 { floor / wanted } else { 0.0 };

@@ -44,6 +44,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
+    /// The sizes of a scene.
     pub fn new(model: &Model) -> Self {
         let kind = kinds(model);
         let mut sizes = Sizes {
@@ -136,6 +137,29 @@ impl Sizes {
         let motions = u.iter().zip(&self.kind).map(motion);
         motions.fold(0.0, |most, u| if u <= most { most } else { u })
     }
+}
+
+/// The number of the body whose forces are the largest under a motion of the scene, and the round-off to expect of them, relative
+/// to the loads that make the softest body move as far: machine precision times the ratio of the two stiffnesses. `None`
+/// without a body of elements.
+pub fn expected_noise(model: &Model) -> Option<(usize, f64)> {
+    let stiffness = |body: &Body| match &body.kind {
+        BodyKind::Beam(beam) => Some(beam.ea / model.length),
+        BodyKind::Truss(truss) => Some(truss.ea / model.length),
+        BodyKind::Solid(solid) => {
+            let all = solid.materials.iter();
+            let all = all.map(|m| m.young * m.width(model.length));
+            Some(all.fold(0.0, f64::max))
+        }
+        BodyKind::Linear(_) => None,
+    };
+    let all = model.bodies.iter().map(stiffness).enumerate();
+    let all = all.filter_map(|(body, stiffness)| Some((body, stiffness?)));
+    let (body, largest) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some((
+        body,
+        ROUND_OFF * f64::EPSILON * largest / softest_body(model),
+    ))
 }
 
 /// Exponent of the power of two that a size is rounded to.

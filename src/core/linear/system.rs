@@ -87,6 +87,8 @@ pub struct System {
     pub sizes: Sizes,
     /// Current position of every node.
     pub positions: Vec<[f64; 2]>,
+    /// Largest coordinate among them (length).
+    pub(super) reach: f64,
     pub(super) interfaces: Vec<Interface>,
     pub(super) condensed: Condensed,
     pub(super) stiffness: Vec<f64>,
@@ -142,6 +144,7 @@ impl System {
             frames: Vec::new(),
             sizes: Sizes::new(model),
             positions: vec![[0.0; 2]; model.nodes.len()],
+            reach: 0.0,
             condensed: Condensed::new(interfaces.len()),
             interfaces,
             stiffness: Vec::new(),
@@ -170,12 +173,14 @@ impl System {
 
     /// Current positions of all nodes at displacements u.
     pub fn place(&mut self, model: &Model, u: &[f64]) {
+        self.reach = 0.0;
         for (n, position) in self.positions.iter_mut().enumerate() {
             let first = model.dofs.first[n];
             *position = [
                 model.nodes[n].at[0] + u[first],
                 model.nodes[n].at[1] + u[first + 1],
             ];
+            self.reach = self.reach.max(position[0].abs()).max(position[1].abs());
         }
     }
 

@@ -54,6 +54,18 @@ pub struct Contact {
     /// Tributary area of the undeformed slave node, by which forces are pressures; that of a whole turn where its body is
     /// axisymmetric. `None` where nothing tells it.
     pub area: Option<f64>,
+    /// Which pieces of a cut master it may touch. `None` where no master of it is cut, and where it has no outward side.
+    pub facing: Option<Facing>,
+}
+
+/// What decides which pieces of a master that is cut at its corners a slave node may touch ([`crate::contact::facing`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facing {
+    /// The nodes before and after the slave node along the outline of its body, or itself at an end; the outside of the body is
+    /// on the right of the walk from the first to the second.
+    pub outline: [usize; 2],
+    /// Numbers of the surfaces that are pieces, ascending; the node may touch its other surfaces whichever way it faces.
+    pub pieces: Vec<usize>,
 }
 
 impl Contact {
@@ -68,6 +80,7 @@ impl Contact {
             overlap: 0.0,
             bond: Bond::Hard,
             area: None,
+            facing: None,
         }
     }
 

@@ -22,7 +22,7 @@ mod settings;
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
-pub use contact::{Bond, Contact, Piece, STENCIL, Surface};
+pub use contact::{Bond, Contact, Facing, Piece, STENCIL, Surface};
 pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};

@@ -321,6 +321,15 @@ pub enum Failure {
     Refused(Finding),
     /// An element of a solid is inverted: det F is not positive at one of its points.
     Inverted(PointDeformation),
+    /// The increment was cut again and again because of one slave node, whose state does not depend on the size.
+    CutTooOften {
+        /// Slave number.
+        slave: usize,
+        /// How often the increment was cut because of it.
+        cuts: u32,
+        /// What it failed of last.
+        last: Box<Failure>,
+    },
     /// Neither a touching node nor its master can move to close the gap.
     #[serde(rename = "Jammed")]
     OverConstrained {
@@ -337,4 +346,21 @@ pub enum Failure {
         #[serde(default)]
         relative: Option<f64>,
     },
+}
+
+impl Failure {
+    /// The slave node of which it failed, the first where there are several. `None` where no node is to blame.
+    pub fn culprit(&self) -> Option<usize> {
+        match self {
+            Failure::Cycle(cycle) => cycle.members.first().map(|(slave, _)| *slave),
+            Failure::MajorCycle(cycle) => cycle.members.first().map(|(slave, _)| *slave),
+            Failure::MinorLimit { changing, .. } => changing.first().copied(),
+            Failure::Refused(found) => found.slave,
+            Failure::CutTooOften { slave, .. } | Failure::OverConstrained { slave, .. } => {
+                Some(*slave)
+            }
+            Failure::LadderEnded { last, .. } => last.culprit(),
+            _ => None,
+        }
+    }
 }

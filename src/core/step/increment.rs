@@ -19,6 +19,8 @@ use std::sync::Arc;
 const ROUNDING: f64 = 1e-9;
 /// Smallest part of an increment that halves can be.
 const SMALLEST_HALF: f64 = 1e-9;
+/// Times that a whole increment is cut because of one node before it fails.
+const MOST_CUTS: u32 = 300;
 /// A major iteration is not damped below this part of its load.
 const SMALLEST_PART: f64 = 1e-6;
 
@@ -28,8 +30,23 @@ impl Stepper {
         if let Failure::LadderEnded { scales, .. } = &mut why {
             *scales = self.scales();
         }
+        if let Some(stop) = self.cut_too_often(&why) {
+            return Outcome::Failed(stop);
+        }
         let again = self.cut(&why).or_else(|| self.detour(&why));
         again.unwrap_or(Outcome::Failed(why))
+    }
+
+    /// The end of an increment that was cut [`MOST_CUTS`] times because of one node: its parts are accepted one by one, and each
+    /// next one fails at the same node.
+    pub(super) fn cut_too_often(&self, why: &Failure) -> Option<Failure> {
+        let slave = why.culprit()?;
+        let cuts = *self.state.cuts.get(&slave)?;
+        (cuts >= MOST_CUTS).then(|| Failure::CutTooOften {
+            slave,
+            cuts,
+            last: Box::new(why.clone()),
+        })
     }
 
     /// Whether an increment that failed so may succeed with another size.
@@ -68,6 +85,9 @@ impl Stepper {
         let cuts = !rungs.is_empty() || self.can_move();
         if !cuts || half.size() < least || half.size() == 0.0 {
             return None;
+        }
+        if let Some(slave) = why.culprit() {
+            *self.state.cuts.entry(slave).or_default() += 1;
         }
         self.restart(half);
         let (why, size) = (why.clone(), half.size());
@@ -313,7 +333,11 @@ impl Stepper {
             SubIncrement::whole(&self.model, start.place(), increment)
         };
         self.state.detour = None;
-        self.state.sub_increment = self.state.sub_increment.next().unwrap_or_else(whole);
+        let rest = self.state.sub_increment.next();
+        self.state.sub_increment = rest.unwrap_or_else(whole);
+        if rest.is_none() {
+            self.state.cuts.clear();
+        }
         self.state.begin();
         self.linearised = self.linearised && taken_here && self.source.aim(&self.state.at());
     }

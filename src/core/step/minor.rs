@@ -7,6 +7,7 @@ use crate::interface::minor_history::Cycle;
 use crate::interface::rows::carried;
 use crate::interface::spiral::{Fate, spiral};
 use crate::linear::singular::Singular;
+use crate::linear::sizes::ROUND_OFF;
 use crate::linear::source::Solved;
 use crate::model::{self, AtCycle, AtLimit, Mode};
 use crate::step::event::{Failure, Outcome};
@@ -90,11 +91,19 @@ impl Stepper {
 
     fn ties(&self) -> Ties {
         let settings = &self.state.controls.settings;
+        let tolerance = settings.tolerance.max(self.placed());
         Ties {
-            force: settings.tolerance * self.force_scale(),
-            length: settings.tolerance * self.model.length,
+            force: tolerance * self.force_scale(),
+            length: tolerance * self.model.length,
             keep: settings.ties == model::Ties::Keep,
         }
+    }
+
+    /// Round-off of the slave nodes' positions, over the scene's length: far from the origin, statuses tie within that.
+    fn placed(&self) -> f64 {
+        let places = (0..self.state.nodes.len()).map(|contact| self.source.position(contact));
+        let reach = places.fold(0.0_f64, |most, [x, y]| most.max(x.abs()).max(y.abs()));
+        ROUND_OFF * f64::EPSILON * reach / self.model.length
     }
 
     /// Size of forces: where displacements are prescribed, none may act before the first solve but at the interface.

@@ -23,6 +23,7 @@ use crate::step::watch::StabilityWatch;
 use crate::step::way::Way;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The solver between two minor iterations.
@@ -57,6 +58,9 @@ pub struct State {
     /// The part of an increment that is aimed at.
     #[serde(rename = "piece")]
     pub sub_increment: SubIncrement,
+    /// How often the present whole increment was cut because of a slave node, by node; empty before the first such cut.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub cuts: BTreeMap<usize, u32>,
     /// Minor iterations done in the present increment attempt.
     pub minors: u32,
     /// Loops of the present attempt that were ended by a limit and accepted.
@@ -239,6 +243,7 @@ impl State {
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             motion: None,
             detour: None,
+            cuts: BTreeMap::new(),
             outside: None,
             status: Status::Running,
         };

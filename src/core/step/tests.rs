@@ -152,6 +152,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         overlap: 0.0,
         bond: Default::default(),
         area: None,
+        facing: None,
     };
     let load = |(dof, value)| Load {
         dof,

@@ -54,6 +54,10 @@ impl Stepper {
             return Outcome::Refused { why: worst, after };
         }
         let why = Failure::Refused(worst);
+        if let Some(stop) = self.cut_too_often(&why) {
+            self.next_major();
+            return Outcome::Failed(stop);
+        }
         match self.cut(&why) {
             Some(cut) => cut,
             None if worst.law == Law::Touch => self.land(after, verdict, Some(worst)),

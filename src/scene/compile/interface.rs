@@ -1,5 +1,6 @@
 //! Surfaces, slave nodes and friction.
 
+use super::super::corners;
 use super::super::geometry;
 use super::super::limits;
 use super::super::nodes::Names;
@@ -22,6 +23,15 @@ pub(super) struct Surfaces {
     pub listed: Vec<usize>,
 }
 
+impl Surfaces {
+    /// Numbers of those that are pieces of a surface that is cut.
+    pub(super) fn cut(&self, spec: &Spec) -> Vec<usize> {
+        let listed = self.listed.iter().enumerate();
+        let cut = listed.filter(|(_, listed)| spec.surfaces[**listed].cut);
+        cut.map(|(number, _)| number).collect()
+    }
+}
+
 /// The surfaces, walked so that the outward side is on the right. Sides of a given mesh that do not hang together are a surface
 /// each, `ID.1`, `ID.2`, …
 pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfaces, Fault> {
@@ -42,7 +52,18 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
             );
             return Err(Fault::new(here, message));
         }
-        let pieces = chain.pieces();
+        let mut pieces = chain.pieces();
+        for elements in &mut pieces {
+            check_chain(names, &surface.along, elements, length)?;
+            if surface.reverse {
+                elements.reverse();
+                elements.iter_mut().for_each(|element| element.reverse());
+            }
+        }
+        if surface.cut {
+            let cut = |elements| corners::cut(elements, &names.nodes);
+            pieces = pieces.into_iter().flat_map(cut).collect();
+        }
         let several = pieces.len() > 1;
         if several && surface.endless {
             let message = format!(
@@ -51,15 +72,10 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
             );
             return Err(Fault::new(at!["surfaces", k, "endless"], message));
         }
-        for (number, mut elements) in (1..).zip(pieces) {
-            check_chain(names, &surface.along, &elements, length)?;
+        for (number, elements) in (1..).zip(pieces) {
             if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
                 let message = "only a straight surface can be endless";
                 return Err(Fault::new(at!["surfaces", k, "endless"], message));
-            }
-            if surface.reverse {
-                elements.reverse();
-                elements.iter_mut().for_each(|element| element.reverse());
             }
             let name = match several {
                 true => format!("{}.{number}", surface.id),
@@ -83,7 +99,8 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
 pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut Surfaces) -> Result<(), Fault> {
     for (surface, &k) in surfaces.made.iter_mut().zip(&surfaces.listed) {
         let wanted = &spec.surfaces[k];
-        if !wanted.smooth {
+        // A piece of one straight element is smooth as it is.
+        if !wanted.smooth || wanted.cut && surface.elements.len() == 1 {
             continue;
         }
         let fault = |message: &str| Err(Fault::new(at!["surfaces", k, "smooth"], message));
@@ -150,6 +167,7 @@ pub(super) fn slaves(
                     overlap: 0.0,
                     bond: Default::default(),
                     area: None,
+                    facing: None,
                 };
                 let fresh = taken.insert(node);
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;

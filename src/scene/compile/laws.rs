@@ -3,6 +3,7 @@
 use super::super::areas::tributary;
 use super::super::limits;
 use super::super::nodes::Names;
+use crate::contact::facing::is_piece;
 use crate::contact::projection::{project, projection_at};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::{Fault, Path, at};
@@ -120,7 +121,8 @@ pub(super) fn apply(
     for (slave, &pair) in slaves.iter().zip(pairs) {
         pair_of[slave.node] = Some(pair);
     }
-    let areas = tributary(&names.nodes, bodies, &pair_of);
+    let gives = |pair: usize| matches!(spec.slaves[pair].law, ContactLaw::Penalty { .. });
+    let areas = tributary(&names.nodes, bodies, &pair_of, gives);
     for (slave, &pair) in slaves.iter_mut().zip(pairs) {
         let group = &spec.slaves[pair];
         slave.area = group.area.or(areas[slave.node]);
@@ -169,7 +171,8 @@ pub(super) fn check_corners(
             for &other in &slave.surfaces[k + 1..] {
                 let both = [&surfaces[one], &surfaces[other]];
                 let rigid = both.iter().all(|surface| surface.rigid);
-                if !rigid || apart.contains(&(one, other)) {
+                let pieces = is_piece(slave, one) && is_piece(slave, other);
+                if !rigid || pieces || apart.contains(&(one, other)) {
                     continue;
                 }
                 if cross(&names.nodes, both) {

@@ -17,6 +17,7 @@ mod tractions;
 mod volumes;
 
 use super::attached;
+use super::corners;
 use super::gaps;
 use super::geometry;
 use super::limits;
@@ -61,6 +62,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let (mut slaves, pairs) = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
+    corners::face(&surfaces.cut(spec), &bodies, &pairs, &mut slaves);
     interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
     history::settings(&spec.settings)?;
     if spec.settings.initial_gaps == InitialGaps::Adjust {

@@ -1,5 +1,6 @@
 //! Contact pairs and ties of a deck.
 
+use super::super::corners::{self, CORNER};
 use super::bodies::Groups;
 use super::{Fault, MESH, Made};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
@@ -7,14 +8,12 @@ use crate::format::error::at;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
 use crate::model::{InitialGaps, Mode};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use stickslip_exchange::inp::Place;
-use stickslip_exchange::inp::deck::{Adjust, Faces, Normal, Tie};
+use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Tie};
 
 /// Without a POSITION TOLERANCE, nodes are tied that are at most this part of a side's length away, as CalculiX has it.
 const TOLERANCE: f64 = 0.025;
-/// Angle between two sides from which on it is a real corner, and not a curve in pieces (30 degrees).
-const CORNER: f64 = std::f64::consts::FRAC_PI_6;
 
 /// What holds between a slave node and the surfaces that it may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -132,7 +131,16 @@ impl Made<'_> {
                 continue;
             };
             let ids: Vec<String> = self.lines(sides, &surface.name, surface.place);
-            let smooth = self.is_made_smooth(touching.master, sides, all);
+            let [convex, concave] = self.corners(sides);
+            let cut = convex && self.have_outsides(touching.master, all);
+            let smooth =
+                (cut || !convex) && !concave && self.is_made_smooth(touching.master, sides, all);
+            if cut {
+                self.remark(
+                    surface.place,
+                    "the surface is cut at its convex corners, and a slave node touches the pieces that its own side faces",
+                );
+            }
             if smooth {
                 self.remark(
                     surface.place,
@@ -149,6 +157,7 @@ impl Made<'_> {
                     reverse: false,
                     endless: false,
                     smooth,
+                    cut,
                 });
             }
             made.insert(touching.master, ids);
@@ -156,7 +165,7 @@ impl Made<'_> {
         made
     }
 
-    /// Whether a master surface is to be smooth: nodes that give way touch it, it can bend, and it has no real corner.
+    /// Whether a master surface without real corners is to be smooth: nodes that give way touch it, and it can bend.
     fn is_made_smooth(&self, master: usize, sides: &[(usize, usize)], all: &[Touching]) -> bool {
         let gives = |touching: &Touching| {
             let penalty = matches!(touching.laws.law, ContactLaw::Penalty { .. });
@@ -165,36 +174,35 @@ impl Made<'_> {
         let moves = |node: &usize| self.still[*node] != [true; 2];
         let deck = self.deck;
         let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
-        all.iter().any(gives)
-            && sides.len() > 1
-            && sides.iter().flatten().any(moves)
-            && !self.turns_sharply(&sides)
+        all.iter().any(gives) && sides.len() > 1 && sides.iter().flatten().any(moves)
     }
 
-    /// Whether one of these sides goes on from another at more than [`CORNER`].
-    fn turns_sharply(&self, sides: &[Vec<usize>]) -> bool {
-        let at = |node: usize| self.deck.nodes[node].at;
-        let along = |from: usize, to: usize| {
-            let (from, to) = (at(from), at(to));
-            let way = [to[0] - from[0], to[1] - from[1]];
-            let length = way[0].hypot(way[1]);
-            [way[0] / length, way[1] / length]
-        };
-        let starts: HashMap<usize, [f64; 2]> = sides
-            .iter()
-            .filter_map(|side| match side[..] {
-                [first, second, ..] => Some((first, along(first, second))),
-                _ => None,
+    /// Whether one of these sides goes on from another at a real corner that is convex, and at one that is concave.
+    fn corners(&self, sides: &[(usize, usize)]) -> [bool; 2] {
+        let deck = self.deck;
+        let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
+        let starts: HashMap<usize, &Vec<usize>> =
+            sides.iter().map(|side| (side[0], side)).collect();
+        let turns = || {
+            sides.iter().filter_map(|side| {
+                let next = starts.get(side.last()?)?;
+                Some(corners::turn(side, next, |node| deck.nodes[node].at))
             })
-            .collect();
-        sides.iter().any(|side| {
-            let [.., before, last] = side[..] else {
-                return false;
-            };
-            let arriving = along(before, last);
-            let leaving = starts.get(&last);
-            leaving.is_some_and(|l| arriving[0] * l[0] + arriving[1] * l[1] < CORNER.cos())
-        })
+        };
+        let (mut left, mut right) = (turns(), turns());
+        [
+            left.any(|turn| turn > CORNER),
+            right.any(|turn| turn < -CORNER),
+        ]
+    }
+
+    /// Whether all slave nodes of a master are on continua, which have an outside.
+    fn have_outsides(&self, master: usize, all: &[Touching]) -> bool {
+        let continua = self.deck.elements.iter();
+        let continua = continua.filter(|element| element.kind.family != Family::Beam);
+        let on: HashSet<usize> = continua.flat_map(|e| e.nodes.iter().copied()).collect();
+        let mut touching = all.iter().filter(|touching| touching.master == master);
+        touching.all(|touching| touching.slaves.iter().all(|node| on.contains(node)))
     }
 
     /// Enters sides of elements as lines of the mesh, one for those that hang together; their names.

@@ -1,0 +1,61 @@
+//! Which pieces of a master a slave node may touch, where the master is cut at its convex corners.
+//!
+//! A node that goes past a corner at a small depth is for a moment nearer to the side that it does not face. On one chain S*
+//! would hop there, and press the node out the wrong way. With n_S the outward normal of the slave's own body at the node, and n
+//! that of a piece at its point closest to the node, the node may touch a piece it faces:
+//!
+//! ```text
+//! n_S · n < −1/2          (within 60 degrees of opposite)
+//! ```
+//!
+//! and all pieces where it faces none. At a right-angled corner each direction towards it faces one of the two sides. The
+//! condition depends on positions alone, so the judge uses it as well.
+
+use crate::contact::projection::{closest_point, normal, right_of};
+use crate::model::{Contact, Surface};
+
+/// Most surfaces of a slave node of which the faced ones are found; one with more may touch them all.
+pub const MOST: usize = 16;
+/// n_S · n below which a node faces a piece.
+const FACES: f64 = -0.5;
+
+/// Numbers of the surfaces that a slave node may touch where all nodes are at `positions`; they are written into `room`, unless
+/// they are all surfaces of the node.
+pub fn faced<'a>(
+    slave: &'a Contact,
+    surfaces: &[Surface],
+    positions: &[[f64; 2]],
+    room: &'a mut [usize; MOST],
+) -> &'a [usize] {
+    let all = slave.surfaces.as_slice();
+    let Some(facing) = slave.facing.as_ref().filter(|_| all.len() <= MOST) else {
+        return all;
+    };
+    let [from, to] = facing.outline.map(|node| positions[node]);
+    let own = right_of([to[0] - from[0], to[1] - from[1]]);
+    let at = positions[slave.node];
+    let faces = |surface: usize| {
+        let spot = closest_point(at, surfaces, &[surface], positions, None);
+        spot.is_some_and(|spot| {
+            let n = normal(&surfaces[surface], spot, positions);
+            own[0] * n[0] + own[1] * n[1] < FACES
+        })
+    };
+    let (mut count, mut found) = (0, false);
+    for &surface in all {
+        let is_piece = facing.pieces.contains(&surface);
+        let is_faced = is_piece && faces(surface);
+        found |= is_faced;
+        if is_faced || !is_piece {
+            room[count] = surface;
+            count += 1;
+        }
+    }
+    if found { &room[..count] } else { all }
+}
+
+/// Whether a surface is a piece of a cut master of this slave node.
+pub fn is_piece(slave: &Contact, surface: usize) -> bool {
+    let facing = slave.facing.as_ref();
+    facing.is_some_and(|facing| facing.pieces.contains(&surface))
+}

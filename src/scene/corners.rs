@@ -1,0 +1,123 @@
+//! Masters that are cut at their convex corners, and which way their slave nodes face ([`crate::contact::facing`]).
+
+use crate::model::{Body, BodyKind, Contact, Facing, Node};
+use std::collections::HashMap;
+
+/// Angle between two elements from which on their border is a real corner, and not a curve in pieces (30 degrees).
+pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_6;
+
+/// Angle by which a walk turns left where it comes to the end of one element and goes on along another (radians). The outside
+/// is on the right, so the border is convex where the angle is positive.
+pub(super) fn turn(one: &[usize], other: &[usize], at: impl Fn(usize) -> [f64; 2]) -> f64 {
+    let ([.., before, last], [first, behind, ..]) = (one, other) else {
+        return 0.0;
+    };
+    let way = |from: usize, to: usize| {
+        let (from, to) = (at(from), at(to));
+        [to[0] - from[0], to[1] - from[1]]
+    };
+    let (a, b) = (way(*before, *last), way(*first, *behind));
+    (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
+}
+
+/// A chain of elements in walking order, cut at its convex corners. A closed one begins at a corner, if it has one.
+pub(super) fn cut(mut chain: Vec<Vec<usize>>, nodes: &[Node]) -> Vec<Vec<Vec<usize>>> {
+    let is_corner = |one: &[usize], other: &[usize]| turn(one, other, |n| nodes[n].at) > CORNER;
+    let (last, first) = (chain.last(), chain.first());
+    if last.and_then(|last| last.last()) == first.and_then(|first| first.first()) {
+        let start = (0..chain.len()).find(|&k| {
+            let before = (k + chain.len() - 1) % chain.len();
+            is_corner(&chain[before], &chain[k])
+        });
+        chain.rotate_left(start.unwrap_or(0));
+    }
+    let pieces = chain.chunk_by(|one, other| !is_corner(one, other));
+    pieces.map(<[_]>::to_vec).collect()
+}
+
+/// Finds which way the slave nodes of cut masters face; `pieces` are the numbers of the surfaces that are pieces, and `pairs` has
+/// the pair of each slave node.
+pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &mut [Contact]) {
+    if pieces.is_empty() {
+        return;
+    }
+    let solids = bodies.iter().filter_map(|body| match &body.kind {
+        BodyKind::Solid(solid) => Some(&solid.edges),
+        _ => None,
+    });
+    let edges: Vec<&Vec<usize>> = solids.flatten().collect();
+    let nodes = slaves.iter().map(|slave| slave.node);
+    let pair_of: HashMap<usize, usize> = nodes.zip(pairs.iter().copied()).collect();
+    for slave in slaves {
+        let own = slave.surfaces.iter().copied();
+        let mut own: Vec<usize> = own.filter(|surface| pieces.contains(surface)).collect();
+        own.sort_unstable();
+        let pair = pair_of.get(&slave.node);
+        let slides = |edge: &&&Vec<usize>| edge.iter().all(|node| pair_of.get(node) == pair);
+        // The sides of the slave surface; a node without one faces where both of its sides do.
+        let on_side = outline(slave.node, edges.iter().filter(slides).copied());
+        let outline = on_side.or_else(|| outline(slave.node, edges.iter().copied()));
+        slave.facing = outline.filter(|_| own.len() > 1).map(|outline| Facing {
+            outline,
+            pieces: own,
+        });
+    }
+}
+
+/// The nodes before and after a node along these edges, or itself at an end; `None` where it is on none of them.
+fn outline<'a>(node: usize, edges: impl Iterator<Item = &'a Vec<usize>>) -> Option<[usize; 2]> {
+    let mut ends = [node; 2];
+    for edge in edges {
+        let Some(place) = edge.iter().position(|&other| other == node) else {
+            continue;
+        };
+        if place > 0 {
+            ends[0] = edge[place - 1];
+        }
+        if let Some(&behind) = edge.get(place + 1) {
+            ends[1] = behind;
+        }
+    }
+    (ends[0] != ends[1]).then_some(ends)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nodes(places: &[[f64; 2]]) -> Vec<Node> {
+        let node = |at: &[f64; 2]| Node {
+            name: String::new(),
+            at: *at,
+        };
+        places.iter().map(node).collect()
+    }
+
+    #[test]
+    fn a_chain_is_cut_where_it_is_convex_and_not_where_it_is_concave_or_bends_slightly() {
+        // Up a wall, left over a step (convex), down into a notch (convex), left again (concave), and on at 17 degrees.
+        let nodes = nodes(&[
+            [0.0, 0.0],
+            [0.0, 1.0],
+            [-1.0, 1.0],
+            [-1.0, 0.5],
+            [-2.0, 0.5],
+            [-3.0, 0.2],
+        ]);
+        let chain = (0..5).map(|k| vec![k, k + 1]).collect();
+        let pieces = cut(chain, &nodes);
+        let starts: Vec<usize> = pieces.iter().map(|piece| piece[0][0]).collect();
+        assert_eq!(starts, [0, 1, 2]);
+        assert_eq!(pieces[2].len(), 3);
+    }
+
+    #[test]
+    fn a_closed_chain_begins_at_a_corner() {
+        let square = nodes(&[[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        let chain = (0..5).map(|k| vec![(k + 1) % 5, (k + 2) % 5]).collect();
+        let pieces = cut(chain, &square);
+        let starts: Vec<usize> = pieces.iter().map(|piece| piece[0][0]).collect();
+        assert_eq!(starts, [2, 3, 4, 0]);
+        assert_eq!(pieces[3], [vec![0, 1], vec![1, 2]]);
+    }
+}

@@ -1,0 +1,36 @@
+//! Whether double precision can carry a scene, before it is run.
+
+use crate::linear::norms::Norms;
+use crate::linear::sizes::expected_noise;
+use crate::model::{BodyKind, Model};
+
+/// What is expected of the round-off is this many times what runs find of it.
+const GENEROUS: f64 = 10.0;
+
+/// That one body is so much stiffer than another that round-off eats the accuracy of the forces; `None` where it leaves
+/// enough.
+pub fn warning(model: &Model) -> Option<String> {
+    let (number, noise) = expected_noise(model)?;
+    let noise = noise / GENEROUS;
+    let body = model.bodies.get(number)?;
+    let (word, value) = match &body.kind {
+        BodyKind::Beam(beam) => ("EA", beam.ea),
+        BodyKind::Truss(truss) => ("EA", truss.ea),
+        BodyKind::Solid(solid) => {
+            let all = solid.materials.iter().map(|material| material.young);
+            ("E", all.fold(0.0, f64::max))
+        }
+        BodyKind::Linear(_) => return None,
+    };
+    (noise > Norms::AUDIBLE).then(|| {
+        let enough = value * Norms::AUDIBLE / noise;
+        let end = match noise > Norms::LOUDEST {
+            true => format!("at most {:.0e} is accepted", Norms::LOUDEST),
+            false => "the contact forces have few digits left".to_owned(),
+        };
+        format!(
+            "body {}, {word} = {value:.0e}, is so stiff that the round-off of its forces is about {noise:.0e} of the loads; {end}. {word} = {enough:.0e} is as good as rigid",
+            body.name
+        )
+    })
+}
