@@ -67,6 +67,7 @@ pub fn model(slaves: usize) -> Model {
                 overlap: 0.0,
                 bond: Default::default(),
                 area: None,
+                facing: None,
             })
             .collect(),
         dofs: Dofs {
