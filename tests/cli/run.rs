@@ -5,7 +5,11 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
+use stickslip::model::Touch;
 use stickslip::scene::Scene;
+use stickslip::step::event::Outcome;
+use stickslip::step::intervene::Intervention;
+use stickslip::step::stepper::Stepper;
 
 const BEAM: &str = "01-pinned-beam-rough-floor";
 const ROUGH: &str = "02-two-cantilevers-rough";
@@ -555,10 +559,6 @@ fn journals_of_an_earlier_revision_lead_to_the_same_bits() {
 /// The increment in which nodes touched is solved here from the same state with `touch: start`, in a session.
 #[test]
 fn a_run_tells_what_one_step_of_coulombs_law_makes_of_the_increment_in_which_nodes_touched() {
-    use stickslip::model::Touch;
-    use stickslip::step::event::Outcome;
-    use stickslip::step::stepper::Stepper;
-
     const SCENE: &str = "bench-mindlin";
     let output = ran(&["run", SCENE]);
     assert_eq!(code(&output), 0, "{}", err(&output));
@@ -574,7 +574,7 @@ fn a_run_tells_what_one_step_of_coulombs_law_makes_of_the_increment_in_which_nod
     let increment: u32 = between("increment ", " ").parse().unwrap();
     let percent: f64 = between("differ by ", " %").parse().unwrap();
 
-    let model = std::sync::Arc::new(stickslip::scene::Scene::open(SCENE, &[]).unwrap().model);
+    let model = Arc::new(Scene::open(SCENE, &[]).unwrap().model);
     let forces = |stepper: &mut Stepper| loop {
         let event = stepper.step().expect("more increments").clone();
         if matches!(event.outcome, Outcome::Increment { .. }) {
