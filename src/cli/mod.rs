@@ -34,6 +34,7 @@ mod outputs;
 mod parts;
 mod past;
 mod place;
+mod progress;
 mod record;
 mod remedies;
 mod replay;

@@ -4,6 +4,7 @@ use super::base::{Error, Exit, tell};
 use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
 use super::outputs::aligned;
+use super::progress::Progress;
 use super::remedies;
 use super::sink::{Sent, Sink};
 use super::solver::{Subject, SubjectArgs};
@@ -30,12 +31,11 @@ use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until, drive};
 use crate::step::event::{Event, Moves, Outcome};
 use crate::step::solver::{Lost, Solver};
-use std::io::{self, IsTerminal, Write};
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use std::time::{Duration, Instant};
 
 /// Warnings that are printed one by one; the rest is counted.
 const MOST_WARNINGS: u32 = 10;
@@ -43,8 +43,6 @@ const MOST_WARNINGS: u32 = 10;
 const MOST_SLAVES: usize = 40;
 /// Stretches of equal stability that are told at the end.
 const MOST_STRETCHES: usize = 8;
-/// Time between two lines of progress.
-const PROGRESS: Duration = Duration::from_millis(100);
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -671,42 +669,5 @@ impl Stretches {
             more => format!(", and {more} changes more; --csv has all"),
         };
         Some(format!("stability: {}{more}", first.join(", ")))
-    }
-}
-
-/// A line on a terminal that says how far the run is.
-struct Progress {
-    wanted: bool,
-    shown: bool,
-    last: Instant,
-}
-
-impl Progress {
-    fn new(quiet: bool) -> Self {
-        Progress {
-            wanted: !quiet && io::stderr().is_terminal(),
-            shown: false,
-            last: Instant::now(),
-        }
-    }
-
-    fn show(&mut self, event: &Event, steps: u64) {
-        if !self.wanted || self.last.elapsed() < PROGRESS {
-            return;
-        }
-        let at = names::position(event.position);
-        let load = event.load_factor;
-        let _ = write!(
-            io::stderr(),
-            "\r\x1b[K{at}, load {load}; {steps} minor iterations"
-        );
-        (self.shown, self.last) = (true, Instant::now());
-    }
-
-    fn clear(&mut self) {
-        if self.shown {
-            let _ = write!(io::stderr(), "\r\x1b[K");
-            self.shown = false;
-        }
     }
 }

@@ -1,0 +1,49 @@
+//! The progress of `stickslip run` on a terminal.
+
+use crate::explain::names;
+use crate::step::event::Event;
+use std::io::{self, IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+/// Time between two lines.
+const INTERVAL: Duration = Duration::from_millis(100);
+
+/// The line on a terminal that shows how far a run is.
+pub struct Progress {
+    wanted: bool,
+    shown: bool,
+    last: Instant,
+}
+
+impl Progress {
+    /// No line yet; none at all with `quiet`, or where standard error is no terminal.
+    pub fn new(quiet: bool) -> Self {
+        Progress {
+            wanted: !quiet && io::stderr().is_terminal(),
+            shown: false,
+            last: Instant::now(),
+        }
+    }
+
+    /// Shows an event, at most every [`INTERVAL`]; `steps` counts the minor iterations so far.
+    pub fn show(&mut self, event: &Event, steps: u64) {
+        if !self.wanted || self.last.elapsed() < INTERVAL {
+            return;
+        }
+        let at = names::position(event.position);
+        let load = event.load_factor;
+        let _ = write!(
+            io::stderr(),
+            "\r\x1b[K{at}, load {load}; {steps} minor iterations"
+        );
+        (self.shown, self.last) = (true, Instant::now());
+    }
+
+    /// Removes the line.
+    pub fn clear(&mut self) {
+        if self.shown {
+            let _ = write!(io::stderr(), "\r\x1b[K");
+            self.shown = false;
+        }
+    }
+}
