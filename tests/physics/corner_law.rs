@@ -232,6 +232,7 @@ fn a_node_goes_back_to_the_side_that_it_came_along_where_friction_is_below_the_l
             overlap: 0.0,
             bond: Bond::Hard,
             area: None,
+            facing: None,
         };
         let ground = Ground {
             surfaces,
