@@ -589,11 +589,7 @@ fn a_run_tells_what_one_step_of_coulombs_law_makes_of_the_increment_in_which_nod
     theirs.restore(ours.state());
     let mut settings = ours.state().controls.settings;
     settings.touch = Touch::Start;
-    theirs
-        .intervene(&stickslip::step::intervene::Intervention::Settings(
-            settings,
-        ))
-        .unwrap();
+    theirs.intervene(&Intervention::Settings(settings)).unwrap();
     let (ours, theirs) = (forces(&mut ours), forces(&mut theirs));
     let size = |f: &[f64; 2]| f[0].hypot(f[1]);
     let largest = ours.iter().map(size).fold(0.0, f64::max);
