@@ -39,7 +39,7 @@
 //!             bars: Vec::new(),
 //!         }),
 //!     }],
-//!     surfaces: vec![Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true, smooth: Vec::new() }],
+//!     surfaces: vec![Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true, smooth: Vec::new(), gives: Vec::new() }],
 //!     contacts: vec![Contact {
 //!         node: 0,
 //!         surfaces: vec![0],

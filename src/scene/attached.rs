@@ -271,6 +271,7 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
             rigid: told.rigid,
             endless: false,
             smooth: Vec::new(),
+            gives: Vec::new(),
         });
     }
     Ok((surfaces, numbers))

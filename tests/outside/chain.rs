@@ -308,7 +308,7 @@ fn newton(points: &[(f64, Point); 3], s: f64) -> Point {
 }
 
 /// Shape functions of m nodes at equal steps, and their derivatives.
-fn shape(m: usize, xi: f64) -> ([f64; MOST], [f64; MOST]) {
+pub fn shape(m: usize, xi: f64) -> ([f64; MOST], [f64; MOST]) {
     let node = |i: usize| 2.0 * i as f64 / (m - 1) as f64 - 1.0;
     let (mut n, mut d) = ([0.0; MOST], [0.0; MOST]);
     for i in 0..m {

@@ -14,6 +14,7 @@
 //! that of one side, or of the other. On a convex vertex nothing stays that slid there, but at the limit of one of the sides.
 
 use super::chain::{At, Chain, Place, Point, Seen as Sight, cross, dot, norm};
+use super::give::Gives;
 use std::f64::consts::FRAC_PI_2;
 use stickslip::model::{Friction, Model, Surface};
 
@@ -117,11 +118,14 @@ pub fn judge(
     scales: Scales,
 ) -> Verdict {
     let [then, chains] = [before, now].map(|state| chains(model, state));
+    let [gave, gives] =
+        [(before, &then), (now, &chains)].map(|(state, chains)| Gives::new(model, state, chains));
     let mut verdict = Verdict::default();
     for (number, slave) in model.contacts.iter().enumerate() {
         let node = Node {
-            then: before.positions[slave.node],
-            now: now.positions[slave.node],
+            number,
+            then: gave.point(number),
+            now: gives.point(number),
             force: now.forces[number],
             friction: friction[number],
             brought: brought[number],
@@ -130,6 +134,7 @@ pub fn judge(
             surfaces: &slave.surfaces,
             then: &then,
             now: &chains,
+            gives: &gives,
             scales,
         };
         let found = sides.judge(&node);
@@ -187,6 +192,7 @@ fn balance(now: &Seen, scales: Scales) -> Option<Breach> {
 
 /// A slave node between two states.
 struct Node {
+    number: usize,
     then: Point,
     now: Point,
     force: Point,
@@ -199,6 +205,7 @@ struct Sides<'a> {
     surfaces: &'a [usize],
     then: &'a [Chain],
     now: &'a [Chain],
+    gives: &'a Gives<'a>,
     scales: Scales,
 }
 
@@ -326,7 +333,7 @@ impl Sides<'_> {
 
     /// The node as it stands on one element.
     fn stand(&self, (surface, place): On, end: Option<f64>, node: &Node) -> Stand {
-        let (n, t) = self.now[surface].frame(place);
+        let (n, t) = self.gives.frame(node.number, (surface, place));
         let (slip, touched) = self.slip((surface, place), node);
         Stand {
             surface,

@@ -1,6 +1,7 @@
 //! Random mesh scenes, and a judge from outside of what the solver accepts in them.
 //!
 //! - [`chain`]: curves of master surfaces by brute force, with shape functions and closest points of their own;
+//! - [`give`]: what beam elements leave out under point forces, from the beam's own equations;
 //! - [`judge`]: Coulomb's law between two accepted states, from positions and forces alone;
 //! - [`draw`] and [`families`]: scenes by seed and number, as texts of scene files;
 //! - [`trial`]: a scene's run with every accepted increment judged;
@@ -14,6 +15,7 @@
 pub mod chain;
 pub mod draw;
 pub mod families;
+pub mod give;
 pub mod judge;
 pub mod tally;
 pub mod trial;

@@ -200,6 +200,7 @@ fn a_node_goes_back_to_the_side_that_it_came_along_where_friction_is_below_the_l
         rigid: true,
         endless: false,
         smooth: Vec::new(),
+        gives: Vec::new(),
     };
     let on = |surface: usize, element: usize, xi: f64| SurfacePoint {
         surface,

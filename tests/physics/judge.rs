@@ -86,6 +86,7 @@ fn surface(elements: Vec<Vec<usize>>) -> Surface {
         rigid: true,
         endless: false,
         smooth: Vec::new(),
+        gives: Vec::new(),
     }
 }
 

@@ -35,6 +35,8 @@ mod hertz;
 mod smooth;
 // Any node on any chain, over borders and corners, from one body to the next.
 mod pairing;
+// A beam that shears gives as its theory says where a node presses on it, wherever in an element.
+mod point_forces;
 // Two sides of a surface at once: corners, vertices, steps.
 mod corners;
 // What a node bears that slid to where two sides meet, as the kink goes to zero.

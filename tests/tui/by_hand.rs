@@ -53,6 +53,7 @@ pub fn model(slaves: usize) -> Model {
             rigid: true,
             endless: false,
             smooth: Vec::new(),
+            gives: Vec::new(),
         }],
         contacts: (0..slaves)
             .map(|node| Contact {

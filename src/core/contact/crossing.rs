@@ -105,6 +105,7 @@ mod tests {
             rigid: true,
             endless: false,
             smooth: Vec::new(),
+            gives: Vec::new(),
         }
     }
 

@@ -224,6 +224,7 @@ mod tests {
             rigid: true,
             endless,
             smooth: Vec::new(),
+            gives: Vec::new(),
         }]
     }
 

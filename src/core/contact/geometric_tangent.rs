@@ -121,6 +121,7 @@ mod tests {
             rigid: false,
             endless: false,
             smooth: Vec::new(),
+            gives: Vec::new(),
         }
     }
 

@@ -10,6 +10,8 @@
 //!   and drives the whole of this way breaks the law, since no place of touching explains it;
 //! - where a bond gives way (compliances c_n, c_t), all this holds for a point further out, at x + c_n F_n n: g + c_n F_n = 0 where a
 //!   force acts; and of a net slip, c_t times the change of −F_t is elastic, which friction does not oppose;
+//! - where an element of a beam gives under point forces, it holds for a point that much further out, and n and t are those of the turned
+//!   line ([`super::point_force::judged`]);
 //! - a tied node stays where it is on its surface, whatever its forces are;
 //! - in a corner between two sides the force lies in the hull of what each of them can give; after a slip into it, of what each
 //!   gives with friction at its limit against that ([`super::corner`]);
@@ -23,6 +25,7 @@ use crate::contact::element::{Element, closed};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::feet::{self, Foot, direction, place, speed};
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
+use crate::contact::point_force::judged::{JudgedGives, Loaded, hand_on};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::side_laws::{Amounts, Past, Touching};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
@@ -61,7 +64,18 @@ pub struct Seen<'a> {
 impl Seen<'_> {
     /// Where a slave node is judged to be now.
     fn point(&self, slave: usize) -> [f64; 2] {
-        further(self.now[self.contacts[slave].node], self.out[0].get(slave))
+        self.loaded().point(slave)
+    }
+
+    /// The interface now.
+    fn loaded(&self) -> Loaded<'_> {
+        Loaded {
+            surfaces: self.surfaces,
+            contacts: self.contacts,
+            now: self.now,
+            out: self.out[0],
+            forces: self.forces,
+        }
     }
 
     /// Where a slave node is judged to have been in the last accepted state.
@@ -85,6 +99,7 @@ pub struct Judge {
     earlier: Vec<Foot>,
     others: Vec<Foot>,
     sides: Vec<Touching>,
+    gives: JudgedGives,
     /// The state that was judged last, which is mostly the one accepted before the next.
     last: Stood,
     next: Stood,
@@ -99,6 +114,7 @@ impl Judge {
             earlier: Vec::with_capacity(FEW),
             others: Vec::with_capacity(FEW),
             sides: Vec::with_capacity(FEW),
+            gives: JudgedGives::with_capacity(slaves),
             last: Stood::with_capacity(nodes, slaves),
             next: Stood::with_capacity(nodes, slaves),
         }
@@ -114,6 +130,7 @@ impl Judge {
             self.last.clear();
         }
         self.next.clear();
+        self.gives.find(&seen.loaded(), &mut self.feet);
         for slave in 0..seen.contacts.len() {
             self.node(seen, slave, contact, &mut verdict);
         }
@@ -141,7 +158,7 @@ impl Judge {
 
     fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
         let contact_of = &seen.contacts[slave];
-        let Contact { node, bond, .. } = contact_of;
+        let Contact { bond, .. } = contact_of;
         let mut room = [0; MOST];
         let surfaces = faced(contact_of, seen.surfaces, seen.now, &mut room);
         let (mut point, force) = (seen.point(slave), seen.forces[slave]);
@@ -171,10 +188,17 @@ impl Judge {
         };
         let mut foot = over(&self.feet, point);
         let mut given = 0.0;
-        if let (Some(found), true) = (foot, pressed && bond.give()[0] > 0.0) {
-            let n = outward(&found, seen.surfaces, seen.now);
-            given = bond.give()[0] * dot(force, n);
-            point = [0, 1].map(|k| point[k] + given * n[k]);
+        let way = self.gives.way(slave);
+        if let Some(way) = way {
+            point = [0, 1].map(|k| point[k] + way[k]);
+        }
+        let soft = pressed && bond.give()[0] > 0.0;
+        if let (Some(found), true) = (foot, soft || way.is_some()) {
+            if soft {
+                let n = outward(&found, seen.surfaces, seen.now);
+                given = bond.give()[0] * dot(force, n);
+                point = [0, 1].map(|k| point[k] + given * n[k]);
+            }
             let feet = &mut self.feet;
             feet::find(point, seen.surfaces, surfaces, seen.now, 2.0 * near, feet);
             foot = over(feet, point);
@@ -182,7 +206,7 @@ impl Judge {
         self.next.add(&self.feet);
         if bond.is_tied() {
             let amount = foot.map_or(f64::INFINITY, |foot| {
-                hand_on(seen, *node, force, &foot, contact);
+                hand_on(&seen.loaded(), slave, &foot, false, contact);
                 foot.distance.max(self.strayed(seen, slave, &foot).abs())
             });
             report(Law::Tied, amount / length, Numbers::default());
@@ -222,7 +246,7 @@ impl Judge {
             ],
         };
         report(law_of_gap, foot.distance / length, numbers);
-        hand_on(seen, *node, force, &foot, contact);
+        hand_on(&seen.loaded(), slave, &foot, way.is_some(), contact);
         if foot.distance > near {
             return;
         }
@@ -304,7 +328,8 @@ impl Judge {
                     (side.spot.surface, side.spot.element) == (spot.surface, spot.element)
                 };
                 if !self.sides.iter().any(known)
-                    && let Some(side) = touching(seen, slave, point, spot, &self.earlier, near)
+                    && let Some(side) =
+                        touching(seen, slave, point, spot, (&self.earlier, &self.gives), near)
                 {
                     self.sides.push(side);
                 }
@@ -390,11 +415,12 @@ fn touching(
     slave: usize,
     point: [f64; 2],
     spot: SurfacePoint,
-    earlier: &[Foot],
+    (earlier, gives): (&[Foot], &JudgedGives),
     near: f64,
 ) -> Option<Touching> {
     let surface = &seen.surfaces[spot.surface];
     let tangent = direction(Element::of(surface, spot.element), seen.now, spot.xi)?;
+    let tangent = gives.turned(&seen.loaded(), slave, spot, tangent);
     let friction = &seen.friction[slave];
     let elastic = match seen.contacts[slave].bond.give()[1] {
         0.0 => 0.0,
@@ -504,18 +530,6 @@ fn is_past_end_at(
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
     let t = direction(Element::of(chain, element), positions, xi).unwrap_or([0.0; 2]);
     xi * dot(to, t) > near
-}
-
-/// Puts a slave node's force on it, and its reverse on the nodes of the master.
-fn hand_on(seen: &Seen, node: usize, force: [f64; 2], foot: &Foot, contact: &mut [[f64; 2]]) {
-    let element = Element::of(&seen.surfaces[foot.spot.surface], foot.spot.element);
-    let n = element.shape(foot.spot.xi).n;
-    for k in 0..2 {
-        contact[node][k] += force[k];
-        for (&master, share) in element.nodes.iter().zip(n) {
-            contact[master][k] -= share * force[k];
-        }
-    }
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -9,6 +9,7 @@ pub mod feet;
 pub mod geometric_tangent;
 pub mod judge;
 pub mod laws;
+pub mod point_force;
 pub mod projection;
 pub mod record;
 mod side_laws;

@@ -62,6 +62,16 @@ impl Projection {
     }
 }
 
+impl Projection {
+    /// √m / (m − g k) with m and k of [`crate::contact::geometric_tangent`]. `None` at an end of the element.
+    pub fn lever(&self) -> Option<f64> {
+        let Curve { slope, bend } = self.curve?;
+        let m = slope[0] * slope[0] + slope[1] * slope[1];
+        let k = bend[0] * self.normal[0] + bend[1] * self.normal[1];
+        Some(m.sqrt() / (m - self.gap * k))
+    }
+}
+
 /// Derivatives of the master element's curve at S*.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
@@ -244,13 +254,26 @@ pub fn element_size(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]
 }
 
 /// Half the angle (radians) between the normals of the two elements that meet at a border ([`corner::half_angle`]): positive
-/// where they form a concave corner, negative at a convex vertex. `None` where no two elements meet, and on a smooth chain, which has no corners.
-pub fn half_angle(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> Option<f64> {
+/// where they form a concave corner, negative at a convex vertex. `turned` gives dx/dξ as it really is at an end of an element.
+/// `None` where no two elements meet, and on a smooth chain, which has no corners.
+pub fn half_angle(
+    surface: &Surface,
+    border: SurfacePoint,
+    positions: &[[f64; 2]],
+    turned: impl Fn(SurfacePoint, [f64; 2]) -> [f64; 2],
+) -> Option<f64> {
     if !surface.smooth.is_empty() {
         return None;
     }
     let (other, xi) = neighbour(surface, border)?;
-    let slope = |element: usize, xi: f64| slope_at(surface, element, xi, positions);
+    let slope = |element: usize, xi: f64| {
+        let end = SurfacePoint {
+            element,
+            xi,
+            ..border
+        };
+        turned(end, slope_at(surface, element, xi, positions))
+    };
     let (own, across) = (slope(border.element, border.xi), slope(other, xi));
     Some(if border.xi > 0.0 {
         corner::half_angle(own, across)
@@ -538,6 +561,7 @@ mod tests {
             rigid: true,
             endless: false,
             smooth: Vec::new(),
+            gives: Vec::new(),
         }]
     }
 

@@ -128,6 +128,7 @@ mod tests {
             rigid: true,
             endless: false,
             smooth: Vec::new(),
+            gives: Vec::new(),
         }
     }
 

@@ -26,6 +26,7 @@ fn chain(places: &[[f64; 2]], round: bool) -> Surface {
         rigid: false,
         endless: false,
         smooth: Vec::new(),
+        gives: Vec::new(),
     };
     smooth(&mut surface, &nodes);
     surface

@@ -14,9 +14,10 @@
 use crate::contact::corner;
 use crate::contact::crossing;
 use crate::contact::facing::{MOST, faced, is_piece};
+use crate::contact::point_force;
 use crate::contact::projection::{
-    STRAIGHT, SurfacePoint, beside, border, element_size, half_angle, normal, project,
-    projection_at, sharpen, tangent,
+    self, STRAIGHT, SurfacePoint, beside, border, element_size, normal, project, projection_at,
+    sharpen, tangent,
 };
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
@@ -78,7 +79,13 @@ impl Ground<'_> {
         match node.spot {
             Some(spot) => {
                 if node.second.is_none() {
-                    node.normal = projection_at(self.surfaces, spot, self.positions, at).normal;
+                    let over = projection_at(self.surfaces, spot, self.positions, at);
+                    node.normal = match node.corner {
+                        Some(_) => over.normal,
+                        None => {
+                            point_force::normal(&self.surfaces[spot.surface], spot, &over, node.f_n)
+                        }
+                    };
                 }
                 if was_held != node.corner.is_some() {
                     let ([c, s], [f_x, f_y]) = (node.normal, force);
@@ -150,7 +157,7 @@ impl Ground<'_> {
         if node.second.is_some() {
             return true;
         }
-        let half = half_angle(&self.surfaces[spot.surface], spot, self.positions);
+        let half = self.half_angle(spot, node.f_n);
         let still = |half: &f64| {
             let is_corner = *half > 0.0;
             is_corner == (was > 0.0) && (is_corner || corner::holds(friction, *half))
@@ -201,6 +208,13 @@ impl Ground<'_> {
         (corner::cross(own, across) * way < 0.0).then_some((on, -way.signum()))
     }
 
+    /// Half the angle of a corner ([`projection::half_angle`]), less the kink that F_n makes there in elements that give ([`point_force`]).
+    fn half_angle(&self, border: SurfacePoint, f_n: f64) -> Option<f64> {
+        let surface = &self.surfaces[border.surface];
+        let turned = |end, slope| point_force::turned_end(surface, end, slope, f_n);
+        projection::half_angle(surface, border, self.positions, turned)
+    }
+
     /// Notes that a node has come to another element, and holds it in the corner where it slides back to the one that it
     /// had left.
     fn cross(&self, node: &mut ContactState, previous: Option<SurfacePoint>) {
@@ -212,8 +226,7 @@ impl Ground<'_> {
         }
         let surface = &self.surfaces[from.surface];
         let meet = border(surface, from.surface, from.element, to.element);
-        let corner =
-            meet.and_then(|border| Some((border, half_angle(surface, border, self.positions)?)));
+        let corner = meet.and_then(|border| Some((border, self.half_angle(border, node.f_n)?)));
         if let Some((border, half)) = corner
             && half > STRAIGHT
             && node.left == Some(to.element)
@@ -245,7 +258,7 @@ impl Ground<'_> {
             _ => return None,
         };
         let end = SurfacePoint { xi, ..spot };
-        let half = half_angle(&self.surfaces[spot.surface], end, self.positions);
+        let half = self.half_angle(end, node.f_n);
         let half = half.filter(|half| *half > STRAIGHT)?;
         let (at, [f_x, f_y]) = (self.positions[slave.node], node.force());
         let [c, s] = projection_at(self.surfaces, end, self.positions, at).normal;
@@ -336,7 +349,7 @@ impl Ground<'_> {
         let Some(spot) = node.spot.map(|spot| self.at_bottom(node, spot)) else {
             return;
         };
-        let half = half_angle(&self.surfaces[spot.surface], spot, self.positions);
+        let half = self.half_angle(spot, node.f_n);
         let Some(half) = half.filter(|half| half.abs() > STRAIGHT) else {
             return;
         };
@@ -375,7 +388,7 @@ impl Ground<'_> {
         };
         let sticks = node.mode == Mode::Fixed && surface.rigid && !surface.endless && near;
         let is_corner =
-            || half_angle(surface, end, self.positions).is_some_and(|half| half > STRAIGHT);
+            || self.half_angle(end, node.f_n).is_some_and(|half| half > STRAIGHT);
         if sticks && is_corner() { end } else { spot }
     }
 

@@ -85,6 +85,23 @@ pub fn slopes<const COUNT: usize>(m: usize, xi: [f64; COUNT]) -> [[f64; MAX_NODE
     slopes
 }
 
+/// d³N_i/dξ³ of the m shape functions, as second derivatives of a contact's geometry want them.
+pub fn third(m: usize, xi: f64) -> [f64; MAX_NODES] {
+    let mut all = [0.0; MAX_NODES];
+    for (i, (third, &(_, weight))) in all.iter_mut().zip(&NODES[m][..m]).enumerate() {
+        let (mut value, mut by) = (weight, [0.0; 3]);
+        for (_, &(at, _)) in NODES[m][..m].iter().enumerate().filter(|(j, _)| *j != i) {
+            let factor = xi - at;
+            by[2] = by[2] * factor + 3.0 * by[1];
+            by[1] = by[1] * factor + 2.0 * by[0];
+            by[0] = by[0] * factor + value;
+            value *= factor;
+        }
+        *third = by[2];
+    }
+    all
+}
+
 /// With the number of nodes known to the compiler no loop is left: projections ask for millions of these.
 #[inline]
 fn shape_of<const M: usize>(xi: f64, s: &mut Shape) {
@@ -207,6 +224,12 @@ mod tests {
                         0.0
                     };
                     assert!((sum(&s.dd) - second).abs() < 1e-9);
+                    let cubic = if degree > 2 {
+                        k * (k - 1.0) * (k - 2.0) * xi.powi(degree - 3)
+                    } else {
+                        0.0
+                    };
+                    assert!((sum(&third(m, xi)) - cubic).abs() < 1e-8);
                 }
             }
         }

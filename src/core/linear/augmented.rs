@@ -1,5 +1,6 @@
 //! A minor iteration on the whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
 
+use super::partners::{partners_motion, place_partners};
 use super::source::{At, Solved};
 use super::system::{System, dot};
 use crate::contact::state::ContactState;
@@ -20,7 +21,7 @@ impl System {
             let rows = self.rows(s, at);
             let frame = self.interfaces[s].frame(&at.contacts[s]);
             for (k, row) in rows.iter().enumerate() {
-                let row = through(*row, model.contacts[s].bond.give());
+                let row = through(*row, self.interfaces[s].give());
                 self.rhs[unknowns + 2 * s + k] = self.place_row(s, k, &row, frame);
             }
         }
@@ -29,11 +30,19 @@ impl System {
             let row = unknowns + 2 * s;
             self.condensed.forces[s] = [self.x[row], self.x[row + 1]];
             let motion = self.motion_of_solution(model, s, node);
-            let (give, force) = (model.contacts[s].bond.give(), self.condensed.forces[s]);
+            let (give, force) = (self.interfaces[s].give(), self.condensed.forces[s]);
             self.condensed.motions[s] = [0, 1].map(|k| match give[k] {
                 0.0 => motion[k],
                 give => motion[k] - give * force[k],
             });
+        }
+        for s in 0..self.interfaces.len() {
+            if !self.interfaces[s].partners.is_empty() {
+                let increment = |dof: usize| self.increment(model, dof);
+                let forces = &self.condensed.forces;
+                let did = partners_motion(&self.interfaces, s, increment, forces);
+                self.condensed.motions[s][0] -= did;
+            }
         }
         solved
     }
@@ -47,7 +56,7 @@ impl System {
         for s in 0..self.interfaces.len() {
             let frame = self.interfaces[s].frame(&at.contacts[s]);
             for (k, row) in springs(0.0).iter().enumerate() {
-                let row = through(*row, model.contacts[s].bond.give());
+                let row = through(*row, self.interfaces[s].give());
                 self.place_row(s, k, &row, frame);
             }
         }
@@ -81,17 +90,23 @@ impl System {
         let interface = &self.interfaces[s];
         self.values[interface.block[2 * k]] = row.d_n;
         self.values[interface.block[2 * k + 1]] = row.d_t;
-        let direction = match row.motion {
-            Motion::None => [0.0; 2],
-            Motion::Normal => frame[0],
-            Motion::Tangential => frame[1],
+        let component = match row.motion {
+            Motion::None => None,
+            Motion::Normal => Some(0),
+            Motion::Tangential => Some(1),
         };
-        for link in &interface.links {
+        for (i, link) in interface.links.iter().enumerate() {
             let Some(slots) = link.slots else { continue };
-            self.values[slots[2 * k]] += link.weight * direction[link.axis];
-            self.values[slots[2 * k + 1]] += link.weight * frame[k][link.axis];
+            if let Some(component) = component {
+                self.values[slots[2 * k]] += interface.row(i, component, &frame);
+            }
+            self.values[slots[2 * k + 1]] += interface.column(i, k, &frame);
         }
-        row.value - dot(direction, interface.prescribed)
+        if k == 0 {
+            place_partners(&self.interfaces, &mut self.values, s, component.is_some());
+        }
+        let interface = &self.interfaces[s];
+        row.value - component.map_or(0.0, |k| interface.prescribed_along(k, &frame))
     }
 
     pub(super) fn factor_and_solve(&mut self) -> Solved {
@@ -112,6 +127,13 @@ impl System {
         node: &ContactState,
     ) -> [f64; 2] {
         let interface = &self.interfaces[slave];
+        if let Some(point) = interface.point.first() {
+            return [0, 1].map(|k| {
+                let links = interface.links.iter().zip(&point.rows[k]);
+                let parts = links.map(|(link, row)| row * self.increment(model, link.dof));
+                parts.sum::<f64>()
+            });
+        }
         let mut motion = [0.0; 2];
         for link in &interface.links {
             motion[link.axis] += link.weight * self.increment(model, link.dof);

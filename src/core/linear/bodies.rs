@@ -15,6 +15,7 @@ use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
 use crate::linear::drag::add_drag;
 use crate::linear::norms::Norms;
+use crate::linear::point_forces::PointForces;
 use crate::linear::singular::{self, Singular};
 use crate::linear::sizes::Sizes;
 use crate::linear::source::{At, Solved, Source, Work};
@@ -42,6 +43,8 @@ pub struct Bodies {
     overlaps: bool,
     /// Whether any bond gives way along n.
     gives: bool,
+    /// Contacts over elements that gave in the last accepted state.
+    points: PointForces,
 }
 
 /// The judge, with the memory that it works in.
@@ -89,6 +92,7 @@ impl Bodies {
                 .contacts
                 .iter()
                 .any(|contact| contact.bond.give()[0] > 0.0),
+            points: PointForces::default(),
             model,
         }
     }
@@ -188,6 +192,13 @@ impl Source for Bodies {
         let all = contacts.iter_mut().zip(&self.model.contacts).zip(friction);
         for ((state, contact), friction) in all {
             ground.stand(state, contact, friction, anew);
+        }
+        if self.system.has_points {
+            let (points, positions) = (&mut self.system.points, &self.system.positions);
+            points.find(&self.model, positions, contacts);
+            for press in points.all() {
+                contacts[press.contact].normal = press.normal;
+            }
         }
     }
 
@@ -384,7 +395,7 @@ impl Source for Bodies {
             model.unclosed(at.leg, at.start_load),
         ];
         bench.out.iter_mut().for_each(Vec::clear);
-        if self.overlaps || self.gives {
+        if self.overlaps || self.gives || self.system.has_points {
             for (contact, (state, was)) in overlaps {
                 for ((out, part), normal) in bench
                     .out
@@ -399,6 +410,13 @@ impl Source for Bodies {
                     let given = contact.bond.give()[0] * was.f_n;
                     *out = [0, 1].map(|k| out[k] + was.normal[k] * given);
                 }
+            }
+        }
+        if self.system.has_points {
+            self.points.find(model, &bench.before, at.accepted.contacts);
+            for press in self.points.all() {
+                let (out, way) = (&mut bench.out[1][press.contact], press.way_out());
+                *out = [0, 1].map(|k| out[k] + way[k]);
             }
         }
         let [out, was_out] = &bench.out;

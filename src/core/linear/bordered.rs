@@ -52,8 +52,9 @@ impl System {
             Along::Dof { dof, .. } => add(*dof, 1.0),
             Along::Slip { contact, .. } => {
                 let frame = self.frames[*contact];
-                for link in &self.interfaces[*contact].links {
-                    add(link.dof, link.weight * frame[1][link.axis]);
+                let interface = &self.interfaces[*contact];
+                for (i, link) in interface.links.iter().enumerate() {
+                    add(link.dof, interface.row(i, 1, &frame));
                 }
             }
         }
@@ -91,6 +92,13 @@ impl System {
                 motion[link.axis] += link.weight * border.rates[link.dof];
             }
             border.carried[s] = self.frames[s].map(|direction| dot(direction, motion));
+            if let Some(point) = interface.point.first() {
+                let links = || interface.links.iter().enumerate();
+                border.carried[s] = [0, 1].map(|k| {
+                    let parts = links().map(|(i, l)| point.rows[k][i] * border.rates[l.dof]);
+                    parts.sum()
+                });
+            }
         }
         self.couple_rates(model, at);
     }

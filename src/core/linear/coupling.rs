@@ -1,6 +1,7 @@
 //! A slave node's part of the linearised system: what moves in its equations, and where that stands in the matrices.
 
 use crate::contact::geometric_tangent::Variation;
+use crate::contact::point_force::Linearised;
 use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
@@ -22,6 +23,28 @@ pub struct Link {
     pub unknown: Option<usize>,
 }
 
+/// What another contact on an element that gives does to this one, and where that stands in the whole system.
+#[derive(Debug, Clone, Default)]
+pub struct Partner {
+    /// Number of the other contact.
+    pub other: usize,
+    /// c_ij (length by force).
+    pub give: f64,
+    /// ∂c_ij/∂ξ_i, ∂c_ij/∂ξ_j, and the second derivative by both.
+    pub slopes: [f64; 2],
+    pub cross: f64,
+    /// F_j, and its derivative by F_n of the other contact.
+    pub force: f64,
+    pub force_slope: f64,
+    /// Place of (normal row, normal column of the other).
+    pub block: usize,
+    /// Places of (normal row, other link), of (link, normal column of the other), and of (link, other link), row by row; none where a
+    /// degree of freedom has no equation.
+    pub row: Vec<Option<usize>>,
+    pub column: Vec<Option<usize>>,
+    pub pairs: Vec<Option<usize>>,
+}
+
 /// A slave node's part of the system.
 #[derive(Debug, Default)]
 pub struct Interface {
@@ -31,6 +54,10 @@ pub struct Interface {
     /// What holds where the node touches, and how far that gives way along n to the normal force at hand (length).
     pub bond: Bond,
     pub given: f64,
+    /// The linearised contact on an element that gives under a point force: one there, else none.
+    pub point: Vec<Linearised>,
+    /// The other contacts on that element.
+    pub partners: Vec<Partner>,
     pub links: Vec<Link>,
     /// The element that `links` reach into, once they are listed.
     linked: Option<Option<(usize, usize)>>,
@@ -48,6 +75,8 @@ pub struct Interface {
     pub moves: [bool; 2],
     /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.
     pub prescribed: [f64; 2],
+    /// What prescribed motion alone puts into the normal and the tangential row where the element gives (length).
+    pub pushed: [f64; 2],
 }
 
 impl Interface {
@@ -55,6 +84,43 @@ impl Interface {
     pub fn frame(&self, node: &ContactState) -> [[f64; 2]; 2] {
         let normal = self.projection.map_or(node.normal, |f| f.normal);
         [normal, tangent(normal)]
+    }
+
+    /// Coefficient of a link in the normal (0) or tangential (1) motion.
+    pub fn row(&self, link: usize, k: usize, frame: &[[f64; 2]; 2]) -> f64 {
+        match self.point.first() {
+            Some(point) => point.rows[k][link],
+            None => {
+                let link = &self.links[link];
+                link.weight * frame[k][link.axis]
+            }
+        }
+    }
+
+    /// Coefficient of ΔF_n (0) or ΔF_t (1) in the equation of a link.
+    pub fn column(&self, link: usize, k: usize, frame: &[[f64; 2]; 2]) -> f64 {
+        match self.point.first() {
+            Some(point) => -point.columns[k][link],
+            None => {
+                let link = &self.links[link];
+                link.weight * frame[k][link.axis]
+            }
+        }
+    }
+
+    /// What prescribed motion alone puts into the normal (0) or tangential (1) row (length).
+    pub fn prescribed_along(&self, k: usize, frame: &[[f64; 2]; 2]) -> f64 {
+        match self.point.is_empty() {
+            true => frame[k][0] * self.prescribed[0] + frame[k][1] * self.prescribed[1],
+            false => self.pushed[k],
+        }
+    }
+
+    /// Compliances in series along n and along t: those of the bond, and of the element (length by force).
+    pub fn give(&self) -> [f64; 2] {
+        let [normal, tangential] = self.bond.give();
+        let own = self.point.first().map_or(0.0, |point| point.give);
+        [normal + own, tangential]
     }
 
     /// Lists the displacements of S and S*; on the element of before, only their shares are renewed.

@@ -335,7 +335,12 @@ pub fn condensable(model: &Model) -> bool {
         BodyKind::Solid(_) | BodyKind::Truss(_) => true,
         BodyKind::Linear(linear) => linear.form == Form::Stiffness && linear.is_symmetric(),
     };
-    model.pressures.is_empty() && model.bodies.iter().all(symmetric)
+    // Where elements give under point forces, rows and columns of the interface differ.
+    let plain = model
+        .surfaces
+        .iter()
+        .all(|surface| surface.gives.is_empty());
+    plain && model.pressures.is_empty() && model.bodies.iter().all(symmetric)
 }
 
 /// A number of bytes for a person.

@@ -2,7 +2,7 @@
 
 use super::augmented::{springs, suspicion};
 use super::source::{At, Solved};
-use super::system::{Layout, System, dot};
+use super::system::{Layout, System};
 use crate::interface::kinematics::through;
 use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::linalg::{Factors, SolveError};
@@ -26,7 +26,7 @@ impl System {
         for s in 0..self.interfaces.len() {
             let rows = self.rows(s, at);
             let frame = self.frames[s];
-            let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
+            let prescribed = [0, 1].map(|k| self.interfaces[s].prescribed_along(k, &frame));
             for (k, row) in rows.iter().enumerate() {
                 self.condensed.place_row(s, k, row, prescribed);
             }
@@ -35,7 +35,7 @@ impl System {
             return Solved::Not;
         };
         for (s, frame) in self.frames.iter().enumerate() {
-            let prescribed = frame.map(|direction| dot(direction, self.interfaces[s].prescribed));
+            let prescribed = [0, 1].map(|k| self.interfaces[s].prescribed_along(k, frame));
             self.condensed.read(s, prescribed);
         }
         if at.along.is_some() {
@@ -68,7 +68,8 @@ impl System {
             .map(|(slave, node)| ProblemNode {
                 slave,
                 kinematics: self.kinematics(slave),
-                prescribed: self.frames[slave].map(|d| dot(d, self.interfaces[slave].prescribed)),
+                prescribed: [0, 1]
+                    .map(|k| self.interfaces[slave].prescribed_along(k, &self.frames[slave])),
                 friction: node.friction(&at.friction[slave]),
                 state: *node,
             });
@@ -139,7 +140,7 @@ impl System {
         let give = -1.0 / self.condensed.relation.stiffness;
         for s in 0..self.interfaces.len() {
             for (k, row) in springs(give).iter().enumerate() {
-                let row = through(*row, model.contacts[s].bond.give());
+                let row = through(*row, self.interfaces[s].give());
                 self.place_row(s, k, &row, self.frames[s]);
                 self.rhs[unknowns + 2 * s + k] = 0.0;
             }

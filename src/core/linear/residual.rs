@@ -2,20 +2,39 @@
 
 use super::drag::add_drag;
 use super::norms::Norms;
+use super::partners::find_points;
 use super::sizes::ROUND_OFF;
 use super::source::At;
 use super::system::{Layout, System};
 use super::violation::violation;
+use crate::linalg::Factors;
 use crate::model::{Factor, Model};
 
 impl System {
     /// Out-of-balance force R − F of eqn (22) and its norms.
     pub(super) fn balance(&mut self, model: &Model, at: &At<'_>) {
         self.interaction.fill(0.0);
+        if self.has_points {
+            let pattern = self.whole.as_ref().map(Factors::pattern);
+            find_points(
+                (&mut self.points, &mut self.interfaces),
+                (&self.positions, &self.step),
+                pattern.map(AsRef::as_ref),
+                model,
+                at,
+            );
+        }
         let slaves = at.contacts.iter().zip(&model.contacts);
         for (interface, (node, slave)) in self.interfaces.iter_mut().zip(slaves) {
             interface.bond = slave.bond;
             interface.given = slave.bond.give()[0] * node.f_n;
+            if let Some(point) = interface.point.first() {
+                interface.given += point.given;
+                for (link, force) in interface.links.iter().zip(&point.forces) {
+                    self.interaction[link.dof] += force;
+                }
+                continue;
+            }
             let force = node.force();
             for link in &interface.links {
                 self.interaction[link.dof] -= link.weight * force[link.axis];

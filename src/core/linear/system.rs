@@ -23,6 +23,8 @@ use crate::linear::coupling::Interface;
 use crate::linear::drag::stiffen;
 use crate::linear::estimate::{Estimate, condensable};
 use crate::linear::norms::Norms;
+use crate::linear::partners::{join_partners, turn_points};
+use crate::linear::point_forces::PointForces;
 use crate::linear::sizes::Sizes;
 use crate::linear::source::{At, Solved, Work};
 use crate::model::{Geometry, Model, Refactor, Settings};
@@ -79,6 +81,9 @@ pub struct System {
     pub(super) estimate: Estimate,
     /// Whether the scene's bodies may be condensed by [`Condensation`].
     pub(super) condensable: bool,
+    /// Contacts over elements that give under point forces; and whether there are such elements.
+    pub(super) points: PointForces,
+    pub(super) has_points: bool,
     /// The elements that `whole` has places for.
     pub(super) pairing: Vec<Option<(usize, usize)>>,
     /// n and t of every slave node in the last condensation.
@@ -140,6 +145,8 @@ impl System {
             executor,
             estimate: Estimate::of(model),
             condensable: condensable(model),
+            points: PointForces::default(),
+            has_points: model.surfaces.iter().any(|s| !s.gives.is_empty()),
             pairing: Vec::new(),
             frames: Vec::new(),
             sizes: Sizes::new(model),
@@ -352,7 +359,10 @@ impl System {
                 buffer.resize(size, 0.0);
             }
             self.layout = Some(Layout::Whole);
-            self.interfaces.iter_mut().for_each(|i| i.placed = false);
+            self.interfaces.iter_mut().for_each(|i| {
+                i.placed = false;
+                i.partners.clear();
+            });
         }
         for (s, interface) in self.interfaces.iter_mut().enumerate() {
             interface.find_slots(model, factors.pattern(), model.dofs.equations + 2 * s);
@@ -427,6 +437,9 @@ impl System {
                 }
             }
         }
+        if self.has_points {
+            join_partners(&self.interfaces, &self.pairing, model, &mut entries);
+        }
         let size = equations + 2 * self.interfaces.len();
         let pattern = Arc::new(Pattern::new(size, entries));
         self.whole = Some(Factors::in_groups(pattern, &self.groups(model), equations)?);
@@ -465,11 +478,20 @@ impl System {
         if at.chosen.geometry == Geometry::Frozen {
             return;
         }
+        turn_points(
+            &self.interfaces,
+            (&mut self.stiffness, turned == Turned::Both),
+            (&mut self.coupling, &self.step),
+            model,
+        );
         let matrix = match (self.layout, &mut self.bodies) {
             (Some(Layout::Bodies), Some(bodies)) => &mut bodies.turning,
             _ => &mut self.stiffness,
         };
         for (interface, node) in self.interfaces.iter_mut().zip(at.contacts) {
+            if !interface.point.is_empty() {
+                continue;
+            }
             let Some((projection, curve)) = interface.projection.and_then(|f| Some((f, f.curve?)))
             else {
                 continue;
@@ -545,10 +567,11 @@ impl System {
             0.0 => gap,
             given => gap + given,
         };
-        let give = interface.bond.give();
+        let give = interface.give();
+        let point = interface.point.first();
         Some(NodeKinematics {
             gap,
-            normal: projection.normal,
+            normal: point.map_or(projection.normal, |point| point.normal),
             foot: projection.foot,
             room: interface.room,
             // A force on a spring moves something whatever else is held.

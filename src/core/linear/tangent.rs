@@ -19,6 +19,8 @@ use std::sync::Arc;
 
 /// Most unknowns of the dense part.
 const MOST: usize = 1500;
+/// An element gives nothing where the scene's force moves it by less than this part of the scene's length.
+const RIGID: f64 = 1e-9;
 
 /// The bodies' tangent as stability needs it.
 pub struct Tangent {
@@ -217,6 +219,15 @@ fn turn(matrix: &mut DMatrix<f64>, system: &System, model: &Model, at: &At<'_>, 
     let place = |dof: usize| last.binary_search(&model.dofs.equation[dof]?).ok();
     for (interface, s) in touching(system, at) {
         let node = &at.contacts[s];
+        if let Some(point) = interface.point.first() {
+            let links = || interface.links.iter().enumerate();
+            for (i, row) in links().filter_map(|(i, link)| Some((i, place(link.dof)?))) {
+                for (j, col) in links().filter_map(|(j, link)| Some((j, place(link.dof)?))) {
+                    matrix[(row, col)] -= point.stiffness[i][j];
+                }
+            }
+            continue;
+        }
         let Some((projection, curve)) = interface.projection.and_then(|f| Some((f, f.curve?)))
         else {
             continue;
@@ -245,19 +256,27 @@ fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Op
     let mut all = Conditions::default();
     for (interface, s) in touching(system, at) {
         let node = &at.contacts[s];
-        let row = |direction: [f64; 2]| {
+        let frame = interface.frame(node);
+        let row = |component: usize| {
             let mut row = vec![0.0; last.len()];
-            for link in &interface.links {
+            for (i, link) in interface.links.iter().enumerate() {
                 let equation = model.dofs.equation[link.dof];
                 if let Some(k) = equation.and_then(|e| last.binary_search(&e).ok()) {
-                    row[k] += link.weight * direction[link.axis];
+                    row[k] += interface.row(i, component, &frame);
                 }
             }
             row
         };
-        let frame = interface.frame(node);
-        let [normal, tangential] = frame.map(row);
-        let give = interface.bond.give();
+        let [normal, tangential] = [0, 1].map(row);
+        let mut give = interface.bond.give();
+        if let Some(point) = interface.point.first() {
+            let rough = !node.friction(&at.friction[s]).is_smooth();
+            // Next to a border the element gives nothing that a spring could stand for. With friction the spring's share would not be
+            // symmetric; it shrinks with the element, and is left out.
+            if !rough && point.compliance > RIGID * model.length / system.norms.scale {
+                give[0] += point.compliance;
+            }
+        }
         if node.mode == Mode::Fixed {
             for (row, give) in [normal, tangential].into_iter().zip(give) {
                 if give > 0.0 {

@@ -17,6 +17,18 @@ pub struct Surface {
     /// The pieces of a smooth curve through all nodes, one for each element, whose nodes are then those that the piece
     /// depends on. Empty where each element is the Lagrange curve through its own nodes.
     pub smooth: Vec<Piece>,
+    /// What each element gives beside its interpolation where a point force acts. Empty where that is nothing.
+    pub gives: Vec<PointGive>,
+}
+
+/// Flexibilities of a shear-flexible beam element under point forces ([`crate::contact::point_force`]), with L its undeformed
+/// length; zeros for any other element.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PointGive {
+    /// L / (8 GA), length by force.
+    pub shear: f64,
+    /// L³ / (32 EI), length by force; 0 leaves out what bending adds.
+    pub bending: f64,
 }
 
 /// A piece of a smooth curve, from one node to the next: a cubic whose slope at each end depends on the nodes around

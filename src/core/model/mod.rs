@@ -22,15 +22,15 @@ mod settings;
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
-pub use contact::{Bond, Contact, Facing, Piece, STENCIL, Surface};
+pub use contact::{Bond, Contact, Facing, Piece, PointGive, STENCIL, Surface};
 pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on_leg};
 pub use mesh::{ElementKind, boundary};
 pub use settings::{
-    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, Refactor, ResidualMethod, Settings,
-    SlipCount, Solver, Sticking, Strategy, Ties, Touch,
+    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, PointForce, Refactor, ResidualMethod,
+    Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch,
 };
 
 /// A checked scene.

@@ -19,6 +19,9 @@ documented! {
         pub factor: Refactor,
         /// Whether the tangent knows that the contact geometry changes. Default: consistent.
         pub geometry: Geometry,
+        /// What a beam with a shear stiffness gives where a slave node presses on it. Default: exact.
+        #[serde(skip_serializing_if = "PointForce::is_default")]
+        pub point_force: PointForce,
         /// How the sliding node's T_max enters the equations. Default: lagged.
         pub t_max: BoundUpdate,
         /// Over what the slip of Table 2's sliding row is counted. Default: increment.
@@ -65,6 +68,7 @@ impl Default for Settings {
             solver: Solver::default(),
             factor: Refactor::default(),
             geometry: Geometry::default(),
+            point_force: PointForce::default(),
             t_max: BoundUpdate::default(),
             slip: SlipCount::default(),
             sticking: Sticking::default(),
@@ -276,6 +280,30 @@ documented! {
         Consistent,
         /// It does not, as in the paper: they converge linearly where nodes slide.
         Frozen,
+    }
+}
+
+documented! {
+    /// What a beam with a shear stiffness GA gives where a slave node presses on it. Shear-rigid beams are the plain elements
+    /// always.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum PointForce {
+        /// What the beam theory says: a kink of F_n / GA in its line and a kink in its moment, which the element's polynomials
+        /// smear, are put back in closed form (page `theory`).
+        #[default]
+        Exact,
+        /// The kink in the line alone.
+        Shear,
+        /// The plain element, as in the paper.
+        Plain,
+    }
+}
+
+impl PointForce {
+    /// Whether it is what a scene that does not name it has.
+    pub fn is_default(&self) -> bool {
+        *self == PointForce::default()
     }
 }
 

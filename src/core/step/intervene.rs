@@ -150,7 +150,15 @@ impl State {
         if settings.minors == 0 || settings.majors == 0 {
             return Err(Refusal::Limits);
         }
-        let gaps = |settings: &Settings| (settings.initial_gaps, settings.adjust_gap);
+        let gaps = |settings: &Settings| {
+            let Settings {
+                initial_gaps,
+                adjust_gap,
+                point_force,
+                ..
+            } = *settings;
+            (initial_gaps, adjust_gap, point_force)
+        };
         if gaps(settings) != gaps(&self.controls.settings) {
             return Err(Refusal::StartGaps);
         }

@@ -85,9 +85,9 @@ pub enum Refusal {
     /// A friction out of bounds.
     #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
     Friction,
-    /// Gaps of the start are long past.
+    /// Gaps of the start are long past, and surfaces are made.
     #[error(
-        "initial_gaps and adjust_gap are settled when a scene is opened: set them in its file, or with --set"
+        "initial_gaps, adjust_gap and point_force are settled when a scene is opened: set them in its file, or with --set"
     )]
     StartGaps,
     /// A limit of no iterations.

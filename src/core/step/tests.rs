@@ -142,6 +142,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         rigid: true,
         endless: false,
         smooth: Vec::new(),
+        gives: Vec::new(),
     };
     let contact = |surface: usize| Contact {
         node: 0,

@@ -7,8 +7,8 @@ use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, typ
 use crate::model::documented::text;
 use crate::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
-    InitialGaps, InitialState, Jumps, Law, Mode, Plane, Refactor, ResidualMethod, Settings,
-    SlipCount, Solver, Sticking, Strategy, Ties, Touch, Update,
+    InitialGaps, InitialState, Jumps, Law, Mode, Plane, PointForce, Refactor, ResidualMethod,
+    Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch, Update,
 };
 
 macro_rules! fields {
@@ -95,6 +95,7 @@ fields!(Settings {
     solver,
     factor,
     geometry,
+    point_force,
     t_max,
     slip,
     sticking,
@@ -125,6 +126,7 @@ words!(
     Law,
     Mode,
     Plane,
+    PointForce,
     Refactor,
     ResidualMethod,
     SlipCount,

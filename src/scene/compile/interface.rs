@@ -88,6 +88,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
                 rigid: false,
                 endless: surface.endless,
                 smooth: Vec::new(),
+                gives: Vec::new(),
             });
         }
     }

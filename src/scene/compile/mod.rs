@@ -11,6 +11,7 @@ mod laws;
 mod layout;
 mod linear;
 mod monitors;
+mod point_force;
 mod pressures;
 mod renewed;
 mod tractions;
@@ -94,7 +95,13 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let dofs = layout.number(&mut bodies);
     loads.extend(linear::free_motions(spec, &bodies, &dofs));
     interface::find_rigid(&dofs, &mut surfaces)?;
-    let surfaces = surfaces.made;
+    let mut surfaces = surfaces.made;
+    point_force::find_gives(
+        spec.settings.point_force,
+        &bodies,
+        &names.nodes,
+        &mut surfaces,
+    );
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     laws::stand_upright(&dofs, &surfaces, &mut slaves);
     laws::check_corners(spec, &names, &surfaces, &slaves)?;

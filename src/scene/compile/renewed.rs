@@ -13,8 +13,8 @@ use crate::format::spec::{History, SlaveSpec, Spec};
 use crate::linear::estimate::Estimate;
 use crate::model::{Control, Model, Settings};
 
-/// Settings that more than the solver reads: nodes are moved for them, or the scene is refused.
-const DEEP: [&str; 3] = ["initial_gaps", "adjust_gap", "memory"];
+/// Settings that more than the solver reads: nodes are moved or surfaces made for them, or the scene is refused.
+const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];
 /// What of the history the model has as it is written.
 const OF_HISTORY: [&str; 5] = ["path", "increment", "increments", "least", "jumps"];
 /// What of a load says how large it is, and not what it acts on or holds.

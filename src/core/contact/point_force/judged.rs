@@ -1,0 +1,337 @@
+//! What elements give under point forces as the judge finds it: from positions and forces alone, by quadrature.
+//!
+//! The step sgn(η − ξ) and its integral are projected on Legendre's polynomials with a Gauss rule on both sides of ξ, and c_ij is the product
+//! of what the projections leave of them. None of the closed forms of [`super::Pair`] is used.
+
+use crate::contact::element::{Element, Places};
+use crate::contact::facing::{MOST, faced};
+use crate::contact::feet::{self, Foot};
+use crate::contact::point_force;
+use crate::contact::projection::SurfacePoint;
+use crate::fem::lagrange::{MAX_NODES, gauss};
+use crate::model::{Contact, PointGive, Surface};
+
+/// An interface with the forces on it.
+#[derive(Debug, Clone, Copy)]
+pub struct Loaded<'a> {
+    /// Master surfaces of the scene.
+    pub surfaces: &'a [Surface],
+    /// Slave nodes of the scene.
+    pub contacts: &'a [Contact],
+    /// Positions of all nodes.
+    pub now: &'a [[f64; 2]],
+    /// By how much each slave node alone is judged further out; empty where that is nothing.
+    pub out: &'a [[f64; 2]],
+    /// Interaction force on each slave node (Cartesian).
+    pub forces: &'a [[f64; 2]],
+}
+
+impl Loaded<'_> {
+    /// Where a slave node is judged to be.
+    pub fn point(&self, slave: usize) -> [f64; 2] {
+        let (at, out) = (self.now[self.contacts[slave].node], self.out.get(slave));
+        out.map_or(at, |way| [at[0] + way[0], at[1] + way[1]])
+    }
+}
+
+/// Rounds in which forces and angles are found.
+const ROUNDS: usize = 8;
+
+/// A slave node that is over an element that gives.
+#[derive(Debug, Clone, Copy)]
+struct Press {
+    slave: usize,
+    spot: SurfacePoint,
+    give: PointGive,
+    projected: Projected,
+    line: Line,
+    /// Force on the node along n and t of the element's line, and its part that bends the element.
+    force: [f64; 2],
+    bends: f64,
+    tilt: f64,
+    given: f64,
+}
+
+/// The line of an element at a place.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    normal: [f64; 2],
+    /// √m / (m − g k).
+    lever: f64,
+}
+
+/// All slave nodes over elements that give.
+#[derive(Debug)]
+pub struct JudgedGives {
+    rule: Vec<(f64, f64)>,
+    presses: Vec<Press>,
+}
+
+impl JudgedGives {
+    /// One with memory for so many slave nodes.
+    pub fn with_capacity(slaves: usize) -> Self {
+        JudgedGives {
+            rule: gauss(MAX_NODES),
+            presses: Vec::with_capacity(slaves),
+        }
+    }
+
+    /// Finds what the forces of a state do to elements that give.
+    pub fn find(&mut self, seen: &Loaded<'_>, feet: &mut Vec<Foot>) {
+        self.presses.clear();
+        if seen.surfaces.iter().all(|surface| surface.gives.is_empty()) {
+            return;
+        }
+        for (slave, contact) in seen.contacts.iter().enumerate() {
+            if contact.bond.is_tied() {
+                continue;
+            }
+            let (at, force) = (seen.point(slave), seen.forces[slave]);
+            let mut room = [0; MOST];
+            let surfaces = faced(contact, seen.surfaces, seen.now, &mut room);
+            feet::find(at, seen.surfaces, surfaces, seen.now, 0.0, feet);
+            let press = feet.first().and_then(|foot| {
+                let surface = &seen.surfaces[foot.spot.surface];
+                let give = point_force::of(surface, foot.spot)?;
+                let line = Line::new(seen, foot.spot, at)?;
+                let degree = Element::of(surface, foot.spot.element).degree();
+                let [c, s] = line.normal;
+                let force = [c * force[0] + s * force[1], c * force[1] - s * force[0]];
+                Some(Press {
+                    slave,
+                    spot: foot.spot,
+                    give,
+                    projected: Projected::new(&self.rule, degree, foot.spot.xi),
+                    line,
+                    force,
+                    bends: force[0],
+                    tilt: 0.0,
+                    given: 0.0,
+                })
+            });
+            self.presses.extend(press);
+        }
+        for _ in 0..ROUNDS {
+            for k in 0..self.presses.len() {
+                let (given, slope) = self.sums(&self.presses[k], None);
+                let press = &mut self.presses[k];
+                (press.given, press.tilt) = (given, slope * press.line.lever);
+                let (a, [normal, tangential]) = (press.tilt, press.force);
+                press.bends = (normal + a * tangential) / (1.0 + a * a);
+            }
+        }
+    }
+
+    /// Σ c_j F_j and Σ ∂c_j/∂ξ F_j at the place of a press, over all forces on the element; the press counts with this force in place of
+    /// its own, if one is given.
+    fn sums(&self, at: &Press, own: Option<f64>) -> (f64, f64) {
+        let element = |spot: &SurfacePoint| (spot.surface, spot.element);
+        let mut sums = (0.0, 0.0);
+        let mut add = |other: &Projected, force: f64| {
+            let (give, slope) = pair(&self.rule, &at.give, &at.projected, other);
+            sums = (sums.0 + give * force, sums.1 + slope * force);
+        };
+        for press in &self.presses {
+            let here = press.slave == at.slave;
+            if element(&press.spot) == element(&at.spot) && !(here && own.is_some()) {
+                add(&press.projected, press.bends);
+            }
+        }
+        if let Some(force) = own {
+            add(&at.projected, force);
+        }
+        sums
+    }
+
+    /// How far the surface under a slave node gives way, as a way along its outward normal; nothing where it does not give.
+    pub fn way(&self, slave: usize) -> Option<[f64; 2]> {
+        let press = self.presses.iter().find(|press| press.slave == slave)?;
+        (press.given != 0.0).then(|| press.line.normal.map(|n| n * press.given))
+    }
+
+    /// The tangent of a side, turned as the forces on its element turn it under a slave node.
+    pub fn turned(
+        &self,
+        seen: &Loaded<'_>,
+        slave: usize,
+        spot: SurfacePoint,
+        tangent: [f64; 2],
+    ) -> [f64; 2] {
+        let Some(own) = self.presses.iter().find(|press| press.slave == slave) else {
+            return tangent;
+        };
+        let surface = &seen.surfaces[spot.surface];
+        let line = Line::new(seen, spot, seen.point(slave));
+        let (Some(give), Some(line)) = (point_force::of(surface, spot), line) else {
+            return tangent;
+        };
+        let degree = Element::of(surface, spot.element).degree();
+        let there = Press {
+            spot,
+            give,
+            projected: Projected::new(&self.rule, degree, spot.xi),
+            line,
+            ..*own
+        };
+        let (_, slope) = self.sums(&there, Some(own.bends));
+        let a = slope * line.lever;
+        let across = [-tangent[1], tangent[0]];
+        let size = (1.0 + a * a).sqrt();
+        [0, 1].map(|k| (tangent[k] + a * across[k]) / size)
+    }
+}
+
+impl Line {
+    fn new(seen: &Loaded<'_>, spot: SurfacePoint, point: [f64; 2]) -> Option<Line> {
+        let element = Element::of(&seen.surfaces[spot.surface], spot.element);
+        let (places, s) = (Places::of(element.nodes, seen.now), element.shape(spot.xi));
+        let [x, d, dd] = [&s.n, &s.d, &s.dd].map(|weights| places.sum(weights));
+        let m = d[0] * d[0] + d[1] * d[1];
+        let away = (point[0] - x[0]) * dd[0] + (point[1] - x[1]) * dd[1];
+        (m > 0.0).then(|| Line {
+            normal: [d[1] / m.sqrt(), -d[0] / m.sqrt()],
+            lever: m.sqrt() / (m - away),
+        })
+    }
+}
+
+/// c_ij of two places of an element, and its derivative by the first.
+fn pair(rule: &[(f64, f64)], give: &PointGive, one: &Projected, two: &Projected) -> (f64, f64) {
+    let (xi, other, degree) = (one.xi, two.xi, one.degree);
+    let [low, high] = if xi < other { [xi, other] } else { [other, xi] };
+    let over = |f: &dyn Fn(f64) -> f64| -> f64 {
+        let pieces = [(-1.0, low), (low, high), (high, 1.0)];
+        pieces
+            .map(|(from, to)| integral(rule, from, to, f))
+            .iter()
+            .sum()
+    };
+    let sgn = |eta: f64, xi: f64| if eta < xi { -1.0 } else { 1.0 };
+    let hat = |eta: f64, xi: f64| (eta - xi).abs();
+    let side = if xi == other {
+        0.0
+    } else {
+        (xi - other).signum()
+    };
+    let mut shear = (over(&|eta| sgn(eta, xi) * sgn(eta, other)), -2.0 * side);
+    let mut bending = (
+        over(&|eta| hat(eta, xi) * hat(eta, other)),
+        over(&|eta| -sgn(eta, xi) * hat(eta, other)),
+    );
+    for k in 0..degree {
+        let square = 2.0 / (2 * k + 1) as f64;
+        shear.0 -= square * one.step[k] * two.step[k];
+        shear.1 -= square * one.step_slope[k] * two.step[k];
+        bending.0 -= square * one.hat[k] * two.hat[k];
+        bending.1 -= square * one.hat_slope[k] * two.hat[k];
+    }
+    let bends = if degree < 3 { 0.0 } else { give.bending };
+    (
+        give.shear * shear.0 + bends * bending.0,
+        give.shear * shear.1 + bends * bending.1,
+    )
+}
+
+/// The projected step at a ξ, and its projected integral; coefficients of Legendre's polynomials, with derivatives by ξ.
+#[derive(Debug, Clone, Copy)]
+struct Projected {
+    degree: usize,
+    xi: f64,
+    step: [f64; MAX_NODES],
+    step_slope: [f64; MAX_NODES],
+    hat: [f64; MAX_NODES],
+    hat_slope: [f64; MAX_NODES],
+}
+
+impl Projected {
+    fn new(rule: &[(f64, f64)], degree: usize, xi: f64) -> Self {
+        let mut all = Projected {
+            degree,
+            xi,
+            step: [0.0; MAX_NODES],
+            step_slope: [0.0; MAX_NODES],
+            hat: [0.0; MAX_NODES],
+            hat_slope: [0.0; MAX_NODES],
+        };
+        let part = |k: usize| (2 * k + 1) as f64 / 2.0;
+        for k in 0..degree {
+            let by = |from: f64, to: f64| integral(rule, from, to, &|eta| legendre(k, eta));
+            all.step[k] = part(k) * (by(xi, 1.0) - by(-1.0, xi));
+            all.step_slope[k] = -2.0 * part(k) * legendre(k, xi);
+        }
+        let (step, slope) = (all.step, all.step_slope);
+        let series = |of: &[f64; MAX_NODES], eta: f64| -> f64 {
+            let terms = of.iter().enumerate().take(degree);
+            terms.map(|(k, a)| a * legendre(k, eta)).sum()
+        };
+        // From the left end, where the integral is 1 + ξ.
+        let line = |eta: f64| 1.0 + xi + integral(rule, -1.0, eta, &|x| series(&step, x));
+        let line_slope = |eta: f64| 1.0 + integral(rule, -1.0, eta, &|x| series(&slope, x));
+        for (eta, weight) in rule {
+            let (value, slope) = (weight * line(*eta), weight * line_slope(*eta));
+            for k in 0..degree {
+                all.hat[k] += part(k) * value * legendre(k, *eta);
+                all.hat_slope[k] += part(k) * slope * legendre(k, *eta);
+            }
+        }
+        all
+    }
+}
+
+fn integral(rule: &[(f64, f64)], from: f64, to: f64, f: &dyn Fn(f64) -> f64) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let points = rule.iter().map(|(x, w)| w * f(middle + half * x));
+    half * points.sum::<f64>()
+}
+
+/// P_k(x).
+fn legendre(k: usize, x: f64) -> f64 {
+    let (mut before, mut now) = (1.0, x);
+    if k == 0 {
+        return 1.0;
+    }
+    for n in 1..k {
+        let n = n as f64;
+        (before, now) = (now, ((2.0 * n + 1.0) * x * now - n * before) / (n + 1.0));
+    }
+    now
+}
+
+/// Puts a slave node's force on it, and its reverse on the nodes of the master: at the foot, with the moment of its lever where the node is
+/// away from that.
+pub fn hand_on(
+    seen: &Loaded<'_>,
+    slave: usize,
+    foot: &Foot,
+    lever: bool,
+    contact: &mut [[f64; 2]],
+) {
+    let (node, force) = (seen.contacts[slave].node, seen.forces[slave]);
+    let element = Element::of(&seen.surfaces[foot.spot.surface], foot.spot.element);
+    let s = element.shape(foot.spot.xi);
+    let mut moment = [0.0; 2];
+    if lever && foot.spot.xi.abs() < 1.0 {
+        let (places, at) = (Places::of(element.nodes, seen.now), seen.point(slave));
+        let [x, d] = [&s.n, &s.d].map(|weights| places.sum(weights));
+        let m = d[0] * d[0] + d[1] * d[1];
+        let across = [d[1], -d[0]];
+        // (g / √m) F · t n, by which dx/dξ of the element is weighed.
+        let gap = (at[0] - x[0]) * across[0] + (at[1] - x[1]) * across[1];
+        let along = force[0] * d[0] + force[1] * d[1];
+        moment = across.map(|n| gap * along * n / (m * m));
+    }
+    for k in 0..2 {
+        contact[node][k] += force[k];
+        for ((&master, share), slope) in element.nodes.iter().zip(s.n).zip(s.d) {
+            contact[master][k] -= share * force[k] - slope * moment[k];
+        }
+    }
+}
+
+/// c_ij and ∂c_ij/∂ξ_i by quadrature, for tests of the closed forms.
+#[cfg(test)]
+pub fn quadrature(give: &PointGive, degree: usize, xi: f64, other: f64) -> (f64, f64) {
+    let rule = gauss(MAX_NODES);
+    let [one, two] = [xi, other].map(|xi| Projected::new(&rule, degree, xi));
+    pair(&rule, give, &one, &two)
+}

@@ -1,0 +1,217 @@
+//! A contact on an element that gives, linearised: its gap and its forces with all derivatives.
+//!
+//! With D_i, L_i, X_i, k and m of [`crate::contact::geometric_tangent`], T_i = (τ·D_i + g L_i)/√m the way of the node over the displaced
+//! foot, F = F_n cos α, and sums over the forces F_j on the element,
+//!
+//! ```text
+//! gap:     g + Σ c_j F_j = 0,                   tan α = (√m/(m − g k)) Σ ∂c_j/∂ξ F_j
+//! force:   f_i = A n·D_i + B T_i,               A = F_n cos α − F_t sin α,   B = F_n sin α + F_t cos α
+//! ```
+//!
+//! Without friction that is the derivative of F g + ½ c F² by the displacements: the force F (n + t tan α) on the node, its reverse on the
+//! element, and the moment of its lever g there. T_i has the moment of friction at the displaced foot as well.
+
+use super::dual::{DOFS, Dual, dot};
+use super::pair::Pair;
+use crate::contact::projection::tangent;
+use crate::fem::lagrange::{self, MAX_NODES};
+use crate::model::PointGive;
+
+const BY_NORMAL: usize = DOFS;
+const BY_TANGENTIAL: usize = DOFS + 1;
+const BY_TURN: usize = DOFS + 2;
+/// Steps in which tan α is found: each leaves tan² α of the error of the one before.
+const STEPS: usize = 12;
+
+/// What other forces on an element do at a place of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Others {
+    /// Σ c_j F_j (length).
+    pub give: f64,
+    /// Σ ∂c_j/∂ξ F_j (length).
+    pub slope: f64,
+    /// Σ ∂²c_j/∂ξ² F_j (length).
+    pub bend: f64,
+}
+
+impl Others {
+    /// Adds that of a force.
+    pub fn add(&mut self, pair: &Pair, force: f64) {
+        self.give += pair.give * force;
+        self.slope += pair.slope * force;
+        self.bend += pair.bend * force;
+    }
+}
+
+/// A slave node over an element, with the force on it.
+#[derive(Debug, Clone, Copy)]
+pub struct Over<'a> {
+    /// Position of the slave node.
+    pub slave: [f64; 2],
+    /// Positions of the element's nodes.
+    pub nodes: &'a [[f64; 2]],
+    /// Coordinate ξ of its closest point.
+    pub xi: f64,
+    /// F_n and F_t in the turned frame.
+    pub force: [f64; 2],
+    /// What the element leaves out.
+    pub give: &'a PointGive,
+    /// What the other forces on the element do here.
+    pub others: Others,
+}
+
+/// The linearisation. Degrees of freedom are x and y of the slave node, then those of the element's nodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Linearised {
+    /// n, turned by α.
+    pub normal: [f64; 2],
+    /// g + Σ c_j F_j (length).
+    pub gap: f64,
+    /// Σ c_j F_j (length).
+    pub given: f64,
+    /// c (length by force).
+    pub compliance: f64,
+    /// Derivative of the gap by F_n (length by force).
+    pub give: f64,
+    /// F = F_n cos α.
+    pub force: f64,
+    /// Its derivative by F_n.
+    pub force_slope: f64,
+    /// Its derivatives by the degrees of freedom, F_n held.
+    pub force_by: [f64; DOFS],
+    /// Generalised force on each degree of freedom.
+    pub forces: [f64; DOFS],
+    /// Derivatives of −gap and of the slip (both lengths) by the degrees of freedom.
+    pub rows: [[f64; DOFS]; 2],
+    /// Derivatives of the forces by F_n, F_t, and Σ ∂c_j/∂ξ F_j over the others.
+    pub columns: [[f64; DOFS]; 3],
+    /// Derivatives of the forces by the degrees of freedom, the components of the force held.
+    pub stiffness: [[f64; DOFS]; DOFS],
+    /// dξ by the degrees of freedom.
+    pub travel: [f64; DOFS],
+}
+
+/// n turned by the angle whose tangent is a.
+pub fn turned(normal: [f64; 2], a: f64) -> [f64; 2] {
+    let (t, cos) = (tangent(normal), 1.0 / (1.0 + a * a).sqrt());
+    [0, 1].map(|k| cos * (normal[k] + a * t[k]))
+}
+
+/// tan α of a force at a place whose lever is √m / (m − g k).
+pub fn tilt(own: &Pair, lever: f64, f_n: f64, others: &Others) -> f64 {
+    let mut a = others.slope * lever;
+    for _ in 0..STEPS {
+        a = (others.slope + own.slope * f_n / (1.0 + a * a).sqrt()) * lever;
+    }
+    a
+}
+
+/// Linearises a contact.
+pub fn linearise(over: &Over<'_>) -> Linearised {
+    let count = over.nodes.len();
+    let dofs = 2 * (count + 1);
+    let xi = travel(over);
+    let s = lagrange::shape(count, over.xi);
+    let third = lagrange::third(count, over.xi);
+    let zero = Dual::constant(0.0);
+    let mut at = [[zero; 2]; MAX_NODES];
+    let (mut to, mut d, mut dd) = ([zero; 2], [zero; 2], [zero; 2]);
+    for axis in 0..2 {
+        to[axis] = Dual::variable(over.slave[axis], axis);
+        for (i, node) in over.nodes.iter().enumerate() {
+            at[i][axis] = Dual::variable(node[axis], 2 * (i + 1) + axis);
+            to[axis] = to[axis] - xi.then(s.n[i], s.d[i]) * at[i][axis];
+            d[axis] = d[axis] + xi.then(s.d[i], s.dd[i]) * at[i][axis];
+            dd[axis] = dd[axis] + xi.then(s.dd[i], third[i]) * at[i][axis];
+        }
+    }
+    let m = dot(d, d);
+    let size = m.sqrt();
+    let t = d.map(|d| d / size);
+    let n = [t[1], zero - t[0]];
+    let gap = dot(to, n);
+    let stiffness = m - gap * dot(dd, n);
+    let pair = Pair::new(over.give, count - 1, over.xi, over.xi);
+    let [f_n, f_t] = [(0, BY_NORMAL), (1, BY_TANGENTIAL)]
+        .map(|(k, number)| Dual::variable(over.force[k], number));
+    let own_slope = xi.then(pair.slope, pair.bend + pair.cross);
+    let mut others_slope = xi.then(over.others.slope, over.others.bend);
+    others_slope.by[BY_TURN] = 1.0;
+    let lever = size / stiffness;
+    let (one, mut a) = (Dual::constant(1.0), others_slope * lever);
+    for _ in 0..STEPS {
+        a = (others_slope + own_slope * f_n / (one + a * a).sqrt()) * lever;
+    }
+    let cos = one / (one + a * a).sqrt();
+    let sin = a * cos;
+    let force = f_n * cos;
+    let own_give = xi.then(pair.give, 2.0 * pair.slope);
+    let law = gap + xi.then(over.others.give, over.others.slope) + own_give * force;
+    let (along_n, along_t) = (f_n * cos - f_t * sin, f_n * sin + f_t * cos);
+    let mut found = Linearised {
+        normal: turned(n.map(|n| n.value), a.value),
+        gap: law.value,
+        given: law.value - gap.value,
+        compliance: pair.give,
+        give: law.by[BY_NORMAL],
+        force: force.value,
+        force_slope: force.by[BY_NORMAL],
+        force_by: [0.0; DOFS],
+        forces: [0.0; DOFS],
+        rows: [[0.0; DOFS]; 2],
+        columns: [[0.0; DOFS]; 3],
+        stiffness: [[0.0; DOFS]; DOFS],
+        travel: [0.0; DOFS],
+    };
+    for i in 0..dofs {
+        let (weight, slope) = match i / 2 {
+            0 => (Dual::constant(-1.0), zero),
+            node => (
+                xi.then(s.n[node - 1], s.d[node - 1]),
+                xi.then(s.d[node - 1], s.dd[node - 1]),
+            ),
+        };
+        let axis = i % 2;
+        // −D_i and L_i: the share in u_S* − u_S, and how the element tilts.
+        let tilt = gap * slope * n[axis];
+        let way = tilt / size - weight * t[axis];
+        let part = along_t * way - along_n * weight * n[axis];
+        found.forces[i] = part.value;
+        for (column, by) in found
+            .columns
+            .iter_mut()
+            .zip([BY_NORMAL, BY_TANGENTIAL, BY_TURN])
+        {
+            column[i] = part.by[by];
+        }
+        found.stiffness[i][..dofs].copy_from_slice(&part.by[..dofs]);
+        found.rows[0][i] = -law.by[i];
+        found.rows[1][i] = -size.value * xi.by[i];
+        found.travel[i] = xi.by[i];
+        found.force_by[i] = force.by[i];
+    }
+    found
+}
+
+/// ξ of the closest point with its derivatives X_i.
+fn travel(over: &Over<'_>) -> Dual {
+    let s = lagrange::shape(over.nodes.len(), over.xi);
+    let sum = |weights: &[f64; MAX_NODES], axis: usize| -> f64 {
+        over.nodes
+            .iter()
+            .zip(weights)
+            .map(|(at, w)| w * at[axis])
+            .sum()
+    };
+    let [x, d, dd] = [&s.n, &s.d, &s.dd].map(|weights| [sum(weights, 0), sum(weights, 1)]);
+    let to = [over.slave[0] - x[0], over.slave[1] - x[1]];
+    let curvature = d[0] * d[0] + d[1] * d[1] - to[0] * dd[0] - to[1] * dd[1];
+    let mut xi = Dual::constant(over.xi);
+    for axis in 0..2 {
+        xi.by[axis] = d[axis] / curvature;
+        for i in 0..over.nodes.len() {
+            xi.by[2 * (i + 1) + axis] = (to[axis] * s.d[i] - d[axis] * s.n[i]) / curvature;
+        }
+    }
+    xi
+}

@@ -1,0 +1,139 @@
+//! Point forces on elements that give ([`crate::contact::point_force`]), at all contacts: each finds what the others on its element do.
+
+use crate::contact::element::Element;
+use crate::contact::point_force::{self, Others, Pair, tilt, turned};
+use crate::contact::projection::{SurfacePoint, projection_at};
+use crate::contact::state::ContactState;
+use crate::model::{Mode, Model, PointGive};
+
+/// Rounds in which forces along n and angles are found: each leaves tan² α of the error of the one before.
+const ROUNDS: usize = 8;
+
+/// A contact over an element that gives.
+#[derive(Debug, Clone, Copy)]
+pub struct Press {
+    /// Number of the contact.
+    pub contact: usize,
+    /// Where it is.
+    pub spot: SurfacePoint,
+    /// What the element leaves out, and its degree.
+    pub give: PointGive,
+    pub degree: usize,
+    /// F_n, and F = F_n cos α.
+    f_n: f64,
+    pub force: f64,
+    /// tan α, and n turned by it.
+    tilt: f64,
+    pub normal: [f64; 2],
+    /// √m / (m − g k), and n of the element's line.
+    lever: f64,
+    line: [f64; 2],
+    own: Pair,
+    /// What the other forces on the element do here.
+    pub others: Others,
+}
+
+impl Press {
+    fn new(model: &Model, positions: &[[f64; 2]], s: usize, node: &ContactState) -> Option<Press> {
+        let (slave, spot) = (&model.contacts[s], node.spot?);
+        let surface = &model.surfaces[spot.surface];
+        let give = point_force::of(surface, spot)?;
+        if node.corner.is_some() || slave.bond.is_tied() {
+            return None;
+        }
+        let over = projection_at(&model.surfaces, spot, positions, positions[slave.node]);
+        let degree = Element::of(surface, spot.element).degree();
+        let f_n = if node.mode == Mode::Free {
+            0.0
+        } else {
+            node.f_n
+        };
+        Some(Press {
+            contact: s,
+            spot,
+            give,
+            degree,
+            f_n,
+            force: f_n,
+            tilt: 0.0,
+            normal: over.normal,
+            lever: over.lever()?,
+            line: over.normal,
+            own: Pair::new(&give, degree, spot.xi, spot.xi),
+            others: Others::default(),
+        })
+    }
+
+    /// c_ij of this place and that of another contact on the element.
+    pub fn with(&self, other: &Press) -> Pair {
+        Pair::new(&self.give, self.degree, self.spot.xi, other.spot.xi)
+    }
+
+    /// How far the surface gives way here (length).
+    pub fn given(&self) -> f64 {
+        self.own.give * self.force + self.others.give
+    }
+
+    /// How far the node is judged outside of itself: along n of the element's line.
+    pub fn way_out(&self) -> [f64; 2] {
+        self.line.map(|n| n * self.given())
+    }
+
+    fn turn(&mut self) {
+        self.tilt = tilt(&self.own, self.lever, self.f_n, &self.others);
+        self.force = self.f_n / (1.0 + self.tilt * self.tilt).sqrt();
+        self.normal = turned(self.line, self.tilt);
+    }
+}
+
+/// All contacts over elements that give, element by element.
+#[derive(Debug, Default)]
+pub struct PointForces {
+    presses: Vec<Press>,
+}
+
+impl PointForces {
+    /// Finds them for contacts in these states.
+    pub fn find(&mut self, model: &Model, positions: &[[f64; 2]], contacts: &[ContactState]) {
+        let nodes = contacts.iter().enumerate();
+        let found = nodes.filter_map(|(s, node)| Press::new(model, positions, s, node));
+        self.presses.clear();
+        self.presses.extend(found);
+        let key = |press: &Press| (press.spot.surface, press.spot.element, press.contact);
+        self.presses.sort_unstable_by_key(key);
+        for group in self.presses.chunk_by_mut(on_one_element) {
+            settle(group);
+        }
+    }
+
+    /// The contacts, those on one element together.
+    pub fn groups(&self) -> impl Iterator<Item = &[Press]> {
+        self.presses.chunk_by(on_one_element)
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[Press] {
+        &self.presses
+    }
+}
+
+fn on_one_element(a: &Press, b: &Press) -> bool {
+    (a.spot.surface, a.spot.element) == (b.spot.surface, b.spot.element)
+}
+
+/// Finds angles and forces of the contacts on one element.
+fn settle(group: &mut [Press]) {
+    if let [alone] = group {
+        return alone.turn();
+    }
+    for _ in 0..ROUNDS {
+        for i in 0..group.len() {
+            let mut others = Others::default();
+            for (_, other) in group.iter().enumerate().filter(|(j, _)| *j != i) {
+                others.add(&group[i].with(other), other.force);
+            }
+            group[i].others = others;
+        }
+        group.iter_mut().for_each(Press::turn);
+    }
+}

@@ -1,0 +1,62 @@
+//! What the elements of surfaces give under point forces ([`crate::contact::point_force`]): those that are elements of a beam with a
+//! shear stiffness.
+
+use crate::fem::lagrange::{gauss, shape};
+use crate::model::{Beam, Body, BodyKind, Node, PointForce, PointGive, Surface};
+use std::collections::HashMap;
+
+/// Finds it for all surfaces. Smooth ones do not follow a beam's line, and have nothing.
+pub(super) fn find_gives(
+    wanted: PointForce,
+    bodies: &[Body],
+    nodes: &[Node],
+    surfaces: &mut [Surface],
+) {
+    let beams = bodies.iter().filter_map(|body| match &body.kind {
+        BodyKind::Beam(beam) => Some((beam, beam.ga?)),
+        _ => None,
+    });
+    let mut gives = HashMap::new();
+    for (beam, ga) in beams.filter(|_| wanted != PointForce::Plain) {
+        for element in &beam.elements {
+            gives.insert(walked(element), give(wanted, beam, ga, element, nodes));
+        }
+    }
+    let smooth = |surface: &Surface| !surface.smooth.is_empty();
+    for surface in surfaces.iter_mut().filter(|surface| !smooth(surface)) {
+        let found = |element: &Vec<usize>| gives.get(&walked(element)).copied();
+        let all = surface.elements.iter().map(found);
+        if all.clone().any(|give| give.is_some()) {
+            surface.gives = all.map(Option::unwrap_or_default).collect();
+        }
+    }
+}
+
+/// The nodes of an element, whichever way it is walked.
+fn walked(element: &[usize]) -> Vec<usize> {
+    let mut nodes = element.to_vec();
+    if nodes.first() > nodes.last() {
+        nodes.reverse();
+    }
+    nodes
+}
+
+fn give(wanted: PointForce, beam: &Beam, ga: f64, element: &[usize], nodes: &[Node]) -> PointGive {
+    let count = element.len();
+    let speed = |xi: f64| {
+        let slopes = shape(count, xi).d;
+        let along = |axis: usize| -> f64 {
+            let parts = element.iter().zip(slopes);
+            parts.map(|(&node, d)| d * nodes[node].at[axis]).sum()
+        };
+        along(0).hypot(along(1))
+    };
+    let length: f64 = gauss(count).iter().map(|(xi, w)| w * speed(*xi)).sum();
+    PointGive {
+        shear: length / (8.0 * ga),
+        bending: match wanted {
+            PointForce::Exact => length.powi(3) / (32.0 * beam.ei),
+            _ => 0.0,
+        },
+    }
+}
