@@ -124,7 +124,7 @@ fn at_2_degrees_the_column_converges_too() {
     assert!(rate > 2.0, "order {rate}: {errors:?}");
 }
 
-/// Newton's method stays what it is: majors as many as without the kinks.
+/// With a term of the tangent left out they would be many times as many.
 #[test]
 fn major_iterations_converge_quadratically() {
     for (name, angle) in [(SMOOTH, "0"), (ROUGH, "2")] {
@@ -138,7 +138,7 @@ fn major_iterations_converge_quadratically() {
             run.accepted.iter().map(|a| a.majors).sum::<u32>()
         });
         println!("{name}: majors {majors:?}");
-        assert!(majors[0] <= majors[1] + 10, "{name}: {majors:?}");
+        assert!(10 * majors[0] <= 11 * majors[1], "{name}: {majors:?}");
     }
 }
 
