@@ -108,6 +108,17 @@ impl Bodies {
         }
     }
 
+    /// Turns the normals of contacts over elements that give, as the forces at hand turn them.
+    fn turn_normals(&mut self, contacts: &mut [ContactState]) {
+        if self.system.has_points {
+            let (points, positions) = (&mut self.system.points, &self.system.positions);
+            points.find(&self.model, positions, contacts);
+            for press in points.all() {
+                contacts[press.contact].normal = press.normal;
+            }
+        }
+    }
+
     fn scales(&self, tolerance: f64, after: &Norms) -> Scales {
         Scales {
             length: self.model.length,
@@ -193,13 +204,7 @@ impl Source for Bodies {
         for ((state, contact), friction) in all {
             ground.stand(state, contact, friction, anew);
         }
-        if self.system.has_points {
-            let (points, positions) = (&mut self.system.points, &self.system.positions);
-            points.find(&self.model, positions, contacts);
-            for press in points.all() {
-                contacts[press.contact].normal = press.normal;
-            }
-        }
+        self.turn_normals(contacts);
     }
 
     fn held_in_corner(
@@ -335,6 +340,8 @@ impl Source for Bodies {
             }
             changed = true;
         }
+        // A restored state finds its normals from the same forces.
+        self.turn_normals(contacts);
         changed
     }
 
