@@ -387,8 +387,10 @@ impl Ground<'_> {
             ..spot
         };
         let sticks = node.mode == Mode::Fixed && surface.rigid && !surface.endless && near;
-        let is_corner =
-            || self.half_angle(end, node.f_n).is_some_and(|half| half > STRAIGHT);
+        let is_corner = || {
+            self.half_angle(end, node.f_n)
+                .is_some_and(|half| half > STRAIGHT)
+        };
         if sticks && is_corner() { end } else { spot }
     }
 

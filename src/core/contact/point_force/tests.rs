@@ -193,18 +193,10 @@ fn without_friction_there_is_one_potential() {
     }
     // No rigid motion does work, a turn about the origin included.
     for (a, b) in [(1.0, 0.0), (0.0, 1.0)] {
-        let work: f64 = (0..n)
-            .map(|i| at.forces[i] * if i % 2 == 0 { a } else { b })
-            .sum();
+        let work: f64 = (0..n).map(|i| at.forces[i] * [a, b][i % 2]).sum();
         assert!(work.abs() < 1e-15);
     }
-    let turn = |i: usize| {
-        if i % 2 == 0 {
-            -x[i / 2][1]
-        } else {
-            x[i / 2][0]
-        }
-    };
+    let turn = |i: usize| [-x[i / 2][1], x[i / 2][0]][i % 2];
     let work: f64 = (0..n).map(|i| at.forces[i] * turn(i)).sum();
     assert!(work.abs() < 1e-15, "{work}");
 }
