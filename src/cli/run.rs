@@ -382,6 +382,7 @@ impl<'a> Run<'a> {
                     event.load_factor,
                     failure,
                 );
+                self.tell_marks();
                 tell(&format!("{name}: {told}"));
                 if self.solver.stepper().is_none() {
                     // Why, an attached solver alone knows.
@@ -390,27 +391,28 @@ impl<'a> Run<'a> {
                 }
                 let (state, model) = (self.solver.state().clone(), self.solver.model().clone());
                 let mut scratch = solver(model);
-                for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
-                    tell(&format!("  {line}"));
-                }
                 let remedies = remedies::command(self.tally.scene);
                 tell(&format!(
                     "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
                 ));
+                // The limit load comes last.
+                for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
+                    tell(&format!("  {line}"));
+                }
                 Exit::Unconverged
             }
         }
     }
 
-    /// Tells whether the accepted states are the stable path that was asked for; the exit code says it, too.
-    fn tell_branches(&self) -> Exit {
+    /// Tells where the accepted states leave the branch of stable equilibrium.
+    fn tell_marks(&self) {
         let Tally {
             scene,
             jumps,
             losses,
             ..
         } = &self.tally;
-        let (name, model) = (&scene.name, &scene.model);
+        let name = &scene.name;
         let loads = |all: &[f64]| {
             let first: Vec<String> = all.iter().take(MOST_STRETCHES).map(|&x| four(x)).collect();
             let more = match all.len().saturating_sub(MOST_STRETCHES) {
@@ -425,6 +427,18 @@ impl<'a> Run<'a> {
                 "{name}: jumped to another branch of equilibrium at load {at}"
             ));
         }
+        if !losses.is_empty() {
+            let at = loads(losses);
+            tell(&format!(
+                "{name}: equilibrium lost its stability at load {at}; what follows is no answer that a structure stays in (--stability shows each state, page jumps)"
+            ));
+        }
+    }
+
+    /// Tells whether the accepted states are the stable path that was asked for; the exit code says it, too.
+    fn tell_branches(&self) -> Exit {
+        let (name, model) = (&self.tally.scene.name, &self.tally.scene.model);
+        self.tell_marks();
         let event = self.solver.event();
         if event.is_cut_short(model) {
             let (arc, load) = (four(event.arc.unwrap_or(f64::NAN)), event.load_factor);
@@ -435,16 +449,11 @@ impl<'a> Run<'a> {
             ));
             return Exit::Unconverged;
         }
-        if losses.is_empty() {
-            return Exit::Good;
-        }
-        let at = loads(losses);
-        tell(&format!(
-            "{name}: equilibrium lost its stability at load {at}; what follows is no answer that a structure stays in (--stability shows each state, page jumps)"
-        ));
         match model.jumps {
-            Jumps::Accept => Exit::Good,
-            _ => Exit::Unconverged,
+            Jumps::Cut | Jumps::Stop | Jumps::Dynamic if !self.tally.losses.is_empty() => {
+                Exit::Unconverged
+            }
+            _ => Exit::Good,
         }
     }
 

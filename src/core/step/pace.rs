@@ -113,7 +113,8 @@ impl Expected {
     /// Whether a motion is beyond what is expected; `cuts` says whether halves can decide.
     pub(super) fn is_exceeded(&self, motion: f64, cuts: bool) -> bool {
         let expected = if cuts { self.least() } else { self.tangent };
-        let off = |[_, last]: [f64; 2]| !self.holds && motion > FASTER * last;
+        let faster = FASTER * self.ratio / RATIO;
+        let off = |[_, last]: [f64; 2]| !self.holds && motion > faster * last;
         motion > self.ratio * expected || self.before.is_some_and(off)
     }
 }
