@@ -133,10 +133,11 @@ impl Clamped {
                     _ => [-n[node], d[node] / half],
                 }
             };
-            for i in 0..size {
-                for j in 0..size {
-                    let ([a, b], [c, d]) = (row(i), row(j));
-                    matrix[i][j] += w * half * (self.ga * a * c + self.ei.unwrap_or(0.0) * b * d);
+            for (i, line) in matrix.iter_mut().enumerate() {
+                let [a, b] = row(i);
+                for (j, entry) in line.iter_mut().enumerate().take(size) {
+                    let [c, d] = row(j);
+                    *entry += w * half * (self.ga * a * c + self.ei.unwrap_or(0.0) * b * d);
                 }
             }
         }
