@@ -97,6 +97,7 @@ fn numbers_of_the_csv_read_back_to_the_bits_of_the_solver() {
         if !matches!(event.outcome, Outcome::Increment { .. }) {
             continue;
         }
+        values.clear();
         stepper.monitors(&mut values);
         let row = table.next().unwrap();
         let monitors = stepper.model().monitors.iter().zip(&values);
