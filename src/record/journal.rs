@@ -543,16 +543,17 @@ pub fn newest() -> Result<PathBuf, JournalError> {
 
 /// A digest of a state's bits, over its text in RON, in which floats are exact.
 pub fn digest(state: &State) -> String {
+    let state = state.digested();
     #[cfg(mutants)]
-    let state = &match crate::mutants::is_active("digest-without-contacts") {
+    let state = match crate::mutants::is_active("digest-without-contacts") {
         true => State {
             nodes: Vec::new(),
-            ..state.clone()
+            ..state
         },
-        false => state.clone(),
+        false => state,
     };
     let mut digest = Digest::default();
-    match notation::line_to(&mut digest, state) {
+    match notation::line_to(&mut digest, &state) {
         Ok(()) => digest.to_string(),
         // No state is known that RON cannot take; a digest that equals no other says so.
         Err(error) => format!("none: {error}"),

@@ -82,7 +82,8 @@ fn same_tables(folder: &Path, name: &str) {
     assert_eq!(code, own_code, "{name}: {err}, and by itself {own_err}");
     for (own, attached) in own.iter().zip(&attached) {
         let read = |file: &String| std::fs::read_to_string(folder.join(file)).unwrap();
-        let (own, attached) = (read(own), read(attached));
+        // An attached solver has no solids of ours whose stretch could be found.
+        let (own, attached) = (without_stretch(&read(own)), read(attached));
         let other = own
             .lines()
             .zip(attached.lines())
@@ -381,4 +382,20 @@ fn a_journal_leads_to_the_same_bits_against_the_solver_and_to_others_against_ano
         .unwrap();
     assert_eq!(code(&none), 2, "{}", out(&none));
     assert!(err(&none).contains("-- COMMAND"), "{}", err(&none));
+}
+
+/// A table without its last column, where that is `worst_stretch`.
+fn without_stretch(table: &str) -> String {
+    if !table
+        .lines()
+        .next()
+        .is_some_and(|head| head.ends_with(",worst_stretch"))
+    {
+        return table.to_owned();
+    }
+    let cut = |line: &str| {
+        line.rsplit_once(',')
+            .map(|(rest, _)| rest.to_owned() + "\n")
+    };
+    table.lines().filter_map(cut).collect()
 }

@@ -25,6 +25,8 @@ const FASTER: f64 = 2.5;
 const OFF: f64 = 0.5;
 /// Cosine of the angle between two changes of the loads that count as parallel.
 const PARALLEL: f64 = 0.999;
+/// Rates of loading that differ by less than this part are the same.
+const SAME: f64 = 1e-9;
 
 /// What is known of how fast the scene moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -32,15 +34,15 @@ pub struct Pace {
     /// Largest displacement of the present attempt's first major iteration.
     pub predicted: f64,
     /// Sum of the largest displacements of its further major iterations.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub corrected: f64,
-    /// Largest displacement that the fastest accepted increment since the last jump would make over `span`.
+    /// Largest displacement by load factor of the fastest accepted increment since the last jump, as over `span`.
     pub fastest: f64,
-    /// Largest displacement of the last accepted increment.
-    #[serde(default)]
+    /// Largest displacement by load factor of the last accepted increment.
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub last: f64,
     /// Load factors between which the last accepted increment went.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_at_zero")]
     pub span: [f64; 2],
     /// The increment that is suspected, of which the present one is a part.
     pub suspect: Option<Suspect>,
@@ -72,7 +74,27 @@ pub(super) struct Expected {
     ratio: f64,
 }
 
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+fn is_at_zero(span: &[f64; 2]) -> bool {
+    *span == [0.0; 2]
+}
+
 impl Pace {
+    /// What revisions before these measures knew of it: digests of states are over that ([`State::digested`]).
+    ///
+    /// [`State::digested`]: crate::step::state::State::digested
+    pub(super) fn digested(self) -> Pace {
+        Pace {
+            corrected: 0.0,
+            last: 0.0,
+            span: [0.0; 2],
+            ..self
+        }
+    }
+
     /// The motions that are expected over a span.
     pub(super) fn expected(&self, model: &Model, span: [f64; 2]) -> Expected {
         let before = match self.fastest > 0.0 {
@@ -82,7 +104,8 @@ impl Pace {
         Expected {
             tangent: self.predicted,
             holds: self.corrected <= OFF * self.predicted,
-            before: before.map(|times| [self.fastest * times, self.last * times]),
+            before: before
+                .map(|times| [self.fastest, self.last].map(|rate| rate * times * length(span))),
             ratio: if self.over { RATIO_OVER } else { RATIO },
         }
     }
@@ -90,8 +113,9 @@ impl Pace {
     /// Takes an accepted motion over a span into account.
     pub(super) fn take(&mut self, model: &Model, motion: f64, span: [f64; 2]) {
         let carried = parallel(model, self.span, span).map_or(0.0, |times| self.fastest * times);
-        self.fastest = carried.max(motion);
-        (self.last, self.span) = (motion, span);
+        let rate = motion / length(span);
+        self.fastest = carried.max(rate);
+        (self.last, self.span) = (rate, span);
         // A suspected increment that is passed is no place to go back to.
         let passed = |suspect: &Suspect| {
             let whole = suspect.sub_increment;
@@ -126,7 +150,7 @@ impl Suspect {
     }
 }
 
-/// How many times as much the loads, pressures and prescribed motions change over one span of the load factor as over another.
+/// How many times as much the loads, pressures and prescribed motions change by load factor over one span as over another.
 /// `None` where they change in another way.
 fn parallel(model: &Model, before: [f64; 2], now: [f64; 2]) -> Option<f64> {
     let loads = model.loads.iter().map(|load| (load.value, &load.scale));
@@ -158,7 +182,21 @@ fn parallel(model: &Model, before: [f64; 2], now: [f64; 2]) -> Option<f64> {
         add(change(before), change(now));
     }
     let both = (there * here).sqrt();
-    (both > 0.0 && product.abs() >= PARALLEL * both).then(|| (here / there).sqrt())
+    if both == 0.0 || product.abs() < PARALLEL * both {
+        return None;
+    }
+    let times = (here / there).sqrt() * length(before) / length(now);
+    // Loads that are linear in the load factor have the same rate, to the bit.
+    Some(if (times - 1.0).abs() < SAME {
+        1.0
+    } else {
+        times
+    })
+}
+
+/// Length of a span.
+fn length([from, to]: [f64; 2]) -> f64 {
+    (to - from).abs()
 }
 
 /// Largest size of a factor over the path.
@@ -210,8 +248,8 @@ mod tests {
             let pace = Pace {
                 predicted,
                 corrected,
-                fastest,
-                last,
+                fastest: fastest / 0.1,
+                last: last / 0.1,
                 span: [0.0, 0.1],
                 ..Pace::default()
             };
@@ -247,7 +285,7 @@ mod tests {
         let pressed: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 1.0)];
         let pulled: &[(f64, f64)] = &[(1.0, 0.0), (2.0, 5.0)];
         let two_steps = model(&[pressed, pulled]);
-        assert_eq!(parallel(&two_steps, [0.0, 0.5], [0.5, 0.75]), Some(0.5));
+        assert_eq!(parallel(&two_steps, [0.0, 0.5], [0.5, 0.75]), Some(1.0));
         assert_eq!(
             parallel(&two_steps, [0.9, 1.0], [1.0, 1.1]),
             None,

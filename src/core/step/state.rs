@@ -79,7 +79,7 @@ pub struct State {
     #[serde(default)]
     pub pace: Pace,
     /// What is known of the stability of the accepted states.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "StabilityWatch::is_new")]
     pub watch: StabilityWatch,
     /// How sliding is held back in the present attempt ([`crate::step::brake`]). `None` where it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -263,6 +263,16 @@ impl State {
             settings.slip = SlipCount::Major;
         }
         settings
+    }
+
+    /// What digests of the state are over: all but what revisions after the first journals remember besides, so that their
+    /// digests still hold.
+    pub fn digested(&self) -> State {
+        State {
+            pace: self.pace.digested(),
+            watch: StabilityWatch::default(),
+            ..self.clone()
+        }
     }
 
     /// Arc from the start of the history to that of the present increment. `None` under load control.

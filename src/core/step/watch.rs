@@ -40,6 +40,11 @@ pub struct StabilityLoss {
 }
 
 impl StabilityWatch {
+    /// Whether nothing was accepted yet.
+    pub(super) fn is_new(&self) -> bool {
+        *self == StabilityWatch::default()
+    }
+
     /// Whether to look at the end of an increment of so many major iterations, where a look costs as much as `look` of them.
     pub(super) fn is_due(&self, majors: u32, look: f64) -> bool {
         f64::from(self.majors.saturating_add(majors)) * SHARE >= look
