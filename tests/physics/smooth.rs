@@ -52,7 +52,8 @@ fn a_smooth_column_is_passed_with_every_increment() {
         let run = run(&scene("02-two-cantilevers-smooth", &set));
         println!("02 refine {refine} by {increment}: {}", majors(&run));
         assert!(
-            run.accepted.len() < 255,
+            // Where the column gives way, some increments are halved to see whether they jump.
+            run.accepted.len() < 260,
             "{} increments",
             run.accepted.len()
         );

@@ -81,6 +81,19 @@ pub(super) struct Dense {
     pub lengths: usize,
 }
 
+impl Dense {
+    /// Takes each motion times its lever as unknown.
+    pub fn divide_by(&mut self, levers: &[f64]) {
+        for matrix in [&mut self.condensed, &mut self.given_way] {
+            for (j, mut column) in matrix.column_iter_mut().enumerate() {
+                for (i, entry) in column.iter_mut().enumerate() {
+                    *entry /= levers[i] * levers[j];
+                }
+            }
+        }
+    }
+}
+
 /// Linear conditions on the motions in c.
 #[derive(Default)]
 pub(super) struct Conditions {
@@ -95,6 +108,16 @@ pub(super) struct Conditions {
 }
 
 impl Conditions {
+    /// Takes each motion times its lever as unknown.
+    pub fn divide_by(&mut self, levers: &[f64]) {
+        let springs = self.springs.iter_mut().map(|(row, _)| row);
+        for row in self.motion.iter_mut().chain(&mut self.force).chain(springs) {
+            row.iter_mut()
+                .zip(levers)
+                .for_each(|(x, lever)| *x /= lever);
+        }
+    }
+
     /// Adds the springs to S + T.
     pub fn stiffen(&self, condensed: &mut DMatrix<f64>) {
         for (row, stiffness) in &self.springs {

@@ -32,6 +32,8 @@ pub struct Tangent {
     pivoted: Vec<bool>,
     /// By equation, whether it is one of lengths.
     lengths: Vec<bool>,
+    /// By equation, what makes a motion a length: 1, and for rotations the scene's length.
+    levers: Vec<f64>,
     /// The factors, and the equations c of their dense part, ascending.
     factors: Option<(Vec<usize>, SymmetricFactors)>,
 }
@@ -46,9 +48,11 @@ impl Tangent {
         let pattern = Arc::new(Pattern::new(model.dofs.equations, entries));
         assembly.bind(&model.dofs, &pattern, true);
         let mut lengths = vec![false; model.dofs.equations];
-        for (kind, equation) in system.sizes.kind.iter().zip(&model.dofs.equation) {
+        let mut levers = vec![1.0; model.dofs.equations];
+        for (dof, equation) in model.dofs.equation.iter().enumerate() {
             if let Some(e) = equation {
-                lengths[*e] = *kind == Balanced::Length;
+                lengths[*e] = system.sizes.kind[dof] == Balanced::Length;
+                levers[*e] = system.sizes.lever(dof).unwrap_or(1.0);
             }
         }
         Tangent {
@@ -57,6 +61,7 @@ impl Tangent {
             pattern,
             pivoted: pivoted(model, &lengths),
             lengths,
+            levers,
             factors: None,
         }
     }
@@ -69,13 +74,21 @@ impl Tangent {
 
     /// `None` where round-off decides, or where there are too many unknowns.
     fn assess(&mut self, system: &System, model: &Model, at: &At<'_>) -> Option<Stability> {
+        if self.pattern.size() == 0 {
+            // Nothing can move.
+            return Some(Stability::Stable);
+        }
         let last = self.reached(system, model, at);
         if last.len() > MOST {
             return None;
         }
         self.assemble(&system.sizes, model, at);
         let mut dense = self.condense(system, model, at, last.clone())?;
-        let conditions = conditions(system, model, at, &last)?;
+        let mut conditions = conditions(system, model, at, &last)?;
+        // In one unit for all motions, so that what counts as zero does not depend on the user's units.
+        let levers: Vec<f64> = last.iter().map(|&e| self.levers[e]).collect();
+        dense.divide_by(&levers);
+        conditions.divide_by(&levers);
         conditions.stiffen(&mut dense.condensed);
         let basis = conditions.admissible(last.len());
         if conditions.slides {

@@ -94,7 +94,10 @@ impl Stepper {
         };
         let cuts = matches!(self.model.jumps, Jumps::Cut | Jumps::Stop);
         if trip.exceeds || landing.unstable.is_some() && cuts {
-            if let Some(tried) = self.try_parts(&trip, &why) {
+            // A state that is accepted against a law is not tried in parts, but marked.
+            if landing.marked.is_none()
+                && let Some(tried) = self.try_parts(&trip, &why)
+            {
                 return tried;
             }
             landing.jumped = trip.exceeds && (self.state.pace.over || !trip.follows());
