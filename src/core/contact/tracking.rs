@@ -120,7 +120,9 @@ impl Ground<'_> {
         let on = faced(slave, self.surfaces, self.positions, &mut room);
         let previous = previous.filter(|spot| on.contains(&spot.surface));
         let spot = project(at, self.surfaces, on, self.positions, previous)?;
-        let touches = slave.bond.is_hard() && slave.overlap == 0.0;
+        // Over an element that gives, a node that presses is as far inside as that gives.
+        let gives = point_force::of(&self.surfaces[spot.surface], spot).is_some();
+        let touches = slave.bond.is_hard() && slave.overlap == 0.0 && !gives;
         Some(match touches {
             true => spot,
             false => sharpen(at, self.surfaces, spot, self.positions),

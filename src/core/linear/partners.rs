@@ -185,22 +185,17 @@ fn pair_up(interfaces: &mut [Interface], group: &[Press], model: &Model, pattern
             let found = others().map(|other| places(interfaces, press, other, model, pattern));
             interfaces[press.contact].partners = found.collect();
         }
-        let slopes: Vec<f64> = others()
-            .map(|other| {
-                interfaces[other.contact]
-                    .point
-                    .first()
-                    .map_or(0.0, |p| p.force_slope)
-            })
-            .collect();
-        let partners = interfaces[press.contact].partners.iter_mut();
-        for ((partner, other), slope) in partners.zip(others()).zip(slopes) {
+        let mut partners = std::mem::take(&mut interfaces[press.contact].partners);
+        for (partner, other) in partners.iter_mut().zip(others()) {
             let (pair, back) = (press.with(other), other.with(press));
             partner.give = pair.give;
             partner.slopes = [pair.slope, back.slope];
             partner.cross = pair.cross;
-            (partner.force, partner.force_slope) = (other.force, slope);
+            let point = interfaces[other.contact].point.first();
+            partner.force_slope = point.map_or(0.0, |point| point.force_slope);
+            partner.force = other.force;
         }
+        interfaces[press.contact].partners = partners;
     }
 }
 
