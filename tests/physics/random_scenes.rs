@@ -43,7 +43,6 @@ fn none_is_wrong_on_smooth_surfaces_either() {
 #[test]
 fn increments_whose_halves_all_fail_are_finished_on_a_way_round_and_none_is_wrong() {
     for (number, by) in [
-        (25, Detour::Newton),
         (34, Detour::Held),
         (39, Detour::Section),
         (96, Detour::Section),
