@@ -14,6 +14,7 @@ use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
 use crate::linear::drag::add_drag;
+use crate::linear::estimate::Estimate;
 use crate::linear::norms::Norms;
 use crate::linear::point_forces::PointForces;
 use crate::linear::singular::{self, Singular};
@@ -232,6 +233,7 @@ impl Source for Bodies {
         let same = is_laid_out_alike(&self.model, model);
         if same {
             self.system.sizes = Sizes::new(model);
+            self.system.estimate = Estimate::of(model);
             self.system.done = Work::default();
             self.tangent = None;
             self.model = model.clone();
