@@ -425,7 +425,11 @@ impl Source for Bodies {
             self.points.find(model, &bench.before, at.accepted.contacts);
             for press in self.points.all() {
                 let (out, way) = (&mut bench.out[1][press.contact], press.way_out());
-                *out = [0, 1].map(|k| out[k] + way[k]);
+                let was = at.accepted.contacts[press.contact];
+                let deep = model.contacts[press.contact].bond.give()[0] * was.f_n;
+                // A bond gives way along n of the element's line as well, not along the turned one.
+                let along = |k: usize| deep * (press.line[k] - was.normal[k]);
+                *out = [0, 1].map(|k| out[k] + way[k] + along(k));
             }
         }
         let [out, was_out] = &bench.out;
