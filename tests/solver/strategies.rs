@@ -236,7 +236,7 @@ fn the_ladder_goes_on_with_friction_where_table_2_cycles() {
     }
 }
 
-/// The way up ends at a limit point, near P = 1.837 on this mesh. Each run lets go less than the least of its increments, a
+/// The way up ends at a limit point, near P = 1.783 on this mesh. Each run lets go less than the least of its increments, a
 /// 64th, below it.
 #[test]
 fn at_a_limit_point_the_ladder_ends_at_the_same_load_with_any_increment() {
@@ -256,7 +256,7 @@ fn at_a_limit_point_the_ladder_ends_at_the_same_load_with_any_increment() {
         .iter()
         .fold(f64::INFINITY, |least, end| least.min(end.1));
     assert!(above < below, "{ends:?}");
-    assert!((above - 1.837).abs() < 1e-4, "{ends:?}");
+    assert!((above - 1.7828).abs() < 1e-4, "{ends:?}");
 }
 
 /// Beyond, the next state of equilibrium is far; sliding that is held back leads there from any increment.
@@ -268,6 +268,8 @@ fn past_a_limit_point_the_ladder_comes_to_the_same_state_with_any_increment_and_
                 ("friction.angle", angle),
                 ("history.increment", increment),
                 ("refine", "4"),
+                // Its limit points are what is wanted here: without them nothing jumps at 5 degrees.
+                ("settings.point_force", "plain"),
             ];
             let run = run(&scene("02-two-cantilevers-rough", &set));
             assert!(run.failure.is_none(), "{set:?}: {:?}", run.failure);

@@ -136,7 +136,14 @@ fn old_factors_lead_to_the_same_answers_with_fewer_factorizations() {
         (BLOCKS, &[("settings.solver", "augmented")]),
         (BLOCKS, &[("materials.m.update", "updated")]),
         ("04-cantilever-rigid-circle", &circle),
-        ("02-two-cantilevers-smooth", &[("history.increment", "0.1")]),
+        // Bodies that give under point forces are not condensed by themselves, and have no factors to keep.
+        (
+            "02-two-cantilevers-smooth",
+            &[
+                ("history.increment", "0.1"),
+                ("settings.point_force", "plain"),
+            ],
+        ),
     ] {
         let with = |factor| {
             let set: Vec<_> = set

@@ -197,7 +197,8 @@ impl Judge {
         if let (Some(found), true) = (foot, soft || way.is_some()) {
             if soft {
                 let n = outward(&found, seen.surfaces, seen.now);
-                given = bond.give()[0] * dot(force, n);
+                let f_n = self.gives.normal_force(slave).unwrap_or(dot(force, n));
+                given = bond.give()[0] * f_n;
                 point = [0, 1].map(|k| point[k] + given * n[k]);
             }
             let feet = &mut self.feet;

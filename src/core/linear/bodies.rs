@@ -14,6 +14,7 @@ use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::SolveError;
 use crate::linear::drag::add_drag;
+use crate::linear::estimate::Estimate;
 use crate::linear::norms::Norms;
 use crate::linear::point_forces::PointForces;
 use crate::linear::singular::{self, Singular};
@@ -232,6 +233,7 @@ impl Source for Bodies {
         let same = is_laid_out_alike(&self.model, model);
         if same {
             self.system.sizes = Sizes::new(model);
+            self.system.estimate = Estimate::of(model);
             self.system.done = Work::default();
             self.tangent = None;
             self.model = model.clone();
@@ -423,7 +425,11 @@ impl Source for Bodies {
             self.points.find(model, &bench.before, at.accepted.contacts);
             for press in self.points.all() {
                 let (out, way) = (&mut bench.out[1][press.contact], press.way_out());
-                *out = [0, 1].map(|k| out[k] + way[k]);
+                let was = at.accepted.contacts[press.contact];
+                let deep = model.contacts[press.contact].bond.give()[0] * was.f_n;
+                // A bond gives way along n of the element's line as well, not along the turned one.
+                let along = |k: usize| deep * (press.line[k] - was.normal[k]);
+                *out = [0, 1].map(|k| out[k] + way[k] + along(k));
             }
         }
         let [out, was_out] = &bench.out;

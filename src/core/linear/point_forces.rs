@@ -27,7 +27,7 @@ pub struct Press {
     pub normal: [f64; 2],
     /// √m / (m − g k), and n of the element's line.
     lever: f64,
-    line: [f64; 2],
+    pub line: [f64; 2],
     own: Pair,
     /// What the other forces on the element do here.
     pub others: Others,

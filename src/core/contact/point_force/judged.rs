@@ -149,6 +149,12 @@ impl JudgedGives {
         (press.given != 0.0).then(|| press.line.normal.map(|n| n * press.given))
     }
 
+    /// F_n of a slave node along the turned n; nothing where its element does not give.
+    pub fn normal_force(&self, slave: usize) -> Option<f64> {
+        let press = self.presses.iter().find(|press| press.slave == slave)?;
+        Some(press.bends * (1.0 + press.tilt * press.tilt).sqrt())
+    }
+
     /// The tangent of a side, turned as the forces on its element turn it under a slave node.
     pub fn turned(
         &self,

@@ -60,7 +60,8 @@ pub fn turned_end(surface: &Surface, end: SurfacePoint, slope: [f64; 2], f_n: f6
     };
     let degree = Element::of(surface, end.element).degree();
     let size = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
-    let a = Pair::new(&give, degree, end.xi, end.xi).slope * f_n / size;
+    let own = Pair::new(&give, degree, end.xi, end.xi);
+    let a = tilt(&own, 1.0 / size, f_n, &Others::default());
     let across = tangent(slope);
     [0, 1].map(|k| slope[k] + a * across[k])
 }
