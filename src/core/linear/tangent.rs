@@ -85,9 +85,7 @@ impl Tangent {
         self.assemble(&system.sizes, model, at);
         let mut dense = self.condense(system, model, at, last.clone())?;
         let mut conditions = conditions(system, model, at, &last)?;
-        // In one unit for all motions, so that what counts as zero does not depend on the user's units.
         let levers: Vec<f64> = last.iter().map(|&e| self.levers[e]).collect();
-        dense.divide_by(&levers);
         conditions.divide_by(&levers);
         conditions.stiffen(&mut dense.condensed);
         let basis = conditions.admissible(last.len());
@@ -130,6 +128,10 @@ impl Tangent {
         self.assembly.assemble(&model.dofs, moved, out);
         let diagonal = |e: usize| self.pattern.slot(e, e);
         stiffen(model, at, sizes, diagonal, &mut self.values);
+        // In one unit for all motions, so that round-off does not depend on the user's units.
+        for (value, (row, column)) in self.values.iter_mut().zip(self.pattern.iter()) {
+            *value /= self.levers[row] * self.levers[column];
+        }
     }
 
     fn condense(
@@ -175,7 +177,10 @@ impl Tangent {
                 .map_or(0.0, |k| self.values[k])
         };
         let given_way = DMatrix::from_fn(c, c, given) - &condensed;
-        turn(&mut condensed, system, model, at, last);
+        let mut turned = DMatrix::zeros(c, c);
+        turn(&mut turned, system, model, at, last);
+        let lever = |k: usize| self.levers[last[k]];
+        condensed += DMatrix::from_fn(c, c, |i, j| turned[(i, j)] / (lever(i) * lever(j)));
         let lengths = last.iter().filter(|&&e| self.lengths[e]).count();
         Some(Dense {
             condensed,
