@@ -39,16 +39,18 @@ fn none_is_wrong_on_smooth_surfaces_either() {
     assert!(accepted > 500, "only {accepted} increments were judged");
 }
 
-/// Halves of their increments all fail; each of these scenes gets through on another way round.
+/// Halves of an increment all fail; the scene gets through on another way round.
 #[test]
-fn increments_whose_halves_all_fail_are_finished_on_a_way_round_and_none_is_wrong() {
-    for (number, by) in [(39, Detour::Section), (96, Detour::Section)] {
-        let rows = tally::run(1, number..number + 1, &[], |_| {});
-        let row = &rows[0];
-        assert_eq!(row.trial.end, End::Finished, "{}", row.line());
-        assert!(row.trial.detours.contains(&by), "{}", row.line());
-        assert!(!row.is_wrong(), "{}", row.line());
-    }
+fn an_increment_whose_halves_all_fail_is_finished_on_a_way_round_and_is_not_wrong() {
+    let rows = tally::run(1, 39..40, &[], |_| {});
+    let row = &rows[0];
+    assert_eq!(row.trial.end, End::Finished, "{}", row.line());
+    assert!(
+        row.trial.detours.contains(&Detour::Section),
+        "{}",
+        row.line()
+    );
+    assert!(!row.is_wrong(), "{}", row.line());
 }
 
 #[test]

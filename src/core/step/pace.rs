@@ -4,9 +4,9 @@
 //! Two spans load alike where their vectors Δ are parallel; the motion expected then grows as |Δ|. Where the path turns a corner
 //! or a load's own scale bends, Δ points elsewhere, and nothing is expected from the increments before.
 //!
-//! An increment is suspected where it moves more than [`RATIO`] times what its tangent predicts, or what the fastest increment
-//! before it did; or where the tangent did not hold (its correction is more than [`OFF`] of its prediction) and the motion is more
-//! than [`FASTER`] times that of the increment just before. The last catches a limit point after a soft stretch, whose tangent
+//! An increment is suspected where it moves more than `RATIO` times what its tangent predicts, or what the fastest increment
+//! before it did; or where the tangent did not hold (its correction is more than `OFF` of its prediction) and the motion is more
+//! than `FASTER` times that of the increment just before. The last catches a limit point after a soft stretch, whose tangent
 //! and fastest increment both predict large motions. Where nothing is cut no halves can decide, and the fastest increment before
 //! is not asked: a node that begins to slide is no jump.
 

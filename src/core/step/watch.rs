@@ -2,9 +2,9 @@
 //!
 //! A look costs about a factorization. So it is taken
 //!
-//! - after every increment that may have jumped: one that is suspected ([`crate::step::pace`]), or moves by more than [`FAR`] of the
+//! - after every increment that may have jumped: one that is suspected ([`crate::step::pace`]), or moves by more than `FAR` of the
 //!   scene's length;
-//! - else as soon as the major iterations accepted since the last look cost 1 / [`SHARE`] times as much: at every increment in
+//! - else as soon as the major iterations accepted since the last look cost 1 / `SHARE` times as much: at every increment in
 //!   which a look is less than 5 % of the work, and at every n-th where increments are cheap, so that looks never come to more
 //!   than 5 % of a run.
 //!
