@@ -268,8 +268,8 @@ fn turn(matrix: &mut DMatrix<f64>, system: &System, model: &Model, at: &At<'_>, 
     }
 }
 
-/// The conditions of the nodes that touch; `None` where it is not known which way a rough one slides, or where one does whose
-/// bond gives way.
+/// The conditions of the nodes that touch. `None` if the direction of a rough sliding node is not known, if its bond or element
+/// gives way, or if several nodes press on one element that gives.
 fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Option<Conditions> {
     let mut all = Conditions::default();
     for (interface, s) in touching(system, at) {
@@ -288,10 +288,12 @@ fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Op
         let [normal, tangential] = [0, 1].map(row);
         let mut give = interface.bond.give();
         if let Some(point) = interface.point.first() {
-            let rough = !node.friction(&at.friction[s]).is_smooth();
-            // Next to a border the element gives nothing that a spring could stand for. With friction the spring's share would not be
-            // symmetric; it shrinks with the element, and is left out.
-            if !rough && point.compliance > RIGID * model.length / system.norms.scale {
+            // The forces on one element move each other's points, which no spring of one node describes.
+            if !interface.partners.is_empty() {
+                return None;
+            }
+            // Next to a border the compliance is too small to be a spring.
+            if point.compliance > RIGID * model.length / system.norms.scale {
                 give[0] += point.compliance;
             }
         }
