@@ -11,7 +11,7 @@ use crate::explain::outline::{self, Bounds, Point, bounds, curve};
 use crate::explain::strain;
 use crate::fem::deformation::{PointDeformation, deformation};
 use crate::fem::lagrange;
-use crate::model::{BodyKind, Contact, Solid, SolidElement};
+use crate::model::{BodyKind, Contact, Model, Solid, SolidElement};
 use crate::tui::app::App;
 use crate::tui::camera::Camera;
 use crate::tui::canvas::{Canvas, Dot};
@@ -440,9 +440,26 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
     }
 }
 
+/// The mark of the worst point of the solids, its stretch or determinant, and its element.
+fn worst_words(model: &Model, point: &PointDeformation) -> String {
+    let element = strain::element(model, point);
+    match point.determinant > 0.0 {
+        true => format!(
+            " {WORST} {element}: stretch {}  ",
+            number::four(point.stretch)
+        ),
+        false => format!(" {WORST} {element}: inverted  "),
+    }
+}
+
 fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &App, view: &View) {
     let theme = &app.theme;
-    let mut spans = vec![Span::styled(" faint: unloaded", theme.faint)];
+    // First, so that a narrow pane does not cut it.
+    let mut spans: Vec<Span> = worst(view)
+        .map(|point| Span::styled(worst_words(view.model, &point), theme.text))
+        .into_iter()
+        .collect();
+    spans.push(Span::styled(" faint: unloaded", theme.faint));
     if longest > 0.0 {
         spans.push(Span::styled(
             format!("   longest force {}", number::short(longest)),
@@ -454,17 +471,6 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &Ap
     }
     if found(view).is_some_and(|found| !found.nodes.is_empty()) {
         spans.push(Span::styled(format!("   {MARK} diagnosed"), theme.faint));
-    }
-    if let Some(point) = worst(view) {
-        let text = match point.determinant > 0.0 {
-            true => format!("   {WORST} stretch {}", number::four(point.stretch)),
-            false => format!(
-                "   {WORST} inverted, det F {}",
-                number::four(point.determinant)
-            ),
-        };
-        let element = strain::element(view.model, &point);
-        spans.push(Span::styled(format!("{text}, {element}"), theme.text));
     }
     if app.camera != Camera::ALL {
         spans.push(Span::styled(
