@@ -25,8 +25,8 @@
 //! upper bound on B.
 //!
 //! On a convex vertex the node stays as long as it slides down neither of the two sides, F·n_i >= 0 and
-//! F·t_i >= −(tan φ F·n_i + c) with t_i from the vertex along side i: the same with −h in place of h. Where φ <= h no force does that, and the node
-//! goes on to one of the sides.
+//! F·t_i >= −(tan φ F·n_i + c) with t_i from the vertex along side i: this is the law above with −h instead of h. Where φ <= h no
+//! force satisfies it, and the node moves on to one of the sides.
 
 use crate::model::Friction;
 
