@@ -1,8 +1,8 @@
 //! Local deflection and rotation under a point force that the polynomials of a beam element do not represent.
 //!
-//! A force F on a beam with shear stiffness GA causes a step F/GA in the shear strain γ, hence a kink in the axis where it acts, and a kink in
-//! the bending moment. An element of degree p with the reduced Gauss rule represents the projections of both onto polynomials of degree p − 1.
-//! With P_k the Legendre polynomials, L the undeformed length, ξ in [−1, 1] and Π the projection,
+//! A force F on a beam with shear stiffness GA causes a step F/GA in the shear strain γ, hence a kink in the axis where it acts, and a
+//! kink in the bending moment. An element of degree p with the reduced Gauss rule represents the projections of both onto polynomials of
+//! degree p − 1. With P_k the Legendre polynomials, L the undeformed length, ξ in [−1, 1] and Π the projection,
 //!
 //! ```text
 //! sgn(η−ξ) = Σ a_k(ξ) P_k(η),   a_0 = −ξ,        a_k = P_{k−1} − P_{k+1}
