@@ -9,23 +9,24 @@
 //! |F_t| <= tan(φ + h) F_n + c cos φ / cos(φ + h)
 //! ```
 //!
-//! This holds for φ + h < 90 degrees. The two sides share the cohesion c: what they hold without pressure is the convex hull
-//! of their segments ±c t, not the sum, which would be 2 c at a straight border.
+//! This holds for φ + h < 90 degrees. The two sides share the cohesion c: without pressure, the admissible forces are the convex
+//! hull of the segments ±c t of both sides. Their sum would give 2 c at a straight border.
 //!
-//! A node that slid along side A into the corner since the last accepted state came with the friction of A at its limit. What
-//! follows turns the force towards the limit of the far side B only, as far as the node would slide out along B. With s = ±1
-//! the direction along t of the friction that opposes the slip:
+//! If a node has slid along side A into the corner since the last accepted state, the friction of A was at its limit. Further
+//! loading can only turn the force towards the limit of the far side B, where the node slides out along B. With s = ±1 the
+//! direction along t of the friction that opposes the slip:
 //!
 //! ```text
 //! tan(φ − h) F_n + c cos φ / cos(φ − h) <= s F_t <= tan(φ + h) F_n + c cos φ / cos(φ + h)
 //! ```
 //!
-//! and the force lies in the convex hull of what A and B give at that limit, so that s F_t >= c cos h where φ > h. With h → 0
-//! this is Coulomb's law of a sliding node, and the graph from slip to force has no gap: on A the force is at the lower bound,
-//! on B at the upper one. On a
-//! convex vertex the node stays as long as it slides down neither of the two sides, F·n_i >= 0 and F·t_i >= −(tan φ F·n_i +
-//! c) with t_i from the vertex along side i: the same with −h in place of h. Where φ <= h no force does that, and the node
-//! goes on to one of the sides.
+//! and the force lies in the convex hull of the limit forces of A and B, so that s F_t >= c cos h where φ > h. For h → 0 this is
+//! Coulomb's law of a sliding node. The graph from slip to force has no gap: the force is at the lower bound on A and at the
+//! upper bound on B.
+//!
+//! On a convex vertex the node stays as long as it slides down neither of the two sides, F·n_i >= 0 and
+//! F·t_i >= −(tan φ F·n_i + c) with t_i from the vertex along side i: this is the law above with −h instead of h. Where φ <= h no
+//! force satisfies it, and the node moves on to one of the sides.
 
 use crate::model::Friction;
 
@@ -70,16 +71,16 @@ pub fn widened(friction: &Friction, half: f64) -> Friction {
     }
 }
 
-/// Least friction s F_t against the slip (force) of a node that slid into a corner of `half` (radians) and bears `f_n`: less
-/// lets it slide back along the side that it came along, with the `friction` of that side. F_n and F_t are those about the mean
-/// of the two normals.
+/// Lower bound of the friction s F_t (force, positive against the slip) of a node that slid into a corner of half angle `half`
+/// (radians) under the normal force `f_n`. Below it the node slides back along the side it came from, which has this `friction`.
+/// F_n and F_t refer to the mean of the two normals.
 pub fn least_friction(friction: &Friction, half: f64, f_n: f64) -> f64 {
     #[cfg(mutants)]
     let half = crate::mutants::pick("corner-turned-the-other-way", half, -half);
     let slope = (friction.angle.to_radians() - half).tan();
     let (sin, cos) = half.sin_cos();
     let pressed = f_n - friction.cohesion * sin;
-    // Where the side is pulled, the hull of both cohesions ends.
+    // The hull of both cohesion segments does not extend to tension on the side.
     let pressed = if slope > 0.0 {
         pressed.max(0.0)
     } else {
@@ -88,14 +89,14 @@ pub fn least_friction(friction: &Friction, half: f64, f_n: f64) -> f64 {
     friction.cohesion * cos + slope * pressed
 }
 
-/// By how much a force on the node exceeds what two sides hold together (force; zero or negative if they hold it): the convex
-/// hull of what each of them can give alone.
+/// Distance (force) of a force on the node from the convex hull of the forces that each side alone admits; zero or negative
+/// inside the hull.
 pub fn beyond_corner(force: [f64; 2], sides: [&Side; 2]) -> f64 {
     beyond_hull(force, sides, &[1.0, -1.0])
 }
 
-/// The same for a node that slid along the first of these sides into the corner: each gives friction at its limit, in the
-/// direction `against` the slip (±1, along t), and that of the first is not less than its limit.
+/// Like [`beyond_corner`], for a node that slid along the first side into the corner. The friction of both sides is at its
+/// limit in the direction `against` the slip (±1, along t), and the friction on the first side is at least its limit.
 pub fn beyond_slid(force: [f64; 2], [along, far]: [&Side; 2], against: f64) -> f64 {
     let [f_n, f_t] = along.components(force);
     let lacks = along.coefficient * f_n + along.cohesion - against * f_t;
@@ -105,7 +106,8 @@ pub fn beyond_slid(force: [f64; 2], [along, far]: [&Side; 2], against: f64) -> f
     beyond_hull(force, [along, far], &[against]).max(lacks / length)
 }
 
-/// By how much a force is outside of the convex hull of the rays { F_n n + sign (tan φ F_n + c) t : F_n >= 0 } of both sides.
+/// Distance (force) of a force from the convex hull of the rays { F_n n + sign (tan φ F_n + c) t : F_n >= 0 } of both sides;
+/// zero or negative inside the hull.
 fn beyond_hull(force: [f64; 2], sides: [&Side; 2], signs: &[f64]) -> f64 {
     let edges = || {
         sides
@@ -120,8 +122,8 @@ fn beyond_hull(force: [f64; 2], sides: [&Side; 2], signs: &[f64]) -> f64 {
     };
     let starts =
         || edges().map(|(side, sign)| tangent(side.normal).map(|t| sign * side.cohesion * t));
-    // The hull of the starts has edges along the mean normal and across it. A pull shows against it alone where the rays are
-    // nearly parallel.
+    // The hull of the starts has edges along the mean normal and across it. Where the rays are nearly parallel, only these
+    // edges detect tension.
     let mean = unit(add(sides[0].normal, sides[1].normal, 1.0));
     let lines = rays().chain(mean).chain(mean.map(tangent));
     let bounds = lines.flat_map(|line| [tangent(line), tangent(line).map(|x| -x)]);
@@ -317,7 +319,7 @@ mod tests {
                 t,
                 -(mu * f_n + c),
             );
-            // Walked from right to left: t of the mean normal is −x.
+            // The walk runs from right to left: t of the mean normal is −x.
             let (mean_n, mean_t) = (f[1], -f[0]);
             let limit = wide.coefficient() * mean_n + wide.cohesion;
             assert!((mean_t + limit).abs() < 1e-12, "{mean_t} {limit}");
@@ -368,7 +370,7 @@ mod tests {
             (0.0, 10.0),
         ] {
             let mu = f64::to_radians(phi).tan();
-            // Walked from right to left: before, then behind. It came along t, so that friction acts along −t.
+            // The walk runs from right to left: first `before`, then `behind`. The node slid along t, so friction acts along −t.
             let [before, behind] = [side(90.0 + half, mu, 0.0), side(90.0 - half, mu, 0.0)];
             let step = 0.25 * half;
             for (angle, inside) in [
@@ -384,7 +386,7 @@ mod tests {
                 let mirrored = beyond_slid([-whole[0], whole[1]], [&behind, &before], 1.0);
                 assert!((mirrored - beyond).abs() < 1e-15);
             }
-            // A pull is one, however straight the two sides meet.
+            // Tension is detected even where the two sides are nearly parallel.
             for angle in [270.0, 270.0 - phi] {
                 assert!(beyond_slid(force(angle, 1.0), [&before, &behind], -1.0) > 0.3);
             }
@@ -406,7 +408,7 @@ mod tests {
             for f_n in [0.0, 0.05, 0.3, 2.0] {
                 let least = least_friction(&friction, half, f_n);
                 let most = wide.coefficient() * f_n + wide.cohesion;
-                // Walked from right to left: t of the mean normal is −x.
+                // The walk runs from right to left: t of the mean normal is −x.
                 let beyond = |f_t: f64| beyond_slid([-f_t, f_n], [&before, &behind], -1.0);
                 let off = 1e-9;
                 for (f_t, inside) in [
@@ -471,7 +473,7 @@ mod tests {
         assert_eq!(split(force(121.0, 1.0), [&sides[0], &sides[1]]), None);
     }
 
-    /// Sides that meet straight are one side, with its cohesion once.
+    /// Parallel sides act as a single side: the cohesion counts once.
     #[test]
     fn two_sides_share_their_cohesion_in_a_corner() {
         for half in [0.0, 1e-9, 5.0, 30.0] {
@@ -480,7 +482,7 @@ mod tests {
             assert!(beyond_corner(edge, [&walls[0], &walls[1]]) < 1e-15);
             let more = beyond_corner(add(edge, [1.0, 0.0], -0.01), [&walls[0], &walls[1]]);
             assert!(more > 5e-3, "{half}: {more}");
-            // Where φ > h, also what slid in along the other side may be held by the cohesion of this one alone.
+            // Where φ > h, the cohesion of this side alone can hold a node that slid in along the other side.
             let slid = beyond_slid(edge, [&walls[1], &walls[0]], 1.0);
             assert_eq!(slid < 1e-15, half < 10.0, "{half}: {slid}");
         }

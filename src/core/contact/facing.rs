@@ -1,26 +1,26 @@
-//! Which pieces of a master a slave node may touch, where the master is cut at its convex corners.
+//! Selects the pieces of a master that a slave node may touch, where the master is cut at its convex corners.
 //!
-//! A node that goes past a corner at a small depth is for a moment nearer to the side that it does not face. On one chain S*
-//! would hop there, and press the node out the wrong way. With n_S the outward normal of the slave's own body at the node, and n
-//! that of a piece at its point closest to the node, the node may touch a piece it faces:
+//! A node that passes a corner at a small depth is briefly closer to the side that it does not face. On an uncut chain S* would
+//! jump to that side and push the node out in the wrong direction. Let n_S be the outward normal of the slave's body at the
+//! node, and n the normal of a piece at its point closest to the node. The node faces the piece, and may touch it, if
 //!
 //! ```text
 //! n_S · n < −1/2          (within 60 degrees of opposite)
 //! ```
 //!
-//! and all pieces where it faces none. At a right-angled corner each direction towards it faces one of the two sides. The
-//! condition depends on positions alone, so the judge uses it as well.
+//! A node that faces no piece may touch all of them. At a right-angled corner, every direction towards the corner faces one of
+//! the two sides. The condition depends on positions only, so the judge uses it as well.
 
 use crate::contact::projection::{closest_point, normal, right_of};
 use crate::model::{Contact, Surface};
 
-/// Most surfaces of a slave node of which the faced ones are found; one with more may touch them all.
+/// Maximum number of surfaces of a slave node for which the facing condition is tested; a node with more may touch all of them.
 pub const MOST: usize = 16;
 /// n_S · n below which a node faces a piece.
 const FACES: f64 = -0.5;
 
-/// Numbers of the surfaces that a slave node may touch where all nodes are at `positions`; they are written into `room`, unless
-/// they are all surfaces of the node.
+/// Numbers of the surfaces that a slave node may touch, for the given `positions` of all nodes. The result is stored in `room`
+/// unless the node may touch all its surfaces.
 pub fn faced<'a>(
     slave: &'a Contact,
     surfaces: &[Surface],

@@ -10,11 +10,11 @@
 //!   and drives the whole of this way breaks the law, since no place of touching explains it;
 //! - where a bond gives way (compliances c_n, c_t), all this holds for a point further out, at x + c_n F_n n: g + c_n F_n = 0 where a
 //!   force acts; and of a net slip, c_t times the change of −F_t is elastic, which friction does not oppose;
-//! - where an element of a beam gives under point forces, it holds for a point that much further out, and n and t are those of the turned
-//!   line ([`super::point_force::judged`]);
+//! - over a beam element with local flexibility under point forces, the laws hold for a point shifted outwards by the local
+//!   deflection, with n and t of the rotated line ([`super::point_force::judged`]);
 //! - a tied node stays where it is on its surface, whatever its forces are;
-//! - in a corner between two sides the force lies in the hull of what each of them can give; after a slip into it, of what each
-//!   gives with friction at its limit against that ([`super::corner`]);
+//! - in a corner the force lies in the convex hull of the forces that each of the two sides admits; after a slip into the corner,
+//!   in the hull of the forces with friction at its limit against that slip ([`super::corner`]);
 //! - every node is in balance, and so are the bodies as a whole with the reactions ([`super::balance`]).
 //!
 //! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, since very stiff
@@ -126,7 +126,7 @@ impl Judge {
         let mut verdict = Verdict::default();
         contact.fill([0.0; 2]);
         let near = seen.scales.near();
-        // Where surfaces or bonds gave way, that state's points are found from its forces, to other digits than its own judgement.
+        // With compliant surfaces or bonds, the points of that state follow from its forces, which round differently from the stored feet.
         if !seen.out[1].is_empty() || !self.last.is(seen.before, near, seen.contacts.len()) {
             self.last.clear();
         }
@@ -236,7 +236,7 @@ impl Judge {
             ..Numbers::default()
         };
         if !pressed {
-            // A spring so soft that its force is nothing lets the node in.
+            // A spring whose force is below the force tolerance lets the node penetrate.
             let soft = bond.give()[0] * forces * seen.scales.force;
             report(Law::Penetration, ((-gap - soft) / length).max(0.0), numbers);
             return;
@@ -369,9 +369,9 @@ impl Judge {
     }
 }
 
-/// How far a slave node has gone through one of its surfaces since the last accepted state (length), without being nearest
-/// to it; 0 where it has not. Only where it was over the surface and now is under it, not where it went round an end. `others`
-/// are the surfaces that it may touch, but for the nearest.
+/// Depth (length) by which a slave node has passed through a surface other than its nearest since the last accepted state;
+/// 0 if it has not. Counts only a node that was above the surface and is now below it, not a node that went round an end.
+/// `others` are the surfaces that the node may touch, except the nearest.
 fn through(
     seen: &Seen,
     slave: usize,
@@ -400,7 +400,7 @@ fn through(
     })
 }
 
-/// ξ of the end of a spot's chain at which a point is, to within `near`.
+/// ξ (±1) of the end of the spot's chain that is within `near` (length) of a point. `None` away from the ends.
 fn end_at(seen: &Seen, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option<f64> {
     let surface = &seen.surfaces[spot.surface];
     let ends = [-1.0, 1.0].into_iter().filter(|_| !surface.endless);
@@ -430,8 +430,8 @@ fn touching(
     };
     let way =
         |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave] + elastic;
-    // The elastic slip of the last accepted state is a length of surface, which has stretched since; what of it came before the
-    // node last slid has not.
+    // The elastic slip of the last accepted state is a length on the surface, which has stretched since then. The part of it from
+    // before the node last slid has not stretched, so only the slip beyond the whole stretch counts.
     let beyond_stretch = |way: f64, foot: &Foot| {
         let give = seen.contacts[slave].bond.give()[1];
         if give == 0.0 {

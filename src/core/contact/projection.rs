@@ -17,7 +17,7 @@ const END_TOLERANCE: f64 = 1e-9;
 const STAY_TOLERANCE: f64 = 1e-12;
 /// Part of a distance by which another may be larger and still be the same but for round-off.
 const NEARLY: f64 = 1e-9;
-/// Coordinates ξ closer than this are those of one closest point, which distances do not tell apart.
+/// Coordinates ξ closer than this belong to the same closest point: their distances differ by round-off only.
 const NEXT_TO: f64 = 1e-6;
 
 /// A point of a chain of interface elements.
@@ -63,7 +63,7 @@ impl Projection {
 }
 
 impl Projection {
-    /// √m / (m − g k) with m and k of [`crate::contact::geometric_tangent`]. `None` at an end of the element.
+    /// √m / (m − g k) (1 / length), with m and k of [`crate::contact::geometric_tangent`]. `None` at an end of the element.
     pub fn lever(&self) -> Option<f64> {
         let Curve { slope, bend } = self.curve?;
         let m = slope[0] * slope[0] + slope[1] * slope[1];
@@ -101,7 +101,7 @@ pub fn project(
     (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
 }
 
-/// The same where S* may be an end of a chain past which the node lies.
+/// Like [`project`], but accepts the end of a chain as S* where the node lies past that end.
 pub fn closest_point(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -143,11 +143,11 @@ pub fn closest_point(
     best.map(|best| best.spot)
 }
 
-/// S* as exact as Newton's method alone finds it, from a spot next to it.
+/// Refines S* with Newton's method, starting from a nearby spot.
 ///
-/// [`project`] compares distances, and two points of a surface are equally far from a node at the distance g where they are
-/// closer together than about √(g · round-off). That is nothing where a node lies on its surface. Where it presses from a
-/// distance, it moves forces by more than any tolerance.
+/// [`project`] compares distances. At the distance g it cannot separate two points of a surface that are closer together than
+/// about √(g · round-off). This error vanishes for a node on its surface. For a node that transmits a force across a distance
+/// it changes the forces by more than any tolerance.
 pub fn sharpen(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -254,8 +254,8 @@ pub fn element_size(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]
 }
 
 /// Half the angle (radians) between the normals of the two elements that meet at a border ([`corner::half_angle`]): positive
-/// where they form a concave corner, negative at a convex vertex. `turned` gives dx/dξ as it really is at an end of an element.
-/// `None` where no two elements meet, and on a smooth chain, which has no corners.
+/// where they form a concave corner, negative at a convex vertex. `turned` corrects dx/dξ at an end of an element for the local
+/// rotation there. `None` where no two elements meet, and on a smooth chain, which has no corners.
 pub fn half_angle(
     surface: &Surface,
     border: SurfacePoint,

@@ -1,4 +1,4 @@
-//! The laws on the sides on which a node stands, for the judge: one side alone, or two where they meet.
+//! Evaluates the contact laws for the judge: on a single side, or where two sides meet.
 
 use crate::contact::corner::{Side, beyond_corner, beyond_slid, beyond_vertex};
 use crate::contact::corner::{cross, dot, half_angle};
@@ -7,36 +7,36 @@ use crate::contact::laws::{Numbers, Scales};
 use crate::contact::projection::SurfacePoint;
 use crate::model::Surface;
 
-/// A side of the master on which a node stands.
+/// A side of the master that a node touches.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touching {
     pub spot: SurfacePoint,
     pub side: Side,
     pub tangent: [f64; 2],
-    /// ξ of the end of the chain at which the node is, if any.
+    /// ξ (±1) if the node is at an end of the chain.
     pub end: Option<f64>,
     pub past: Past,
 }
 
-/// Where a node was in the last accepted state, seen from where it is.
+/// Contact of a node with this side in the last accepted state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Past {
-    /// It touched, and has gone this far along t since.
+    /// The node touched the side; its slip along t since then (length).
     Touched(f64),
-    /// It was open, and its foot has gone this far.
+    /// The node was open; the travel of its foot along t since then (length).
     Open(f64),
-    /// It was over another surface, or over none.
+    /// The node was over another surface, or over no surface.
     Elsewhere,
 }
 
-/// How far a force is from the laws on one side, or in a corner; all relative.
+/// Violations of the laws on a side or in a corner, relative to the scene's force.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Amounts {
     pub tension: f64,
     pub cone: f64,
     pub slip: f64,
     pub touch: f64,
-    /// Whether it touched in the last accepted state, too.
+    /// Whether the node also touched in the last accepted state.
     pub touched: bool,
     pub numbers: Numbers,
 }
@@ -47,7 +47,8 @@ impl Amounts {
     }
 }
 
-/// The slip along another surface of a node that came along that one to where it meets `this` side. `None` where it did not.
+/// Slip (length) along another surface of a node that slid along it to the point where it meets `this` side. `None` if the node
+/// did not slide there.
 pub(super) fn slip_into(
     surfaces: &[Surface],
     sides: &[Touching],
@@ -64,7 +65,7 @@ pub(super) fn slip_into(
     })
 }
 
-/// The laws on one side alone.
+/// Evaluates the laws on a single side.
 pub(super) fn on_side(scales: &Scales, force: [f64; 2], at: &Touching) -> Amounts {
     let numbers = numbers(force, at);
     let Numbers {
@@ -107,7 +108,7 @@ fn numbers(force: [f64; 2], at: &Touching) -> Numbers {
     }
 }
 
-/// The laws where two sides meet: of a concave corner, or of a convex vertex.
+/// Evaluates the laws where two sides meet, at a concave corner or a convex vertex.
 pub(super) fn in_corner(
     surfaces: &[Surface],
     scales: &Scales,
@@ -127,7 +128,7 @@ pub(super) fn in_corner(
         return Amounts {
             tension: beyond.tension / scales.force,
             cone: beyond.cone / scales.force,
-            // Where it slid onto the vertex, neither side's friction is at its limit.
+            // At the vertex the friction of neither side is at its limit, so a slip onto it violates the law.
             slip: if slid { f64::INFINITY } else { 0.0 },
             touch: 0.0,
             touched: false,
@@ -152,8 +153,8 @@ pub(super) fn in_corner(
     }
 }
 
-/// Whether, of two sides that meet, `one` comes first along the walk. Where they are on two surfaces: where one ends and the other
-/// begins; or, where they cross, into their concave corner.
+/// Whether `one` precedes `other` along the walk, for two sides that meet. On two surfaces, the surface that ends at the common
+/// point precedes the surface that begins there; where two surfaces cross, the order is that of the walk into their concave corner.
 fn comes_first(surfaces: &[Surface], one: &Touching, other: &Touching) -> bool {
     if one.spot.surface != other.spot.surface {
         return match (one.end, other.end) {
@@ -169,8 +170,8 @@ fn comes_first(surfaces: &[Surface], one: &Touching, other: &Touching) -> bool {
     follows.is_some_and(|next| next.element == other.spot.element)
 }
 
-/// The direction (±1, along t) in which a node has slid to where two sides meet: along t on the side that comes first, or
-/// against t on the other one. `None` where it did not slide there since the last accepted state.
+/// Direction (±1, along t) in which a node has slid since the last accepted state to the point where two sides meet: along t on
+/// the first side, against t on the second. `None` if it did not slide there.
 fn came_along(before: &Touching, behind: &Touching, near: f64) -> Option<f64> {
     let slid =
         |side: &Touching, sign: f64| matches!(side.past, Past::Touched(slip) if sign * slip > near);

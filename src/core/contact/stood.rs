@@ -1,17 +1,17 @@
-//! Where the judge found all slave nodes of a state, so that the next state is judged without a search for the last one.
+//! Caches the feet of all slave nodes of a judged state, so that judging the next state does not search for them again.
 
 use crate::contact::feet::Foot;
 
-/// Feet and sides that a node has at most, as a rule.
+/// Initial capacity for the feet and sides of a node.
 pub(super) const FEW: usize = 16;
 
-/// Where all slave nodes stood in a state.
+/// Feet of all slave nodes in a state.
 #[derive(Debug)]
 pub(super) struct Stood {
-    /// Positions of all nodes, and the length up to which places were the same.
+    /// Positions of all nodes; `near` is the length within which positions counted as equal.
     pub at: Vec<[f64; 2]>,
     pub near: f64,
-    /// Feet of all slave nodes, one after the other, and where each one's end.
+    /// Concatenated feet of all slave nodes; `ends` contains the end index of each node's feet.
     pub feet: Vec<Foot>,
     pub ends: Vec<usize>,
 }
@@ -21,7 +21,7 @@ impl Stood {
         Stood {
             at: Vec::with_capacity(nodes),
             near: 0.0,
-            // On a border of elements a node has two feet.
+            // A node on the border of two elements has two feet.
             feet: Vec::with_capacity(2 * slaves + FEW),
             ends: Vec::with_capacity(slaves),
         }
@@ -43,7 +43,7 @@ impl Stood {
         &self.feet[from..self.ends[slave]]
     }
 
-    /// Whether it is this state, seen as sharply.
+    /// Whether the cache belongs to this state, with the same tolerance.
     pub fn is(&self, at: &[[f64; 2]], near: f64, slaves: usize) -> bool {
         self.ends.len() == slaves && self.near == near && self.at == at
     }

@@ -29,8 +29,8 @@ pub enum Rule {
     CornerSlides,
     /// Where two sides meet: F_n <= 0.
     CornerOpens,
-    /// Where two sides meet, at the end of a major iteration: the node slid there, and F_t opposes that slip by less than the
-    /// least friction ([`crate::contact::corner::least_friction`]); it slides on the side along which it came.
+    /// Where two sides meet, at the end of a major iteration: the node slid there, and F_t against that slip is below the least
+    /// friction ([`crate::contact::corner::least_friction`]). The node slides again on the side that it came from.
     CornerReleases,
     /// g < 0, rough interface.
     FreeSticks,
@@ -73,7 +73,7 @@ pub enum Tested {
     ShearForce,
     /// sgn(T_max) · slip against 0 (length).
     Slip,
-    /// F_t, positive against the slip, against the least friction after it in a corner (force).
+    /// F_t, positive against the slip into a corner, compared with the least friction there (force).
     LeastFriction,
     /// Way along the surface against the room that is left to the end of the side (length).
     Room,
@@ -309,8 +309,8 @@ impl Decision {
         Decision { rule, ..self }
     }
 
-    /// What takes the place of the decision on a node that stays in a corner, into which it slid, and leaves it at the end of the
-    /// major iteration: friction `opposing` the slip (force) is below the `least`.
+    /// Replaces the decision for a node that slid into a corner and is released from it at the end of the major iteration, because
+    /// the friction `opposing` the slip (force) is below the `least` friction.
     pub fn released(self, opposing: f64, least: f64) -> Self {
         let test = Test {
             tested: Tested::LeastFriction,

@@ -3,9 +3,9 @@
 //! Where two elements meet in a concave corner, a node that comes to rest there may go back and forth between them for
 //! ever. A sliding node that comes back to the element that it had left, and any node that is past both sides, is therefore
 //! held in the corner: it is fixed there, about the mean of the two normals, with the friction that both sides give together ([`crate::contact::corner`]). At the
-//! friction bound it slides out along one side, as out of any fixed mode. A node that slid into the corner since the last
-//! accepted state, and whose friction opposes that slip by less than it must ([`corner::least_friction`]), goes back to
-//! sliding on the side that it came along.
+//! friction bound it slides out along one side, as out of any fixed mode. If a node slid into the corner since the last
+//! accepted state, and the friction against that slip is below the least friction ([`corner::least_friction`]), the node
+//! slides again on the side that it came from.
 //!
 //! A node that comes down on a convex vertex sticks there about the mean normal, too, with the narrower friction that keeps it
 //! from sliding down either side. Where friction is too weak for that, it stands on one of the sides: a vertex that
@@ -35,7 +35,7 @@ pub struct Ground<'a> {
     pub surfaces: &'a [Surface],
     /// Current positions of all nodes (length).
     pub positions: &'a [[f64; 2]],
-    /// Forces closer than this are the same.
+    /// Forces that differ by less than this (force) count as equal.
     pub same_force: f64,
 }
 
@@ -52,7 +52,8 @@ impl Ground<'_> {
         let (second, mean) = (node.second, node.normal);
         let mut is_released = false;
         if !slave.bond.is_hard() || slave.overlap > 0.0 {
-            // What presses from a distance is not held in corners: each law is that of one side.
+            // Compliant bonds and overlaps transmit forces across a distance: such nodes are not held in corners, and the law of a
+            // single side applies.
             node.spot = self.find(slave, at, previous);
         } else if self.stays_in_corner(node, friction) {
             is_released = self.release(node, friction);
@@ -109,7 +110,7 @@ impl Ground<'_> {
         self.find_anchor(node, slave);
     }
 
-    /// S* of a node among the surfaces that it may touch; `previous` is that of the last major iteration.
+    /// S* of a node on the surfaces that it may touch; `previous` is S* of the last major iteration.
     fn find(
         &self,
         slave: &Contact,
@@ -120,7 +121,7 @@ impl Ground<'_> {
         let on = faced(slave, self.surfaces, self.positions, &mut room);
         let previous = previous.filter(|spot| on.contains(&spot.surface));
         let spot = project(at, self.surfaces, on, self.positions, previous)?;
-        // Over an element that gives, a node that presses is as far inside as that gives.
+        // A node that presses on an element with local flexibility lies inside by the local deflection.
         let gives = point_force::of(&self.surfaces[spot.surface], spot).is_some();
         let touches = slave.bond.is_hard() && slave.overlap == 0.0 && !gives;
         Some(match touches {
@@ -168,8 +169,8 @@ impl Ground<'_> {
         node.corner.is_some()
     }
 
-    /// Lets a node that slid into a concave corner slide on the side along which it came, if friction opposes that slip by less
-    /// than the least that the corner asks for. Returns whether it does.
+    /// Releases a node that slid into a concave corner: it slides again on the side that it came from if the friction against that
+    /// slip is below the least friction of the corner. Returns whether it was released.
     fn release(&self, node: &mut ContactState, friction: &Friction) -> bool {
         let Some(half) = node.corner.filter(|half| *half > 0.0 && !node.is_forced()) else {
             return false;
@@ -186,8 +187,8 @@ impl Ground<'_> {
         true
     }
 
-    /// The place on the side along which a node slid into the corner that holds it, from its anchor, and the direction (±1, along
-    /// t) of the friction that opposes that slip. `None` where it stood there before.
+    /// For a node held in a corner: the spot on the side along which it slid there from its anchor, and the direction (±1, along t)
+    /// of the friction against that slip. `None` if the node was in the corner before.
     fn came_along(&self, node: &ContactState) -> Option<(SurfacePoint, f64)> {
         let (anchor, spot) = (node.anchor?, node.spot?);
         let both = [Some(spot), node.second];
@@ -206,11 +207,12 @@ impl Ground<'_> {
         let other = if on == second { spot } else { second };
         let [own, across] =
             [on, other].map(|at| normal(&self.surfaces[at.surface], at, self.positions));
-        // The side that comes first along the walk leads along t into a concave corner, the other one against t.
+        // Motion along t on the first side of the walk, or against t on the second side, is motion into a concave corner.
         (corner::cross(own, across) * way < 0.0).then_some((on, -way.signum()))
     }
 
-    /// Half the angle of a corner ([`projection::half_angle`]), less the kink that F_n makes there in elements that give ([`point_force`]).
+    /// Half the angle (radians) of a corner ([`projection::half_angle`]), less the kink that F_n causes in elements with local flexibility
+    /// ([`point_force`]).
     fn half_angle(&self, border: SurfacePoint, f_n: f64) -> Option<f64> {
         let surface = &self.surfaces[border.surface];
         let turned = |end, slope| point_force::turned_end(surface, end, slope, f_n);
@@ -319,7 +321,7 @@ impl Ground<'_> {
             .surfaces
             .iter()
             .filter(|&&other| other != spot.surface && self.surfaces[other].rigid)
-            // Pieces of one master meet where it is convex: inside both is inside the one.
+            // Pieces of a master meet at its convex corners: a point inside both pieces is inside the master.
             .filter(|other| !is_piece(slave, **other));
         for &other in others {
             let Some(across) = project(at, self.surfaces, &[other], self.positions, None) else {
@@ -356,8 +358,9 @@ impl Ground<'_> {
             return;
         };
         if half > 0.0 {
-            // What sticks between two elements that bend needs no corner's friction. Of a rigid surface the corner is one
-            // from the start: with the friction of one side alone the node would slide out under forces that both sides hold.
+            // A node that sticks between two deformable elements does not need the friction of a corner. On a rigid surface the
+            // corner exists from the start: with the friction of a single side the node would slide out under forces that both
+            // sides together hold.
             let rigid = self.surfaces[spot.surface].rigid;
             let held = node.mode == Mode::Sliding || rigid && node.mode == Mode::Fixed;
             if held && !node.is_forced() {
@@ -380,7 +383,7 @@ impl Ground<'_> {
         }
     }
 
-    /// S* of a node that sticks on a rigid surface: the concave border of two elements where it lies there but for round-off.
+    /// S* of a node that sticks on a rigid surface, moved to the concave border of two elements if it is there up to round-off.
     fn at_bottom(&self, node: &ContactState, spot: SurfacePoint) -> SurfacePoint {
         let surface = &self.surfaces[spot.surface];
         let near = 1.0 - spot.xi.abs() <= 2.0 * AT_VERTEX;
@@ -409,7 +412,7 @@ impl Ground<'_> {
             }
             return;
         };
-        // In a corner between two surfaces it may have slid along either.
+        // In a corner between two surfaces the node may have slid along either surface.
         let second = node.second.map(|second| second.surface);
         let here = |a: &SurfacePoint| a.surface == spot.surface || Some(a.surface) == second;
         let anchor = node.anchor.filter(here);

@@ -121,17 +121,17 @@ fn states_by<const N: usize, const P: usize>(
 pub struct Sampled {
     /// H, in the plane.
     pub h: [[f64; 2]; 2],
-    /// u_x over X, the strain around the axis of a body of revolution; 0 on the axis.
+    /// Hoop strain u_x/X of a body of revolution; 0 on the axis.
     pub hoop: f64,
-    /// Current place.
+    /// Current position.
     pub at: [f64; 2],
-    /// Whether it is an integration point; else it is a node.
+    /// Whether the point is an integration point rather than a node.
     pub integrates: bool,
 }
 
-/// Calls a function with ∂u/∂X at the points of a kind's rule and then at its nodes. `node` gives place and displacement of
-/// node k out of `count`; an element whose count is not that of its kind has no points. A node at which the undeformed
-/// element has no area is left out, as at the corner of a quadrilateral that is drawn as a triangle.
+/// Calls a function with ∂u/∂X at the integration points and then at the nodes of an element. `node` returns position and
+/// displacement of node k of `count`; if `count` does not match the element kind, there are no points. Nodes at which the
+/// undeformed element has no area are skipped, for example the corner of a quadrilateral degenerated to a triangle.
 pub fn sample(
     kind: ElementKind,
     count: usize,

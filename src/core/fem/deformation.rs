@@ -1,21 +1,21 @@
-//! How far solids are deformed: det F and the principal stretches at the integration points and nodes of every element, and
-//! the range in which each material law describes a material.
+//! Deformation of solids: det F and the principal stretches at the integration points and nodes of every element, and the
+//! range of validity of each material law.
 //!
 //! In the plane, with a = |(F11 + F22, F21 − F12)| and b = |(F11 − F22, F12 + F21)|, the principal stretches are (a ± b) / 2;
-//! the smaller one has the sign of det F. Around the axis of a body of revolution the third one is 1 + u_x/X; in plane stress
-//! the thickness counts in det F alone.
+//! the smaller stretch has the sign of det F. For a body of revolution the third stretch is 1 + u_x/X. In plane stress the
+//! thickness stretch enters det F only.
 //!
 //! The ranges follow from the nominal stress P of a stretch s:
 //!
-//! - **St Venant-Kirchhoff**: where the compressed directions share one stretch s, and the others are held or free of
-//!   stress, S = K (s² − 1) / 2 with a constant K. That covers compression along one, two or three directions in plane strain,
-//!   plane stress and axisymmetry, for every ν. P = s S then turns at dP/ds = K (3 s² − 1) / 2 = 0: below s = 1/√3 a smaller
-//!   force presses further. Under other ratios of the stretches the limit differs with ν. In tension P rises throughout.
-//! - **neo-Hookean**: μ/2 (I1 − 3) − μ ln J is polyconvex, λ/2 (ln J)² is convex in J while ln J < 1. No compression
-//!   softens it; beyond J = e the volume may.
-//! - **linear elasticity** (`update: small`): never softens. It neglects ε²/2 beside a strain ε, 5 % at ε = 0.1.
-//! - **the updated stress update**: each increment begins with the small-strain moduli, and for small increments P = M (s − 1)
-//!   under uniaxial strain: it does not soften, and has no range of its own; only det F > 0 is required.
+//! - **St Venant-Kirchhoff**: where the compressed directions share the stretch s, and the other directions are constrained or
+//!   stress-free, S = K (s² − 1) / 2 with a constant K. This covers compression along one, two or three directions in plane
+//!   strain, plane stress and axisymmetry, for every ν. P = s S has its extremum at dP/ds = K (3 s² − 1) / 2 = 0: below
+//!   s = 1/√3 the material softens. For other ratios of the stretches the limit depends on ν. In tension P rises monotonically.
+//! - **neo-Hookean**: μ/2 (I1 − 3) − μ ln J is polyconvex; λ/2 (ln J)² is convex in J for ln J < 1. The law does not soften in
+//!   compression; it may soften in volume beyond J = e.
+//! - **linear elasticity** (`update: small`): never softens. It neglects ε²/2 relative to a strain ε, 5 % at ε = 0.1.
+//! - **the updated stress update**: each increment starts with the small-strain moduli, and for small increments P = M (s − 1)
+//!   under uniaxial strain. The law does not soften and has no range limit; it only requires det F > 0.
 
 use super::continuum::{self, Sampled};
 use super::material::Material;
@@ -28,14 +28,14 @@ pub const SOFTENING: f64 = 0.577_350_269_189_625_8;
 /// Stretch below which linear elasticity neglects more than 5 % of the strain.
 pub const SMALL: f64 = 0.9;
 
-/// The state of an element at one of its points.
+/// Deformation of an element at an integration point or node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PointDeformation {
     /// Number of the body.
     pub body: usize,
     /// Number of the element in its solid, from 0.
     pub element: usize,
-    /// Current place of the point.
+    /// Current position of the point.
     pub at: [f64; 2],
     /// Smallest principal stretch; negative where the element is inverted in the plane.
     pub stretch: f64,
@@ -43,33 +43,33 @@ pub struct PointDeformation {
     pub determinant: f64,
 }
 
-/// The extremes over all solids of a state.
+/// Extreme deformations over all solids of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deformation {
-    /// The smallest principal stretch at an integration point.
+    /// Integration point with the smallest principal stretch.
     pub smallest: PointDeformation,
-    /// The smallest det F at an integration point or a node.
+    /// Integration point or node with the smallest det F.
     pub flattest: PointDeformation,
-    /// The integration point that is furthest outside the range of its law. `None` where all are inside.
+    /// Integration point furthest outside the range of its law. `None` if all points are inside.
     pub outside: Option<PointDeformation>,
 }
 
 impl Deformation {
-    /// The worst point where det F is not positive.
+    /// The point with the smallest det F if it is not positive.
     pub fn inverted(&self) -> Option<PointDeformation> {
         let positive = self.flattest.determinant > 0.0;
         (!positive).then_some(self.flattest)
     }
 }
 
-/// The range of a material law.
+/// Range of validity of a material law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Range {
-    /// No principal stretch is smaller.
+    /// Lower bound of the principal stretches.
     Stretch(f64),
-    /// det F is not larger.
+    /// Upper bound of det F.
     Volume(f64),
-    /// It has none.
+    /// No bound.
     Unlimited,
 }
 
@@ -84,7 +84,7 @@ impl Range {
         }
     }
 
-    /// How much of the range a point uses; outside it is more than 1.
+    /// Fraction of the range that a point uses; more than 1 outside the range.
     fn used(self, point: &PointDeformation) -> f64 {
         match self {
             Range::Stretch(least) if point.stretch > 0.0 => least / point.stretch,
@@ -95,7 +95,7 @@ impl Range {
     }
 }
 
-/// The extremes over all solids where the degrees of freedom have these values. `None` in a scene without solids.
+/// Computes the extremes over all solids for the displacements `u`. `None` in a scene without solids.
 pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
     let mut worst = None;
     let mut used = 1.0;
@@ -122,13 +122,13 @@ pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
     worst
 }
 
-/// Whether a number is less than another, or is none.
+/// Whether `one` is less than `other`, or NaN.
 fn is_less(one: f64, other: f64) -> bool {
     one.is_nan() || one < other
 }
 
 /// Smallest principal stretch at the integration points and smallest det F at all points of each solid element, by body and
-/// element; none of what is no solid.
+/// element; the list of a body that is not a solid is empty.
 pub fn by_element(model: &Model, u: &[f64]) -> Vec<Vec<[f64; 2]>> {
     let count = |kind: &BodyKind| match kind {
         BodyKind::Solid(solid) => solid.elements.len(),
@@ -146,8 +146,8 @@ pub fn by_element(model: &Model, u: &[f64]) -> Vec<Vec<[f64; 2]>> {
     all
 }
 
-/// Calls a function with every point of every solid element, integration points before nodes, and whether it is an
-/// integration point.
+/// Calls a function for every point of every solid element, integration points before nodes. The last argument of the function
+/// is whether the point is an integration point.
 fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&Elastic, PointDeformation, bool)) {
     for (body, one) in model.bodies.iter().enumerate() {
         let BodyKind::Solid(solid) = &one.kind else {
@@ -186,7 +186,7 @@ fn measures(elastic: &Elastic, point: &Sampled) -> [f64; 2] {
     match (elastic.plane, elastic.update) {
         (Plane::Axisymmetric, _) => {
             let hoop = 1.0 + point.hoop;
-            // Turned over in the plane and around the axis is not the right way round.
+            // An inversion in the plane and another around the axis would cancel: a hoop stretch <= 0 counts as inverted.
             let determinant = match hoop > 0.0 {
                 true => in_plane * hoop,
                 false => -(in_plane * hoop).abs(),
@@ -198,7 +198,7 @@ fn measures(elastic: &Elastic, point: &Sampled) -> [f64; 2] {
     }
 }
 
-/// Stretch of the thickness in plane stress; −1 where the law leaves none.
+/// Thickness stretch in plane stress; −1 where the law admits no positive thickness.
 fn thickness(elastic: &Elastic, point: &Sampled) -> f64 {
     let [[h11, h12], [h21, h22]] = point.h;
     let strain = nalgebra::Vector3::new(

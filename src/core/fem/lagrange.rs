@@ -85,7 +85,7 @@ pub fn slopes<const COUNT: usize>(m: usize, xi: [f64; COUNT]) -> [[f64; MAX_NODE
     slopes
 }
 
-/// d³N_i/dξ³ of the m shape functions, as second derivatives of a contact's geometry want them.
+/// d³N_i/dξ³ of the m shape functions, needed for the second derivatives of the contact geometry.
 pub fn third(m: usize, xi: f64) -> [f64; MAX_NODES] {
     let mut all = [0.0; MAX_NODES];
     for (i, (third, &(_, weight))) in all.iter_mut().zip(&NODES[m][..m]).enumerate() {

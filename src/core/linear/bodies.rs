@@ -44,7 +44,7 @@ pub struct Bodies {
     overlaps: bool,
     /// Whether any bond gives way along n.
     gives: bool,
-    /// Contacts over elements that gave in the last accepted state.
+    /// Contacts over elements with local flexibility in the last accepted state.
     points: PointForces,
 }
 
@@ -104,12 +104,12 @@ impl Bodies {
         Ground {
             surfaces: &self.model.surfaces,
             positions: &self.system.positions,
-            // The judge finds nothing in it.
+            // Small enough that the judge does not detect the difference.
             same_force: 0.5 * (TIMES * norms.limit).max(TOLERANCE) * norms.scale,
         }
     }
 
-    /// Turns the normals of contacts over elements that give, as the forces at hand turn them.
+    /// Rotates the normals of contacts over elements with local flexibility according to the current forces.
     fn turn_normals(&mut self, contacts: &mut [ContactState]) {
         if self.system.has_points {
             let (points, positions) = (&mut self.system.points, &self.system.positions);
@@ -342,7 +342,7 @@ impl Source for Bodies {
             }
             changed = true;
         }
-        // A restored state finds its normals from the same forces.
+        // A restored state computes its normals from the same forces.
         self.turn_normals(contacts);
         changed
     }
@@ -427,7 +427,7 @@ impl Source for Bodies {
                 let (out, way) = (&mut bench.out[1][press.contact], press.way_out());
                 let was = at.accepted.contacts[press.contact];
                 let deep = model.contacts[press.contact].bond.give()[0] * was.f_n;
-                // A bond gives way along n of the element's line as well, not along the turned one.
+                // The bond also deforms along n of the element's line, not along the rotated n.
                 let along = |k: usize| deep * (press.line[k] - was.normal[k]);
                 *out = [0, 1].map(|k| out[k] + way[k] + along(k));
             }

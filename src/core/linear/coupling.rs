@@ -23,23 +23,23 @@ pub struct Link {
     pub unknown: Option<usize>,
 }
 
-/// What another contact on an element that gives does to this one, and where that stands in the whole system.
+/// Coupling of a contact with another contact on the same element with local flexibility, and its entries in the whole system.
 #[derive(Debug, Clone, Default)]
 pub struct Partner {
     /// Number of the other contact.
     pub other: usize,
     /// c_ij (length by force).
     pub give: f64,
-    /// ∂c_ij/∂ξ_i, ∂c_ij/∂ξ_j, and the second derivative by both.
+    /// ∂c_ij/∂ξ_i and ∂c_ij/∂ξ_j; `cross` is ∂²c_ij/∂ξ_i∂ξ_j (all length by force).
     pub slopes: [f64; 2],
     pub cross: f64,
-    /// F_j, and its derivative by F_n of the other contact.
+    /// F_j, and its derivative with respect to F_n of the other contact.
     pub force: f64,
     pub force_slope: f64,
-    /// Place of (normal row, normal column of the other).
+    /// Index of the entry (normal row, normal column of the other contact).
     pub block: usize,
-    /// Places of (normal row, other link), of (link, normal column of the other), and of (link, other link), row by row; none where a
-    /// degree of freedom has no equation.
+    /// Indices of the entries (normal row, other link), (link, normal column of the other), and (link, other link), row by row; `None`
+    /// where a degree of freedom has no equation.
     pub row: Vec<Option<usize>>,
     pub column: Vec<Option<usize>>,
     pub pairs: Vec<Option<usize>>,
@@ -54,9 +54,9 @@ pub struct Interface {
     /// What holds where the node touches, and how far that gives way along n to the normal force at hand (length).
     pub bond: Bond,
     pub given: f64,
-    /// The linearised contact on an element that gives under a point force: one there, else none.
+    /// The linearised contact on an element with local flexibility (a single entry); empty for other elements.
     pub point: Vec<Linearised>,
-    /// The other contacts on that element.
+    /// Couplings with the other contacts on that element.
     pub partners: Vec<Partner>,
     pub links: Vec<Link>,
     /// The element that `links` reach into, once they are listed.
@@ -75,7 +75,7 @@ pub struct Interface {
     pub moves: [bool; 2],
     /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.
     pub prescribed: [f64; 2],
-    /// What prescribed motion alone puts into the normal and the tangential row where the element gives (length).
+    /// Contribution of prescribed motions to the normal and tangential rows on an element with local flexibility (length).
     pub pushed: [f64; 2],
 }
 
@@ -86,7 +86,7 @@ impl Interface {
         [normal, tangent(normal)]
     }
 
-    /// Coefficient of a link in the normal (0) or tangential (1) motion.
+    /// Coefficient of a link in the normal (k = 0) or tangential (k = 1) motion.
     pub fn row(&self, link: usize, k: usize, frame: &[[f64; 2]; 2]) -> f64 {
         match self.point.first() {
             Some(point) => point.rows[k][link],
@@ -97,7 +97,7 @@ impl Interface {
         }
     }
 
-    /// Coefficient of ΔF_n (0) or ΔF_t (1) in the equation of a link.
+    /// Coefficient of ΔF_n (k = 0) or ΔF_t (k = 1) in the equation of a link.
     pub fn column(&self, link: usize, k: usize, frame: &[[f64; 2]; 2]) -> f64 {
         match self.point.first() {
             Some(point) => -point.columns[k][link],
@@ -108,7 +108,7 @@ impl Interface {
         }
     }
 
-    /// What prescribed motion alone puts into the normal (0) or tangential (1) row (length).
+    /// Contribution of prescribed motions to the normal (k = 0) or tangential (k = 1) row (length).
     pub fn prescribed_along(&self, k: usize, frame: &[[f64; 2]; 2]) -> f64 {
         match self.point.is_empty() {
             true => frame[k][0] * self.prescribed[0] + frame[k][1] * self.prescribed[1],
@@ -116,7 +116,7 @@ impl Interface {
         }
     }
 
-    /// Compliances in series along n and along t: those of the bond, and of the element (length by force).
+    /// Compliances along n and t (length by force): bond and element in series.
     pub fn give(&self) -> [f64; 2] {
         let [normal, tangential] = self.bond.give();
         let own = self.point.first().map_or(0.0, |point| point.give);

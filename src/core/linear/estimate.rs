@@ -33,7 +33,7 @@ const DENSE: f64 = 12e9;
 const MESH_ENTRIES: f64 = 10.0;
 const MESH_OPERATIONS: f64 = 21.0;
 const LU_ENTRIES: f64 = 6.0;
-/// Operations of a look at stability over c³, of c unknowns that are left: the products of conditions and stiffness, and a factorization.
+/// Operations of a stability check divided by c³, for c remaining unknowns: products of conditions and stiffness, and a factorization.
 const LOOK: f64 = 4.0;
 /// Bytes of an unknown, with its share of elements, pattern and stiffness, and of an entry of a given matrix.
 const UNKNOWN: f64 = 2500.0;
@@ -62,7 +62,7 @@ pub struct Estimate {
     pub condensed: Effort,
     /// Whether `auto` stands for condensed.
     pub condenses: bool,
-    /// What a look at stability costs ([`crate::linear::stability`]), counted in major iterations.
+    /// Cost of a stability check ([`crate::linear::stability`]) in major iterations.
     pub stability: f64,
     /// Bytes that the scene may take.
     pub budget: f64,
@@ -313,7 +313,7 @@ fn displacements(model: &Model) -> f64 {
     nodes.map(|(node, _)| of(node)).sum::<usize>() as f64
 }
 
-/// Unknowns that a look at stability keeps in its dense part: `c` of the interface, and all of bodies that want pivoting.
+/// Number of unknowns in the dense part of a stability check: `c` of the interface, and all unknowns of bodies that need pivoting.
 fn kept(model: &Model, c: f64) -> f64 {
     let pivoted = model.bodies.iter().map(|body| match &body.kind {
         BodyKind::Beam(beam) if beam.first_shear.is_some() => {
@@ -335,7 +335,7 @@ pub fn condensable(model: &Model) -> bool {
         BodyKind::Solid(_) | BodyKind::Truss(_) => true,
         BodyKind::Linear(linear) => linear.form == Form::Stiffness && linear.is_symmetric(),
     };
-    // Where elements give under point forces, rows and columns of the interface differ.
+    // On elements with local flexibility, rows and columns of the interface differ.
     let plain = model
         .surfaces
         .iter()

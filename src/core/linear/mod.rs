@@ -5,8 +5,9 @@
 //! - `system`: the bodies' system about a state; `residual`: its out-of-balance forces; [`norms`] of them; `sizes`: what is
 //!   large, what is nothing, and what double precision leaves.
 //! - `augmented` (eqn 9) and `reduced` (eqn 6): the two ways to solve a minor iteration; `condensation`: the bodies
-//!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `point_forces` and `partners`: those
-//!   on elements that give; `ordering`: the order of elimination; `bordered` and `border`: the load factor as one more unknown; `drag`: what resists a damped motion.
+//!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `point_forces` and `partners`: contacts
+//!   on elements with local flexibility; `ordering`: the order of elimination; `bordered` and `border`: the load factor as an additional
+//!   unknown; `drag`: resistance of a damped motion.
 //! - [`singular`]: why there is no solution; [`stability`]: which way a state of equilibrium leads, by its `tangent`;
 //!   [`estimate`]: what a scene takes of time and memory.
 

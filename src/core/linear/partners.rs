@@ -1,7 +1,7 @@
-//! Contacts on elements that give, in the whole system: their linearisation, and what those on one element do to each other.
+//! Contacts on elements with local flexibility in the whole system: linearisation, and coupling of the contacts on the same element.
 //!
-//! With c_ij and X_j of [`crate::contact::point_force`], contact j enters the normal row of i by c_ij ΔF_j + ∂c_ij/∂ξ_j F_j X_j Δu, and turns
-//! the force of i by ∂c_ij/∂ξ_i ΔF_j + ∂²c_ij/∂ξ_i∂ξ_j F_j X_j Δu.
+//! With c_ij and X_j of [`crate::contact::point_force`], contact j adds c_ij ΔF_j + ∂c_ij/∂ξ_j F_j X_j Δu to the normal row of i, and
+//! rotates the force of i by ∂c_ij/∂ξ_i ΔF_j + ∂²c_ij/∂ξ_i∂ξ_j F_j X_j Δu.
 
 use super::coupling::{Interface, Partner};
 use super::point_forces::{PointForces, Press};
@@ -11,7 +11,7 @@ use crate::fem::lagrange::MAX_NODES;
 use crate::linalg::Pattern;
 use crate::model::Model;
 
-/// Linearises all contacts on elements that give, for the forces at hand.
+/// Linearises all contacts on elements with local flexibility for the current forces.
 pub fn find_points(
     (points, interfaces): (&mut PointForces, &mut [Interface]),
     (positions, step): (&[[f64; 2]], &[f64]),
@@ -47,7 +47,7 @@ pub fn find_points(
     }
 }
 
-/// Adds the entries that contacts on one element have in common to those of the whole system.
+/// Adds the coupling entries of contacts on the same element to the pattern of the whole system.
 pub fn join_partners(
     interfaces: &[Interface],
     pairing: &[Option<(usize, usize)>],
@@ -75,8 +75,7 @@ pub fn join_partners(
     }
 }
 
-/// Enters what the other contacts on its element do in the column and, where that says anything of the `motion`, in the normal row of a
-/// contact.
+/// Adds the coupling of contact `s` with the other contacts on its element to the column and, if `motion` is set, to the normal row.
 pub fn place_partners(interfaces: &[Interface], values: &mut [f64], s: usize, motion: bool) {
     let Some(point) = interfaces[s].point.first() else {
         return;
@@ -102,8 +101,8 @@ pub fn place_partners(interfaces: &[Interface], values: &mut [f64], s: usize, mo
     }
 }
 
-/// What the others on its element did to the normal motion of a contact (length), once the whole system is solved: from its increments, by
-/// degree of freedom, and those of the forces.
+/// Contribution of the other contacts on the element to the normal motion of a contact (length), computed after the solution from the
+/// increments of the degrees of freedom and of the forces.
 pub fn partners_motion(
     interfaces: &[Interface],
     s: usize,
@@ -121,7 +120,8 @@ pub fn partners_motion(
     did.sum()
 }
 
-/// Adds what turning and travelling forces do to the stiffness (where `both`), and through prescribed motions.
+/// Adds the effect of rotating and moving contact forces to the stiffness (if `both` is set), and that of prescribed motions to the
+/// coupling.
 pub fn turn_points(
     interfaces: &[Interface],
     (stiffness, both): (&mut [f64], bool),
@@ -162,7 +162,7 @@ pub fn turn_points(
 }
 
 impl Interface {
-    /// Finds what prescribed motions alone do to its rows.
+    /// Computes the contribution of prescribed motions to the rows of this contact.
     fn push_by(&mut self, model: &Model, step: &[f64]) {
         let Some(point) = self.point.first() else {
             return;
@@ -175,7 +175,7 @@ impl Interface {
     }
 }
 
-/// Renews what the contacts of a group do to each other, and finds its places where they are new to each other.
+/// Updates the couplings between the contacts of a group; looks up the matrix entries of new pairs.
 fn pair_up(interfaces: &mut [Interface], group: &[Press], model: &Model, pattern: &Pattern) {
     for press in group {
         let others = || group.iter().filter(|other| other.contact != press.contact);
@@ -199,7 +199,7 @@ fn pair_up(interfaces: &mut [Interface], group: &[Press], model: &Model, pattern
     }
 }
 
-/// Where two contacts meet in the whole system.
+/// Indices of the coupling entries of two contacts in the whole system.
 fn places(
     interfaces: &[Interface],
     press: &Press,

@@ -1,4 +1,4 @@
-//! Point forces on elements that give ([`crate::contact::point_force`]), at all contacts: each finds what the others on its element do.
+//! Point forces of all contacts on elements with local flexibility ([`crate::contact::point_force`]), including their mutual effects.
 
 use crate::contact::element::Element;
 use crate::contact::point_force::{self, Others, Pair, tilt, turned};
@@ -6,30 +6,30 @@ use crate::contact::projection::{SurfacePoint, projection_at};
 use crate::contact::state::ContactState;
 use crate::model::{Mode, Model, PointGive};
 
-/// Rounds in which forces along n and angles are found: each leaves tan² α of the error of the one before.
+/// Fixed-point iterations for normal forces and angles: each reduces the error by the factor tan² α.
 const ROUNDS: usize = 8;
 
-/// A contact over an element that gives.
+/// A contact over an element with local flexibility.
 #[derive(Debug, Clone, Copy)]
 pub struct Press {
     /// Number of the contact.
     pub contact: usize,
-    /// Where it is.
+    /// Closest point on the master surface.
     pub spot: SurfacePoint,
-    /// What the element leaves out, and its degree.
+    /// Local flexibilities of the element, and its polynomial degree.
     pub give: PointGive,
     pub degree: usize,
     /// F_n, and F = F_n cos α.
     f_n: f64,
     pub force: f64,
-    /// tan α, and n turned by it.
+    /// tan α, and n rotated by α (unit).
     tilt: f64,
     pub normal: [f64; 2],
     /// √m / (m − g k), and n of the element's line.
     lever: f64,
     pub line: [f64; 2],
     own: Pair,
-    /// What the other forces on the element do here.
+    /// Contribution of the other forces on the element at this point.
     pub others: Others,
 }
 
@@ -64,17 +64,17 @@ impl Press {
         })
     }
 
-    /// c_ij of this place and that of another contact on the element.
+    /// c_ij and its derivatives for this contact and another contact on the same element.
     pub fn with(&self, other: &Press) -> Pair {
         Pair::new(&self.give, self.degree, self.spot.xi, other.spot.xi)
     }
 
-    /// How far the surface gives way here (length).
+    /// Local deflection of the surface at this point (length).
     pub fn given(&self) -> f64 {
         self.own.give * self.force + self.others.give
     }
 
-    /// How far the node is judged outside of itself: along n of the element's line.
+    /// Offset (length) of the point at which the node is judged, along n of the element's line.
     pub fn way_out(&self) -> [f64; 2] {
         self.line.map(|n| n * self.given())
     }
@@ -86,14 +86,14 @@ impl Press {
     }
 }
 
-/// All contacts over elements that give, element by element.
+/// All contacts over elements with local flexibility, grouped by element.
 #[derive(Debug, Default)]
 pub struct PointForces {
     presses: Vec<Press>,
 }
 
 impl PointForces {
-    /// Finds them for contacts in these states.
+    /// Updates the list for contacts in these states.
     pub fn find(&mut self, model: &Model, positions: &[[f64; 2]], contacts: &[ContactState]) {
         let nodes = contacts.iter().enumerate();
         let found = nodes.filter_map(|(s, node)| Press::new(model, positions, s, node));
@@ -106,12 +106,12 @@ impl PointForces {
         }
     }
 
-    /// The contacts, those on one element together.
+    /// Iterates over the contacts of each element.
     pub fn groups(&self) -> impl Iterator<Item = &[Press]> {
         self.presses.chunk_by(on_one_element)
     }
 
-    /// All of them.
+    /// All contacts in the list.
     pub fn all(&self) -> &[Press] {
         &self.presses
     }
@@ -121,7 +121,7 @@ fn on_one_element(a: &Press, b: &Press) -> bool {
     (a.spot.surface, a.spot.element) == (b.spot.surface, b.spot.element)
 }
 
-/// Finds angles and forces of the contacts on one element.
+/// Computes angles and forces of the contacts on an element.
 fn settle(group: &mut [Press]) {
     if let [alone] = group {
         return alone.turn();

@@ -63,7 +63,7 @@ impl System {
             }
         }
         let [floor, mut length_floor] = self.floors;
-        // Places are known to their own round-off, which counts where that is more than the tolerance.
+        // Positions are exact up to their round-off; it is the floor where it exceeds the tolerance.
         let placed = ROUND_OFF * f64::EPSILON * self.reach;
         if placed > tolerance * model.length {
             length_floor = length_floor.max(placed);

@@ -44,7 +44,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// The sizes of a scene.
+    /// Computes the sizes of a scene.
     pub fn new(model: &Model) -> Self {
         let kind = kinds(model);
         let mut sizes = Sizes {
@@ -139,8 +139,8 @@ impl Sizes {
     }
 }
 
-/// The number of the body whose forces are the largest under a motion of the scene, and the round-off to expect of them, relative
-/// to the loads that make the softest body move as far: machine precision times the ratio of the two stiffnesses. `None`
+/// Number of the stiffest body, and the expected relative round-off of its forces: machine precision times the ratio of its
+/// stiffness to that of the softest body. The reference is the load that moves the softest body by the same distance. `None`
 /// without a body of elements.
 pub fn expected_noise(model: &Model) -> Option<(usize, f64)> {
     let stiffness = |body: &Body| match &body.kind {

@@ -285,7 +285,7 @@ pub trait Source: Send {
     /// Judges a converged state by positions and forces alone ([`crate::contact::judge`]).
     fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict;
 
-    /// How far the solids of a state are deformed. `None` where there are no solids, or that is not known.
+    /// Extreme deformations of the solids in a state. `None` if there are no solids or the source does not compute them.
     fn deformation(&self, _u: &[f64]) -> Option<Deformation> {
         None
     }
@@ -310,7 +310,7 @@ pub trait Source: Send {
         Stability::NotKnown
     }
 
-    /// What a look at stability costs, counted in major iterations; infinite where it cannot tell.
+    /// Cost of a stability check in major iterations; infinite if the source cannot check stability.
     fn stability_cost(&self) -> f64 {
         f64::INFINITY
     }

@@ -52,7 +52,7 @@ pub enum Stability {
 }
 
 impl Stability {
-    /// Whether some admissible motion is known to lead away.
+    /// Whether an admissible motion away from the state was found.
     pub fn is_unstable(self) -> bool {
         matches!(self, Stability::Unstable { .. } | Stability::Divergence)
     }
@@ -95,7 +95,7 @@ pub(super) struct Conditions {
 }
 
 impl Conditions {
-    /// Takes each motion times its lever as unknown.
+    /// Scales the unknowns: each unknown becomes the motion times its lever.
     pub fn divide_by(&mut self, levers: &[f64]) {
         let springs = self.springs.iter_mut().map(|(row, _)| row);
         for row in self.motion.iter_mut().chain(&mut self.force).chain(springs) {

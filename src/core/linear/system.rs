@@ -81,7 +81,7 @@ pub struct System {
     pub(super) estimate: Estimate,
     /// Whether the scene's bodies may be condensed by [`Condensation`].
     pub(super) condensable: bool,
-    /// Contacts over elements that give under point forces; and whether there are such elements.
+    /// Contacts over elements with local flexibility under point forces, and whether such elements exist.
     pub(super) points: PointForces,
     pub(super) has_points: bool,
     /// The elements that `whole` has places for.
@@ -92,7 +92,7 @@ pub struct System {
     pub sizes: Sizes,
     /// Current position of every node.
     pub positions: Vec<[f64; 2]>,
-    /// Largest coordinate among them (length).
+    /// Largest coordinate of `positions` (length).
     pub(super) reach: f64,
     pub(super) interfaces: Vec<Interface>,
     pub(super) condensed: Condensed,

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// Most unknowns of the dense part.
 const MOST: usize = 1500;
-/// An element gives nothing where the scene's force moves it by less than this part of the scene's length.
+/// Local flexibility is neglected where the scene's force deflects the element by less than this fraction of the scene's length.
 const RIGID: f64 = 1e-9;
 
 /// The bodies' tangent as stability needs it.
@@ -32,7 +32,7 @@ pub struct Tangent {
     pivoted: Vec<bool>,
     /// By equation, whether it is one of lengths.
     lengths: Vec<bool>,
-    /// By equation, what makes a motion a length: 1, and for rotations the scene's length.
+    /// Factor by equation that converts a motion to a length: the scene's length for rotations, 1 otherwise.
     levers: Vec<f64>,
     /// The factors, and the equations c of their dense part, ascending.
     factors: Option<(Vec<usize>, SymmetricFactors)>,
@@ -128,7 +128,7 @@ impl Tangent {
         self.assembly.assemble(&model.dofs, moved, out);
         let diagonal = |e: usize| self.pattern.slot(e, e);
         stiffen(model, at, sizes, diagonal, &mut self.values);
-        // In one unit for all motions, so that round-off does not depend on the user's units.
+        // All motions are converted to lengths, so that round-off does not depend on the user's units.
         for (value, (row, column)) in self.values.iter_mut().zip(self.pattern.iter()) {
             *value /= self.levers[row] * self.levers[column];
         }
@@ -292,7 +292,7 @@ fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Op
             if !interface.partners.is_empty() {
                 return None;
             }
-            // Next to a border the compliance is too small to be a spring.
+            // Near a border the local flexibility is too small for a spring.
             if point.compliance > RIGID * model.length / system.norms.scale {
                 give[0] += point.compliance;
             }

@@ -91,7 +91,7 @@ pub struct Solid {
     pub elements: Vec<SolidElement>,
     /// What they are made of.
     pub materials: Vec<Elastic>,
-    /// Their names in the scene, in the same order.
+    /// Names of the materials in the scene, in the same order.
     pub material_names: Vec<String>,
     /// The faces around it ([`boundary`](super::mesh::boundary)).
     pub edges: Vec<Vec<usize>>,

@@ -17,7 +17,7 @@ pub struct Surface {
     /// The pieces of a smooth curve through all nodes, one for each element, whose nodes are then those that the piece
     /// depends on. Empty where each element is the Lagrange curve through its own nodes.
     pub smooth: Vec<Piece>,
-    /// What each element gives beside its interpolation where a point force acts. Empty where that is nothing.
+    /// Local flexibilities of each element under point forces, in addition to its interpolation. Empty if all are zero.
     pub gives: Vec<PointGive>,
 }
 
@@ -27,7 +27,7 @@ pub struct Surface {
 pub struct PointGive {
     /// L / (8 GA), length by force.
     pub shear: f64,
-    /// L³ / (32 EI), length by force; 0 leaves out what bending adds.
+    /// L³ / (32 EI), length by force; 0 omits the bending part.
     pub bending: f64,
 }
 
@@ -66,17 +66,18 @@ pub struct Contact {
     /// Tributary area of the undeformed slave node, by which forces are pressures; that of a whole turn where its body is
     /// axisymmetric. `None` where nothing tells it.
     pub area: Option<f64>,
-    /// Which pieces of a cut master it may touch. `None` where no master of it is cut, and where it has no outward side.
+    /// Data for selecting the pieces of a cut master that the node may touch. `None` if none of its masters is cut, or if the node
+    /// has no outward side.
     pub facing: Option<Facing>,
 }
 
-/// What decides which pieces of a master that is cut at its corners a slave node may touch ([`crate::contact::facing`]).
+/// Selects the pieces that a slave node may touch, for a master that is cut at its corners ([`crate::contact::facing`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facing {
-    /// The nodes before and after the slave node along the outline of its body, or itself at an end; the outside of the body is
-    /// on the right of the walk from the first to the second.
+    /// Nodes before and after the slave node along the outline of its body; at an end of the outline, the slave node itself. The
+    /// outside of the body is to the right of the line from the first node to the second.
     pub outline: [usize; 2],
-    /// Numbers of the surfaces that are pieces, ascending; the node may touch its other surfaces whichever way it faces.
+    /// Numbers of the surfaces that are pieces, ascending. The node may touch its other surfaces regardless of direction.
     pub pieces: Vec<usize>,
 }
 

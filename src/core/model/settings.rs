@@ -301,7 +301,7 @@ documented! {
 }
 
 impl PointForce {
-    /// Whether it is what a scene that does not name it has.
+    /// Whether the value is the default, which scenes omit.
     pub fn is_default(&self) -> bool {
         *self == PointForce::default()
     }

@@ -72,7 +72,7 @@ impl Event {
 }
 
 impl Event {
-    /// Whether a history along the path ends here at the bound on its length, and has not come to its last corner.
+    /// Whether a history along the path ends here at the maximum arc length, before its last corner.
     pub fn is_cut_short(&self, model: &Model) -> bool {
         let last = matches!(self.outcome, Outcome::Increment { last: true, .. });
         let bound = farthest(model) * (1.0 - ROUNDING);
@@ -163,14 +163,15 @@ pub enum Outcome {
         unsettled: u32,
         /// The law that is broken although the increment is accepted; `None` if all laws hold.
         marked: Option<Finding>,
-        /// Whether it leaves the branch of stable equilibrium that it began on: it ends on another one, or in an unstable state.
+        /// Whether the increment leaves the branch of stable equilibrium on which it started: it ends on another branch or in an
+        /// unstable state.
         jumped: bool,
-        /// What the increment ends in, where that is unstable and its start was not known to be.
+        /// Loss of stability: set if the end state is unstable and the start state was not known to be unstable.
         unstable: Option<StabilityLoss>,
         /// The damped motion that it ends, if any.
         motion: Option<Motion>,
-        /// The worst point where a solid leaves the range of its law in this increment; `None` where all stay inside, or one
-        /// was outside before.
+        /// Worst point at which a solid leaves the range of its law in this increment. `None` if all points are inside, or if a
+        /// point was outside before.
         left_range: Option<PointDeformation>,
         /// Whether the history ends here.
         last: bool,
@@ -284,7 +285,7 @@ pub enum Failure {
         motion: f64,
         /// How far it was predicted to move (length).
         predicted: f64,
-        /// What it ends in, where that is unstable and its start was not known to be.
+        /// Kind of instability: set if the end state is unstable and the start state was not known to be unstable.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         unstable: Option<Stability>,
     },
@@ -321,13 +322,13 @@ pub enum Failure {
     Refused(Finding),
     /// An element of a solid is inverted: det F is not positive at one of its points.
     Inverted(PointDeformation),
-    /// The increment was cut again and again because of one slave node, whose state does not depend on the size.
+    /// The increment was cut repeatedly because of the same slave node, whose state does not depend on the increment size.
     CutTooOften {
         /// Slave number.
         slave: usize,
-        /// How often the increment was cut because of it.
+        /// Number of cuts because of this node.
         cuts: u32,
-        /// What it failed of last.
+        /// Cause of the last failure.
         last: Box<Failure>,
     },
     /// Neither a touching node nor its master can move to close the gap.
@@ -349,7 +350,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The slave node of which it failed, the first where there are several. `None` where no node is to blame.
+    /// Slave node that caused the failure, the first if there are several. `None` if the failure is not due to a slave node.
     pub fn culprit(&self) -> Option<usize> {
         match self {
             Failure::Cycle(cycle) => cycle.members.first().map(|(slave, _)| *slave),

@@ -19,7 +19,7 @@ use std::sync::Arc;
 const ROUNDING: f64 = 1e-9;
 /// Smallest part of an increment that halves can be.
 const SMALLEST_HALF: f64 = 1e-9;
-/// Times that a whole increment is cut because of one node before it fails.
+/// Maximum number of cuts of a whole increment because of the same node, before the increment fails.
 const MOST_CUTS: u32 = 300;
 /// A major iteration is not damped below this part of its load.
 const SMALLEST_PART: f64 = 1e-6;
@@ -37,8 +37,8 @@ impl Stepper {
         again.unwrap_or(Outcome::Failed(why))
     }
 
-    /// The end of an increment that was cut [`MOST_CUTS`] times because of one node: its parts are accepted one by one, and each
-    /// next one fails at the same node.
+    /// Failure of an increment that was cut [`MOST_CUTS`] times because of the same node: each part is accepted, and the next part
+    /// fails at the same node.
     pub(super) fn cut_too_often(&self, why: &Failure) -> Option<Failure> {
         let slave = why.culprit()?;
         let cuts = *self.state.cuts.get(&slave)?;

@@ -85,7 +85,7 @@ pub enum Refusal {
     /// A friction out of bounds.
     #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
     Friction,
-    /// Gaps of the start are long past, and surfaces are made.
+    /// Settings that apply only when the scene is opened, because they fix the initial gaps and the surfaces.
     #[error(
         "initial_gaps, adjust_gap and point_force are settled when a scene is opened: set them in its file, or with --set"
     )]

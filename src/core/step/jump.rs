@@ -1,12 +1,12 @@
 //! Jumps: where the loads pass a limit point, the increment that does so ends on another branch of equilibrium, far from where
 //! it began, and nothing in that state says so.
 //!
-//! A jump is a motion that does not shrink as the increment is halved. So an increment that moves beyond what is expected of it
-//! ([`crate::step::pace`]) is suspected, and so is one that ends in an unstable state ([`crate::step::watch`]): the ladder tries
-//! its halves, down to the least increment. Smooth motion shrinks with the increment, and where a tangent only goes soft with its
-//! square root. Of a jump all is left but the part that led there; what has shrunk by less than the fourth root is one, and is
-//! accepted marked. A change of modes, a node that opens or slides or touches, or a load that sets in, shrinks. Where nothing is
-//! cut, what is suspected is marked.
+//! A jump is a motion that does not shrink as the increment is halved. An increment is suspected if it moves more than expected
+//! ([`crate::step::pace`]) or ends in an unstable state ([`crate::step::watch`]); the ladder then tries its halves, down to the
+//! least increment. A smooth motion shrinks in proportion to the increment, and with its square root where the tangent only
+//! softens. The motion of a jump hardly shrinks: only the part before the jump gets smaller. A motion that has shrunk by less
+//! than the fourth root is a jump, and the increment is accepted and marked. Motions due to a change of modes, to a node that
+//! opens, slides or touches, or to the onset of a load do shrink. If increments are not cut, suspected increments are marked.
 //!
 //! A way round ([`crate::step::detour`]) must not jump: what lies on another branch is no answer to halves that fail, and where a
 //! structure lets go may not depend on the increment.
@@ -28,34 +28,34 @@ use crate::strategy;
 /// Motions below this part of the scene's length are no jumps: round-off makes as much of them.
 const NOTHING: f64 = 1e-9;
 
-/// In spite of what a state is accepted.
+/// Reservations with which a state is accepted.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Landing {
-    /// The law that it breaks.
+    /// Law that the state violates.
     pub marked: Option<Finding>,
-    /// Whether it leaves the branch of stable equilibrium.
+    /// Whether the increment leaves the branch of stable equilibrium.
     pub jumped: bool,
-    /// What it is, where it is unstable and its start was not known to be.
+    /// Loss of stability: set if the state is unstable and the start state was not known to be unstable.
     pub unstable: Option<StabilityLoss>,
 }
 
-/// How far an increment moved.
+/// Motion of an increment and the data to judge it.
 #[derive(Clone, Copy)]
 struct Trip {
-    /// Its largest displacement (length).
+    /// Largest displacement (length).
     motion: f64,
-    /// Load factors between which it went.
+    /// Load factors at its start and end.
     span: [f64; 2],
-    /// What it was suspected as when it was whole, or would be now.
+    /// Record of the whole increment when it was first suspected; of this increment if it was not suspected before.
     suspect: Suspect,
-    /// Whether it moved beyond what is expected.
+    /// Whether the motion exceeds the expected motion.
     exceeds: bool,
-    /// Stability of its end, where it was looked at.
+    /// Stability of the end state, if it was checked.
     found: Option<Stability>,
 }
 
 impl Landing {
-    /// Accepted against a law, if any.
+    /// A landing that violates this law, if any, without other reservations.
     pub fn marked(marked: Option<Finding>) -> Self {
         Landing {
             marked,
@@ -69,7 +69,7 @@ impl Trip {
         (self.span[1] - self.span[0]).abs()
     }
 
-    /// Whether it is a part of a suspected increment that has shrunk as a smooth motion does.
+    /// Whether this is a part of a suspected increment whose motion has shrunk like a smooth motion.
     fn follows(&self) -> bool {
         let size = self.size();
         self.suspect.size > size && !self.suspect.jumps(self.motion, size)
@@ -77,7 +77,7 @@ impl Trip {
 }
 
 impl Stepper {
-    /// Accepts a state that the judge finds right, or that is only `marked`; or cuts the increment where it may have jumped.
+    /// Accepts a state that satisfies the laws or is `marked` with a violation; cuts the increment instead if it may have jumped.
     pub(super) fn land(
         &mut self,
         after: Norms,
@@ -94,7 +94,7 @@ impl Stepper {
         };
         let cuts = matches!(self.model.jumps, Jumps::Cut | Jumps::Stop);
         if trip.exceeds || landing.unstable.is_some() && cuts {
-            // A state that is accepted against a law is not tried in parts, but marked.
+            // A state that violates a law is marked, not cut.
             if landing.marked.is_none()
                 && let Some(tried) = self.try_parts(&trip, &why)
             {
@@ -108,7 +108,7 @@ impl Stepper {
         self.touch_down(after, verdict, landing, &trip)
     }
 
-    /// How far the present increment moved, and what it fails of where that is too far.
+    /// Motion of the current increment, and the failure to report if the motion is too large.
     fn trip(&mut self) -> (Trip, Failure) {
         let state = &self.state;
         let span = [state.start.load_factor, state.load_factor];
@@ -145,12 +145,12 @@ impl Stepper {
         (trip, why)
     }
 
-    /// Stability of the state that is about to be accepted.
+    /// Checks the stability of the state that is about to be accepted.
     fn look(&mut self) -> Stability {
         self.source.stability(&self.state.at())
     }
 
-    /// Cuts an increment that may have jumped, or fails where a jump is not to be accepted. `None` where it is accepted.
+    /// Cuts an increment that may have jumped, or fails if jumps are not allowed. `None` if the increment is accepted.
     fn try_parts(&mut self, trip: &Trip, why: &Failure) -> Option<Outcome> {
         let (jumps, size) = (self.model.jumps, trip.size());
         let smallest = size <= self.state.controls.least;
@@ -204,7 +204,7 @@ impl Stepper {
         let (state, model) = (&mut self.state, &self.model);
         state.watch.take(trip.span[1], state.next.major, trip.found);
         if landing.jumped {
-            // The other branch has a pace of its own.
+            // The pace of the previous branch does not apply to the new branch.
             state.pace = Pace::default();
         } else if trip.size() > 0.0 {
             state.pace.take(model, trip.motion, trip.span);

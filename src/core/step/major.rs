@@ -24,7 +24,7 @@ const STILL: f64 = 1e-8;
 const NEAR: f64 = 1e-10;
 /// Part of the out-of-balance force that a major iteration may leave with old factors before they are renewed.
 const ENOUGH: f64 = 0.1;
-/// Major iteration up to which an element may be inverted: the first ones may overshoot, later ones show where they lead.
+/// First major iteration from which an inverted element is refused: earlier iterations may overshoot and recover.
 const OVERSHOOT: u32 = 8;
 /// Times the major iterations that keep its size after which an increment along the path is lost.
 const LOST: u32 = 2;
@@ -222,7 +222,7 @@ impl Stepper {
         let (whole, part) = (self.state.load_factor, self.state.last_target);
         let pace = &mut self.state.pace;
         if self.state.next.major == 1 {
-            // A damped iteration goes only a part of the way.
+            // A damped iteration covers only part of the increment.
             let from = self.state.start.load_factor;
             let times = (whole - from) / (part - from);
             let times = if times.is_finite() { times } else { 1.0 };
@@ -287,7 +287,7 @@ impl Stepper {
     }
 }
 
-/// Marks the records of contacts that stayed in a corner in the last minor iteration, and slide from here on.
+/// Marks the records of contacts that were held in a corner in the last minor iteration and now slide.
 fn note_releases(records: &mut [ContactRecord], nodes: &[ContactState], friction: &[Friction]) {
     for (record, (node, friction)) in records.iter_mut().zip(nodes.iter().zip(friction)) {
         let stayed = record.decision.next == Mode::Fixed && node.mode == Mode::Sliding;

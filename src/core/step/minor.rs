@@ -99,7 +99,8 @@ impl Stepper {
         }
     }
 
-    /// Round-off of the slave nodes' positions, over the scene's length: far from the origin, statuses tie within that.
+    /// Round-off of the slave nodes' positions relative to the scene's length. Far from the origin it sets the tolerance for ties
+    /// between contact statuses.
     fn placed(&self) -> f64 {
         let places = (0..self.state.nodes.len()).map(|contact| self.source.position(contact));
         let reach = places.fold(0.0_f64, |most, [x, y]| most.max(x.abs()).max(y.abs()));

@@ -1,14 +1,14 @@
 //! How fast a scene moves, and by that which increments are suspected to have jumped.
 //!
-//! A pace belongs to a way of loading. Over a span of the load factor, load k changes by Δ_k, in parts of its largest value.
-//! Two spans load alike where their vectors Δ are parallel; the motion expected then grows as |Δ|. Where the path turns a corner
-//! or a load's own scale bends, Δ points elsewhere, and nothing is expected from the increments before.
+//! A pace applies to a direction of loading. Over a span of the load factor, load k changes by Δ_k, relative to its largest value.
+//! Two spans have the same direction if their vectors Δ are parallel; the expected motion is then proportional to |Δ|. At a corner
+//! of the path or a kink in the scale of a load the direction changes, and the previous increments predict nothing.
 //!
-//! An increment is suspected where it moves more than `RATIO` times what its tangent predicts, or what the fastest increment
-//! before it did; or where the tangent did not hold (its correction is more than `OFF` of its prediction) and the motion is more
-//! than `FASTER` times that of the increment just before. The last catches a limit point after a soft stretch, whose tangent
-//! and fastest increment both predict large motions. Where nothing is cut no halves can decide, and the fastest increment before
-//! is not asked: a node that begins to slide is no jump.
+//! An increment is suspected if its motion is more than `RATIO` times the prediction of its tangent, or than the motion of the
+//! fastest previous increment. It is also suspected if the tangent did not hold (its correction is more than `OFF` of its
+//! prediction) and the motion is more than `FASTER` times that of the previous increment. This criterion detects a limit point
+//! after a soft stretch, where the tangent and the fastest increment both predict large motions. If increments are not cut, halves
+//! cannot confirm a jump, and the fastest previous increment is ignored: a node that starts to slide is not a jump.
 
 use crate::model::{Factor, Model};
 use crate::step::sub_increment::SubIncrement;
@@ -19,13 +19,13 @@ pub const RATIO: f64 = 4.0;
 
 /// The same where the halves of a suspected increment have failed: there is less doubt.
 const RATIO_OVER: f64 = 2.0;
-/// How many times the motion of the increment before it an increment may move whose tangent does not hold.
+/// Maximum ratio of the motion of an increment whose tangent does not hold to the motion of the previous increment.
 const FASTER: f64 = 2.5;
-/// A tangent holds whose corrections come to no more than this part of its prediction.
+/// A tangent holds if its corrections sum to at most this fraction of its prediction.
 const OFF: f64 = 0.5;
-/// Cosine of the angle between two changes of the loads that count as parallel.
+/// Minimum cosine of the angle between two changes of the loads that count as parallel.
 const PARALLEL: f64 = 0.999;
-/// Rates of loading that differ by less than this part are the same.
+/// Rates of loading that differ by less than this fraction count as equal.
 const SAME: f64 = 1e-9;
 
 /// What is known of how fast the scene moves.
@@ -33,15 +33,16 @@ const SAME: f64 = 1e-9;
 pub struct Pace {
     /// Largest displacement of the present attempt's first major iteration.
     pub predicted: f64,
-    /// Sum of the largest displacements of its further major iterations.
+    /// Sum of the largest displacements of the later major iterations (length).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub corrected: f64,
-    /// Largest displacement by load factor of the fastest accepted increment since the last jump, as over `span`.
+    /// Largest displacement per unit load factor of the fastest accepted increment since the last jump, converted to the loading
+    /// over `span`.
     pub fastest: f64,
-    /// Largest displacement by load factor of the last accepted increment.
+    /// Largest displacement per unit load factor of the last accepted increment.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub last: f64,
-    /// Load factors between which the last accepted increment went.
+    /// Load factors at the start and end of the last accepted increment.
     #[serde(default, skip_serializing_if = "is_at_zero")]
     pub span: [f64; 2],
     /// The increment that is suspected, of which the present one is a part.
@@ -62,14 +63,14 @@ pub struct Suspect {
     pub sub_increment: SubIncrement,
 }
 
-/// The motions that are expected of an increment: each is that of a measure, where it has one.
+/// Expected motions of an increment (length), by the tangent and by the previous increments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Expected {
-    /// By its tangent.
+    /// Predicted by the tangent; 0 without a prediction.
     tangent: f64,
     /// Whether the tangent held.
     holds: bool,
-    /// By the fastest increment before, and by the last one.
+    /// Predicted by the fastest previous increment, and by the last increment. `None` if they were loaded in another direction.
     before: Option<[f64; 2]>,
     ratio: f64,
 }
@@ -83,7 +84,8 @@ fn is_at_zero(span: &[f64; 2]) -> bool {
 }
 
 impl Pace {
-    /// What revisions before these measures knew of it: digests of states are over that ([`State::digested`]).
+    /// The pace without the fields added after the first journals: digests of states cover the older fields only
+    /// ([`State::digested`]).
     ///
     /// [`State::digested`]: crate::step::state::State::digested
     pub(super) fn digested(self) -> Pace {
@@ -95,7 +97,7 @@ impl Pace {
         }
     }
 
-    /// The motions that are expected over a span.
+    /// Computes the expected motions over a span of the load factor.
     pub(super) fn expected(&self, model: &Model, span: [f64; 2]) -> Expected {
         let before = match self.fastest > 0.0 {
             true => parallel(model, self.span, span),
@@ -110,13 +112,13 @@ impl Pace {
         }
     }
 
-    /// Takes an accepted motion over a span into account.
+    /// Records an accepted motion (length) over a span of the load factor.
     pub(super) fn take(&mut self, model: &Model, motion: f64, span: [f64; 2]) {
         let carried = parallel(model, self.span, span).map_or(0.0, |times| self.fastest * times);
         let rate = motion / length(span);
         self.fastest = carried.max(rate);
         (self.last, self.span) = (rate, span);
-        // A suspected increment that is passed is no place to go back to.
+        // A suspected increment is dropped once the run has passed its end.
         let passed = |suspect: &Suspect| {
             let whole = suspect.sub_increment;
             (span[1] - whole.target()) * (whole.to - whole.from).signum() >= 0.0
@@ -128,13 +130,13 @@ impl Pace {
 }
 
 impl Expected {
-    /// The least of the tangent's motion and that at the pace of the fastest increment before.
+    /// Smaller of the motions predicted by the tangent and by the fastest previous increment (length).
     pub(super) fn least(&self) -> f64 {
         self.before
             .map_or(self.tangent, |[fastest, _]| self.tangent.min(fastest))
     }
 
-    /// Whether a motion is beyond what is expected; `cuts` says whether halves can decide.
+    /// Whether a motion (length) exceeds the expected motion. `cuts` is whether increments are cut, so that halves can confirm a jump.
     pub(super) fn is_exceeded(&self, motion: f64, cuts: bool) -> bool {
         let expected = if cuts { self.least() } else { self.tangent };
         let faster = FASTER * self.ratio / RATIO;
@@ -150,8 +152,8 @@ impl Suspect {
     }
 }
 
-/// How many times as much the loads, pressures and prescribed motions change by load factor over one span as over another.
-/// `None` where they change in another way.
+/// Ratio of the rates of change of loads, pressures and prescribed motions per unit load factor: span `now` over span `before`.
+/// `None` if the changes are not parallel.
 fn parallel(model: &Model, before: [f64; 2], now: [f64; 2]) -> Option<f64> {
     let loads = model.loads.iter().map(|load| (load.value, &load.scale));
     let pressures = model
@@ -176,7 +178,7 @@ fn parallel(model: &Model, before: [f64; 2], now: [f64; 2]) -> Option<f64> {
         }
     }
     if !named || model.contacts.iter().any(|contact| contact.overlap != 0.0) {
-        // Overlaps are closed, or nothing is named that loads: the load factor itself is what changes.
+        // Overlaps are being closed, or the scene names no loads: only the load factor changes.
         let whole = peak(&model.path, &Factor::default());
         let change = |[from, to]: [f64; 2]| (to - from) / whole;
         add(change(before), change(now));
@@ -186,7 +188,7 @@ fn parallel(model: &Model, before: [f64; 2], now: [f64; 2]) -> Option<f64> {
         return None;
     }
     let times = (here / there).sqrt() * length(before) / length(now);
-    // Loads that are linear in the load factor have the same rate, to the bit.
+    // Loads linear in the load factor give a ratio of exactly 1.
     Some(if (times - 1.0).abs() < SAME {
         1.0
     } else {
@@ -194,12 +196,12 @@ fn parallel(model: &Model, before: [f64; 2], now: [f64; 2]) -> Option<f64> {
     })
 }
 
-/// Length of a span.
+/// Length of a span of the load factor.
 fn length([from, to]: [f64; 2]) -> f64 {
     (to - from).abs()
 }
 
-/// Largest size of a factor over the path.
+/// Largest absolute value of a factor over the path.
 fn peak(path: &[f64], scale: &Factor) -> f64 {
     let points = scale.0.iter().map(|point| point.1);
     let corners = path.iter().map(|&at| scale.at(at));

@@ -58,7 +58,7 @@ pub struct State {
     /// The part of an increment that is aimed at.
     #[serde(rename = "piece")]
     pub sub_increment: SubIncrement,
-    /// How often the present whole increment was cut because of a slave node, by node; empty before the first such cut.
+    /// Number of cuts of the current whole increment because of a slave node, by node; empty before the first such cut.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cuts: BTreeMap<usize, u32>,
     /// Minor iterations done in the present increment attempt.
@@ -78,7 +78,7 @@ pub struct State {
     /// How fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
-    /// What is known of the stability of the accepted states.
+    /// Stability of the accepted states, as far as checked.
     #[serde(default, skip_serializing_if = "StabilityWatch::is_new")]
     pub watch: StabilityWatch,
     /// How sliding is held back in the present attempt ([`crate::step::brake`]). `None` where it is not.
@@ -109,7 +109,7 @@ pub struct Outside {
     pub asked: Vec<Intervention>,
     /// What its parameters were set to up to here, by name, where that is not what it began with.
     pub set: Vec<(String, Value)>,
-    /// The largest force of a contact on the way here. It is found again on that way, so it is not written.
+    /// Largest contact force up to this state. Replay recomputes it, so it is not stored.
     #[serde(skip)]
     pub largest_force: f64,
 }
@@ -265,8 +265,8 @@ impl State {
         settings
     }
 
-    /// What digests of the state are over: all but what revisions after the first journals remember besides, so that their
-    /// digests still hold.
+    /// The part of the state that digests cover: fields added after the first journals are excluded, so that the digests of those
+    /// journals remain valid.
     pub fn digested(&self) -> State {
         State {
             pace: self.pace.digested(),

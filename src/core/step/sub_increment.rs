@@ -45,7 +45,7 @@ impl SubIncrement {
         }
     }
 
-    /// What is left of this part from a load factor on, where its halves have come to; what follows it follows that.
+    /// Remainder of this part from the load factor `from`, which its halves have reached. Its successor is that of this part.
     pub fn remaining(self, from: f64) -> Self {
         let begin = match self.part {
             0 => self.from,

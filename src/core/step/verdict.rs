@@ -6,8 +6,8 @@
 //! seemed to. Where it cannot be cut, it fails. What the user asked for is marked and never refused: held modes, readings
 //! of the paper that leave the law, and limits that are to be accepted.
 //!
-//! A state with an inverted element (det F ≤ 0 at an integration point or a node of a solid) is always refused: the increment
-//! is cut, and fails where it cannot be cut. Other readings of contact are not tried against it.
+//! A state with an inverted element (det F ≤ 0 at an integration point or a node of a solid) is always rejected: the increment
+//! is cut, and fails if it cannot be cut. Other interpretations of the contact status are not tried for such a state.
 
 use crate::contact::laws::{Finding, Law, Verdict};
 use crate::contact::record::Forced;
@@ -68,7 +68,7 @@ impl Stepper {
         }
     }
 
-    /// The worst point of an inverted element of the present state.
+    /// Worst point of an inverted element of the current state. `None` if no element is inverted.
     pub(super) fn inverted(&self) -> Option<PointDeformation> {
         #[cfg(mutants)]
         if crate::mutants::is_active("inverted-element-accepted") {
@@ -77,7 +77,7 @@ impl Stepper {
         self.source.deformation(&self.state.u)?.inverted()
     }
 
-    /// Cuts an increment that ends with an inverted element, or fails.
+    /// Cuts an increment that ends with an inverted element at `point`, or fails if it cannot be cut.
     pub(super) fn refuse_inverted(&mut self, point: PointDeformation) -> Outcome {
         self.next_major();
         self.fail(Failure::Inverted(point))
@@ -109,7 +109,8 @@ impl Stepper {
     }
 }
 
-/// The worst point of a state outside the range of its law, where none was outside in the last accepted state.
+/// Worst point of a state outside the range of its law. `None` if all are inside, or if a point was already outside in the last
+/// accepted state.
 pub(super) fn range_left(source: &dyn Source, state: &State) -> Option<PointDeformation> {
     let outside = |u: &[f64]| source.deformation(u)?.outside;
     outside(&state.u).filter(|_| outside(&state.start.u).is_none())

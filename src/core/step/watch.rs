@@ -1,56 +1,56 @@
-//! When a run looks at the stability of what it accepts, and what it remembers of it.
+//! Schedules the stability checks of accepted states, and records their results.
 //!
-//! A look costs about a factorization. So it is taken
+//! A check costs about as much as a factorization. It is made
 //!
-//! - after every increment that may have jumped: one that is suspected ([`crate::step::pace`]), or moves by more than `FAR` of the
-//!   scene's length;
-//! - else as soon as the major iterations accepted since the last look cost 1 / `SHARE` times as much: at every increment in
-//!   which a look is less than 5 % of the work, and at every n-th where increments are cheap, so that looks never come to more
-//!   than 5 % of a run.
+//! - after every increment that may have jumped: if it is suspected ([`crate::step::pace`]), or moves by more than `FAR` times
+//!   the scene's length;
+//! - otherwise as soon as the major iterations accepted since the last check cost 1 / `SHARE` times as much as a check: after
+//!   every increment if a check is less than 5 % of its work, after every n-th increment if increments are cheap. Checks
+//!   therefore take at most 5 % of a run.
 //!
-//! Both costs are counted from the scene's sizes ([`crate::linear::estimate`]), never by a clock, so that the same run looks at
-//! the same states on every machine. On an arc-length path nothing is looked at: it passes unstable states on purpose.
+//! Both costs are estimated from the scene's sizes ([`crate::linear::estimate`]), not measured, so that a run checks the same
+//! states on every machine. States on an arc-length path are not checked: such a path passes unstable states on purpose.
 
 use crate::linear::stability::Stability;
 use serde::{Deserialize, Serialize};
 
-/// Largest part of the work that unasked looks may cost.
+/// Maximum fraction of the work for scheduled stability checks.
 pub const SHARE: f64 = 0.05;
-/// An increment that moves beyond this part of the scene's length may have passed a limit point on its way.
+/// An increment that moves by more than this fraction of the scene's length may have passed a limit point.
 pub(super) const FAR: f64 = 0.03;
 
-/// What is known of the stability of the accepted states.
+/// Stability of the accepted states, as far as checked.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StabilityWatch {
-    /// Major iterations of the increments accepted since the last look.
+    /// Major iterations of the increments accepted since the last check.
     pub majors: u32,
     /// Load factor of the last state that is known to be stable.
     pub stable_at: Option<f64>,
-    /// Whether the last state that was looked at is unstable.
+    /// Whether the last checked state is unstable.
     pub unstable: bool,
 }
 
-/// An accepted increment ends in an unstable state, and began in none that is known to be.
+/// An accepted increment ends in an unstable state, and its start state was not known to be unstable.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StabilityLoss {
-    /// What leads away from it.
+    /// Kind of instability of the end state.
     pub stability: Stability,
     /// Load factor of the last state that is known to be stable.
     pub stable_at: Option<f64>,
 }
 
 impl StabilityWatch {
-    /// Whether nothing was accepted yet.
+    /// Whether no increment was recorded yet.
     pub(super) fn is_new(&self) -> bool {
         *self == StabilityWatch::default()
     }
 
-    /// Whether to look at the end of an increment of so many major iterations, where a look costs as much as `look` of them.
+    /// Whether a check is due after an increment of `majors` major iterations, if a check costs as much as `look` of them.
     pub(super) fn is_due(&self, majors: u32, look: f64) -> bool {
         f64::from(self.majors.saturating_add(majors)) * SHARE >= look
     }
 
-    /// Whether a state with this stability is one that has lost it.
+    /// The loss of stability, if this state is unstable and the last checked state was not.
     pub(super) fn loss(&self, stability: Option<Stability>) -> Option<StabilityLoss> {
         let stability = stability.filter(|found| found.is_unstable() && !self.unstable)?;
         Some(StabilityLoss {
@@ -59,7 +59,7 @@ impl StabilityWatch {
         })
     }
 
-    /// Takes an accepted state into account, and what was found if it was looked at.
+    /// Records an accepted state, and its stability if it was checked.
     pub(super) fn take(&mut self, load_factor: f64, majors: u32, found: Option<Stability>) {
         let Some(found) = found else {
             self.majors = self.majors.saturating_add(majors);

@@ -86,10 +86,10 @@ pub enum Aim {
     Load(f64),
 }
 
-/// Sizes are this exact.
+/// Relative accuracy of increment sizes.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Arc at which a history ends at the latest.
+/// Maximum arc length of a history along the path.
 pub(super) fn farthest(model: &Model) -> f64 {
     let most = ArcLength::FARTHEST * model.length;
     model.arc.length.unwrap_or(most)

@@ -1,14 +1,15 @@
-//! Numbers that carry their derivatives along, for a geometry whose second derivatives are long in closed form.
+//! Dual numbers (forward-mode differentiation), for geometry whose second derivatives are long in closed form.
 
 use crate::fem::lagrange::MAX_NODES;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Degrees of freedom of a slave node and of the nodes of its master element.
+/// Maximum number of degrees of freedom of a slave node and the nodes of its master element.
 pub const DOFS: usize = 2 * (MAX_NODES + 1);
-/// Variables of a dual number: those, the two components of the force, and what other forces on the element turn.
+/// Number of variables of a dual number: the degrees of freedom, the two force components, and the slope Σ ∂c_j/∂ξ F_j due to the other
+/// forces on the element.
 pub const VARIABLES: usize = DOFS + 3;
 
-/// A number with its derivatives by all variables.
+/// A value with its derivatives with respect to all variables.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual {
     pub value: f64,
@@ -16,7 +17,7 @@ pub struct Dual {
 }
 
 impl Dual {
-    /// One that depends on no variable.
+    /// A number with zero derivatives.
     pub fn constant(value: f64) -> Dual {
         Dual {
             value,
@@ -24,14 +25,14 @@ impl Dual {
         }
     }
 
-    /// A variable itself.
+    /// Variable `number` with this value: its derivative with respect to itself is 1.
     pub fn variable(value: f64, number: usize) -> Dual {
         let mut variable = Dual::constant(value);
         variable.by[number] = 1.0;
         variable
     }
 
-    /// A function of this number, from its value and its derivative there.
+    /// Chain rule: a function of this number, given the function's value and derivative at it.
     pub fn then(&self, value: f64, slope: f64) -> Dual {
         Dual {
             value,
@@ -82,7 +83,7 @@ impl Div for Dual {
     }
 }
 
-/// A vector of two.
+/// A vector in the plane.
 pub type Vector = [Dual; 2];
 
 /// a · b.

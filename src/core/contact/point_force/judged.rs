@@ -1,7 +1,7 @@
-//! What elements give under point forces as the judge finds it: from positions and forces alone, by quadrature.
+//! Local deflection of elements under point forces, for the judge: computed by quadrature from positions and forces only.
 //!
-//! The step sgn(η − ξ) and its integral are projected on Legendre's polynomials with a Gauss rule on both sides of ξ, and c_ij is the product
-//! of what the projections leave of them. None of the closed forms of [`super::Pair`] is used.
+//! The step sgn(η − ξ) and its integral are projected onto Legendre polynomials with a Gauss rule on both sides of ξ; c_ij is the inner
+//! product of the two remainders. The closed forms of [`super::Pair`] are not used, so this is an independent check of them.
 
 use crate::contact::element::{Element, Places};
 use crate::contact::facing::{MOST, faced};
@@ -11,7 +11,7 @@ use crate::contact::projection::SurfacePoint;
 use crate::fem::lagrange::{MAX_NODES, gauss};
 use crate::model::{Contact, PointGive, Surface};
 
-/// An interface with the forces on it.
+/// The interface in one configuration, with its forces.
 #[derive(Debug, Clone, Copy)]
 pub struct Loaded<'a> {
     /// Master surfaces of the scene.
@@ -20,24 +20,24 @@ pub struct Loaded<'a> {
     pub contacts: &'a [Contact],
     /// Positions of all nodes.
     pub now: &'a [[f64; 2]],
-    /// By how much each slave node alone is judged further out; empty where that is nothing.
+    /// Offset (length, Cartesian) of the point at which each slave node is judged; empty if all offsets are zero.
     pub out: &'a [[f64; 2]],
     /// Interaction force on each slave node (Cartesian).
     pub forces: &'a [[f64; 2]],
 }
 
 impl Loaded<'_> {
-    /// Where a slave node is judged to be.
+    /// Position at which a slave node is judged: its own, plus the offset.
     pub fn point(&self, slave: usize) -> [f64; 2] {
         let (at, out) = (self.now[self.contacts[slave].node], self.out.get(slave));
         out.map_or(at, |way| [at[0] + way[0], at[1] + way[1]])
     }
 }
 
-/// Rounds in which forces and angles are found.
+/// Number of fixed-point iterations for forces and angles.
 const ROUNDS: usize = 8;
 
-/// A slave node that is over an element that gives.
+/// A slave node over an element with local flexibility.
 #[derive(Debug, Clone, Copy)]
 struct Press {
     slave: usize,
@@ -45,14 +45,14 @@ struct Press {
     give: PointGive,
     projected: Projected,
     line: Line,
-    /// Force on the node along n and t of the element's line, and its part that bends the element.
+    /// Force on the node along n and t of the element's line; `bends` is the part that deforms the element.
     force: [f64; 2],
     bends: f64,
     tilt: f64,
     given: f64,
 }
 
-/// The line of an element at a place.
+/// Normal and lever of an element's line at a point.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     normal: [f64; 2],
@@ -60,7 +60,7 @@ struct Line {
     lever: f64,
 }
 
-/// All slave nodes over elements that give.
+/// Local deflections under all slave nodes over elements with local flexibility.
 #[derive(Debug)]
 pub struct JudgedGives {
     rule: Vec<(f64, f64)>,
@@ -68,7 +68,7 @@ pub struct JudgedGives {
 }
 
 impl JudgedGives {
-    /// One with memory for so many slave nodes.
+    /// Allocates memory for `slaves` slave nodes.
     pub fn with_capacity(slaves: usize) -> Self {
         JudgedGives {
             rule: gauss(MAX_NODES),
@@ -76,7 +76,7 @@ impl JudgedGives {
         }
     }
 
-    /// Finds what the forces of a state do to elements that give.
+    /// Computes deflection and rotation of all elements with local flexibility under the forces of a state.
     pub fn find(&mut self, seen: &Loaded<'_>, feet: &mut Vec<Foot>) {
         self.presses.clear();
         if seen.surfaces.iter().all(|surface| surface.gives.is_empty()) {
@@ -122,8 +122,8 @@ impl JudgedGives {
         }
     }
 
-    /// Σ c_j F_j and Σ ∂c_j/∂ξ F_j at the place of a press, over all forces on the element; the press counts with this force in place of
-    /// its own, if one is given.
+    /// Σ c_j F_j and Σ ∂c_j/∂ξ F_j (length) at the point of a press, over all forces on the element. If `own` is given, it replaces the
+    /// force of this press.
     fn sums(&self, at: &Press, own: Option<f64>) -> (f64, f64) {
         let element = |spot: &SurfacePoint| (spot.surface, spot.element);
         let mut sums = (0.0, 0.0);
@@ -143,19 +143,20 @@ impl JudgedGives {
         sums
     }
 
-    /// How far the surface under a slave node gives way, as a way along its outward normal; nothing where it does not give.
+    /// Local deflection of the surface under a slave node, as a vector (length) along the outward normal of the element's line. `None`
+    /// where it is zero.
     pub fn way(&self, slave: usize) -> Option<[f64; 2]> {
         let press = self.presses.iter().find(|press| press.slave == slave)?;
         (press.given != 0.0).then(|| press.line.normal.map(|n| n * press.given))
     }
 
-    /// F_n of a slave node along the turned n; nothing where its element does not give.
+    /// F_n of a slave node along the rotated n. `None` where its element has no local flexibility.
     pub fn normal_force(&self, slave: usize) -> Option<f64> {
         let press = self.presses.iter().find(|press| press.slave == slave)?;
         Some(press.bends * (1.0 + press.tilt * press.tilt).sqrt())
     }
 
-    /// The tangent of a side, turned as the forces on its element turn it under a slave node.
+    /// Tangent of a side (unit) under a slave node, rotated by the forces on the side's element.
     pub fn turned(
         &self,
         seen: &Loaded<'_>,
@@ -201,7 +202,7 @@ impl Line {
     }
 }
 
-/// c_ij of two places of an element, and its derivative by the first.
+/// c_ij of two points of an element (length by force), and ∂c_ij/∂ξ_i.
 fn pair(rule: &[(f64, f64)], give: &PointGive, one: &Projected, two: &Projected) -> (f64, f64) {
     let (xi, other, degree) = (one.xi, two.xi, one.degree);
     let [low, high] = if xi < other { [xi, other] } else { [other, xi] };
@@ -238,7 +239,7 @@ fn pair(rule: &[(f64, f64)], give: &PointGive, one: &Projected, two: &Projected)
     )
 }
 
-/// The projected step at a ξ, and its projected integral; coefficients of Legendre's polynomials, with derivatives by ξ.
+/// Legendre coefficients of the projected step at ξ (`step`) and of its projected integral (`hat`), with derivatives with respect to ξ.
 #[derive(Debug, Clone, Copy)]
 struct Projected {
     degree: usize,
@@ -270,7 +271,7 @@ impl Projected {
             let terms = of.iter().enumerate().take(degree);
             terms.map(|(k, a)| a * legendre(k, eta)).sum()
         };
-        // From the left end, where the integral is 1 + ξ.
+        // The integration starts at the left end, where the integral is 1 + ξ.
         let line = |eta: f64| 1.0 + xi + integral(rule, -1.0, eta, &|x| series(&step, x));
         let line_slope = |eta: f64| 1.0 + integral(rule, -1.0, eta, &|x| series(&slope, x));
         for (eta, weight) in rule {
@@ -303,8 +304,8 @@ fn legendre(k: usize, x: f64) -> f64 {
     now
 }
 
-/// Puts a slave node's force on it, and its reverse on the nodes of the master: at the foot, with the moment of its lever where the node is
-/// away from that.
+/// Adds the force of a slave node to `contact` at the node, and its reaction at the nodes of the master element: at the foot, plus the
+/// moment of the gap where `lever` is set.
 pub fn hand_on(
     seen: &Loaded<'_>,
     slave: usize,
@@ -321,7 +322,7 @@ pub fn hand_on(
         let [x, d] = [&s.n, &s.d].map(|weights| places.sum(weights));
         let m = d[0] * d[0] + d[1] * d[1];
         let across = [d[1], -d[0]];
-        // (g / √m) F · t n, by which dx/dξ of the element is weighed.
+        // (g / √m) (F · t) n, the weight of dx/dξ of the element.
         let gap = (at[0] - x[0]) * across[0] + (at[1] - x[1]) * across[1];
         let along = force[0] * d[0] + force[1] * d[1];
         moment = across.map(|n| gap * along * n / (m * m));

@@ -1,15 +1,15 @@
-//! A contact on an element that gives, linearised: its gap and its forces with all derivatives.
+//! Linearisation of a contact on an element with local flexibility: gap and forces with all derivatives.
 //!
-//! With D_i, L_i, X_i, k and m of [`crate::contact::geometric_tangent`], T_i = (τ·D_i + g L_i)/√m the way of the node over the displaced
-//! foot, F = F_n cos α, and sums over the forces F_j on the element,
+//! With D_i, L_i, X_i, k and m of [`crate::contact::geometric_tangent`], T_i = (τ·D_i + g L_i)/√m the motion of the node relative to the
+//! displaced foot, F = F_n cos α, and sums over the forces F_j on the element,
 //!
 //! ```text
 //! gap:     g + Σ c_j F_j = 0,                   tan α = (√m/(m − g k)) Σ ∂c_j/∂ξ F_j
 //! force:   f_i = A n·D_i + B T_i,               A = F_n cos α − F_t sin α,   B = F_n sin α + F_t cos α
 //! ```
 //!
-//! Without friction that is the derivative of F g + ½ c F² by the displacements: the force F (n + t tan α) on the node, its reverse on the
-//! element, and the moment of its lever g there. T_i has the moment of friction at the displaced foot as well.
+//! Without friction the forces are the derivative of F g + ½ c F² with respect to the displacements: the force F (n + t tan α) on the node,
+//! its reaction on the element, and the moment of its lever g on the element. T_i also contains the moment of friction at that foot.
 
 use super::dual::{DOFS, Dual, dot};
 use super::pair::Pair;
@@ -20,10 +20,10 @@ use crate::model::PointGive;
 const BY_NORMAL: usize = DOFS;
 const BY_TANGENTIAL: usize = DOFS + 1;
 const BY_TURN: usize = DOFS + 2;
-/// Steps in which tan α is found: each leaves tan² α of the error of the one before.
+/// Fixed-point iterations for tan α: each reduces the error by the factor tan² α.
 const STEPS: usize = 12;
 
-/// What other forces on an element do at a place of it.
+/// Deflection and slopes at a point of an element due to the other forces on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Others {
     /// Σ c_j F_j (length).
@@ -35,7 +35,7 @@ pub struct Others {
 }
 
 impl Others {
-    /// Adds that of a force.
+    /// Adds the contribution of a force F_j.
     pub fn add(&mut self, pair: &Pair, force: f64) {
         self.give += pair.give * force;
         self.slope += pair.slope * force;
@@ -52,18 +52,18 @@ pub struct Over<'a> {
     pub nodes: &'a [[f64; 2]],
     /// Coordinate ξ of its closest point.
     pub xi: f64,
-    /// F_n and F_t in the turned frame.
+    /// F_n and F_t in the rotated frame.
     pub force: [f64; 2],
-    /// What the element leaves out.
+    /// Local flexibilities of the element.
     pub give: &'a PointGive,
-    /// What the other forces on the element do here.
+    /// Contribution of the other forces on the element at this point.
     pub others: Others,
 }
 
-/// The linearisation. Degrees of freedom are x and y of the slave node, then those of the element's nodes.
+/// A linearised contact. Its degrees of freedom are x and y of the slave node, then x and y of each node of the element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Linearised {
-    /// n, turned by α.
+    /// n, rotated by α (unit).
     pub normal: [f64; 2],
     /// g + Σ c_j F_j (length).
     pub gap: f64,
@@ -71,33 +71,33 @@ pub struct Linearised {
     pub given: f64,
     /// c (length by force).
     pub compliance: f64,
-    /// Derivative of the gap by F_n (length by force).
+    /// ∂gap/∂F_n (length by force).
     pub give: f64,
     /// F = F_n cos α.
     pub force: f64,
-    /// Its derivative by F_n.
+    /// ∂F/∂F_n.
     pub force_slope: f64,
-    /// Its derivatives by the degrees of freedom, F_n held.
+    /// Derivatives of F with respect to the degrees of freedom at constant F_n.
     pub force_by: [f64; DOFS],
     /// Generalised force on each degree of freedom.
     pub forces: [f64; DOFS],
-    /// Derivatives of −gap and of the slip (both lengths) by the degrees of freedom.
+    /// Derivatives of −gap and of the slip (both lengths) with respect to the degrees of freedom.
     pub rows: [[f64; DOFS]; 2],
-    /// Derivatives of the forces by F_n, F_t, and Σ ∂c_j/∂ξ F_j over the others.
+    /// Derivatives of the forces with respect to F_n, to F_t, and to Σ ∂c_j/∂ξ F_j over the other forces.
     pub columns: [[f64; DOFS]; 3],
-    /// Derivatives of the forces by the degrees of freedom, the components of the force held.
+    /// Derivatives of the forces with respect to the degrees of freedom at constant F_n and F_t.
     pub stiffness: [[f64; DOFS]; DOFS],
-    /// dξ by the degrees of freedom.
+    /// Derivatives of ξ with respect to the degrees of freedom.
     pub travel: [f64; DOFS],
 }
 
-/// n turned by the angle whose tangent is a.
+/// n rotated by the angle α with tan α = `a`.
 pub fn turned(normal: [f64; 2], a: f64) -> [f64; 2] {
     let (t, cos) = (tangent(normal), 1.0 / (1.0 + a * a).sqrt());
     [0, 1].map(|k| cos * (normal[k] + a * t[k]))
 }
 
-/// tan α of a force at a place whose lever is √m / (m − g k).
+/// tan α of a force F_n at a point with the lever √m / (m − g k).
 pub fn tilt(own: &Pair, lever: f64, f_n: f64, others: &Others) -> f64 {
     let mut a = others.slope * lever;
     for _ in 0..STEPS {
@@ -106,7 +106,7 @@ pub fn tilt(own: &Pair, lever: f64, f_n: f64, others: &Others) -> f64 {
     a
 }
 
-/// Linearises a contact.
+/// Computes gap, forces and derivatives of a contact.
 pub fn linearise(over: &Over<'_>) -> Linearised {
     let count = over.nodes.len();
     let dofs = 2 * (count + 1);
@@ -172,7 +172,7 @@ pub fn linearise(over: &Over<'_>) -> Linearised {
             ),
         };
         let axis = i % 2;
-        // −D_i and L_i: the share in u_S* − u_S, and how the element tilts.
+        // −D_i and L_i: the weight in u_S* − u_S, and the tilt of the element.
         let tilt = gap * slope * n[axis];
         let way = tilt / size - weight * t[axis];
         let part = along_t * way - along_n * weight * n[axis];
@@ -193,7 +193,7 @@ pub fn linearise(over: &Over<'_>) -> Linearised {
     found
 }
 
-/// ξ of the closest point with its derivatives X_i.
+/// ξ of the closest point, with its derivatives X_i.
 fn travel(over: &Over<'_>) -> Dual {
     let s = lagrange::shape(over.nodes.len(), over.xi);
     let sum = |weights: &[f64; MAX_NODES], axis: usize| -> f64 {

@@ -3,12 +3,12 @@
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::PointGive;
 
-/// c_ij of two places of an element with its derivatives (length by force).
+/// c_ij of two points of an element, with its derivatives (length by force).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pair {
     /// c_ij.
     pub give: f64,
-    /// ∂c_ij/∂ξ_i; at one and the same place half of dc/dξ.
+    /// ∂c_ij/∂ξ_i; half of dc/dξ where both points coincide.
     pub slope: f64,
     /// ∂²c_ij/∂ξ_i².
     pub bend: f64,
@@ -17,7 +17,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// That of the places ξ_i and ξ_j in an element of this degree.
+    /// Evaluates c_ij at the points ξ_i and ξ_j of an element of this degree.
     pub fn new(give: &PointGive, degree: usize, xi: f64, other: f64) -> Pair {
         let (one, two) = (Coefficients::new(xi), Coefficients::new(other));
         let apart = xi - other;
@@ -50,7 +50,7 @@ impl Pair {
         all
     }
 
-    /// Takes off a product of two coefficients, each with two derivatives.
+    /// Subtracts a product of two coefficients; `one` and `two` contain the value and the first two derivatives.
     fn take_off(&mut self, weight: f64, one: [f64; 3], two: [f64; 3]) {
         self.give -= weight * one[0] * two[0];
         self.slope -= weight * one[1] * two[0];
@@ -80,7 +80,7 @@ fn weight(k: usize) -> f64 {
     2.0 / (2 * k + 1) as f64
 }
 
-/// Legendre's polynomials at a ξ, from which all coefficients follow.
+/// Legendre polynomials at ξ, from which all coefficients follow.
 pub(super) struct Coefficients {
     xi: f64,
     /// P_k.
@@ -101,7 +101,7 @@ impl Coefficients {
         Coefficients { xi, p, d }
     }
 
-    /// a_k with two derivatives.
+    /// a_k with its first two derivatives.
     fn step(&self, k: usize) -> [f64; 3] {
         let value = match k {
             0 => -self.xi,
@@ -111,7 +111,7 @@ impl Coefficients {
         [value, -n * self.p[k], -n * self.d[k]]
     }
 
-    /// b_k with two derivatives.
+    /// b_k with its first two derivatives.
     fn hat(&self, k: usize) -> [f64; 3] {
         let value = match k {
             0 => 0.5 * (1.0 + self.xi * self.xi),
@@ -122,7 +122,7 @@ impl Coefficients {
         [value, -self.step(k)[0], (2 * k + 1) as f64 * self.p[k]]
     }
 
-    /// m with two derivatives, for a degree of 3 at least.
+    /// m with its first two derivatives, for degree >= 3.
     fn last_hat(&self, degree: usize) -> [f64; 3] {
         let part = 1.0 / (2 * degree - 3) as f64;
         self.step(degree - 2).map(|a| part * a)

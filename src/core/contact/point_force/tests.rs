@@ -1,4 +1,4 @@
-//! The closed forms against quadrature, and the linearised contact against differences.
+//! Checks the closed forms against quadrature, and the linearised contact against finite differences.
 
 use super::judged::quadrature;
 use super::pair::Coefficients;
@@ -50,7 +50,7 @@ fn the_closed_forms_are_what_quadrature_of_the_projections_leaves() {
     }
 }
 
-/// (L/2GA)(1 − ξ²) for one straight line between two nodes, and the turn P_{p−1} P_p for all degrees.
+/// (L/2GA)(1 − ξ²) for a straight 2-node element, and the rotation proportional to P_{p−1} P_p for all degrees.
 #[test]
 fn shear_alone_has_the_short_forms() {
     let shear = PointGive {
@@ -85,7 +85,7 @@ fn nothing_is_left_out_at_the_ends_and_something_positive_between() {
     }
 }
 
-/// A slave node over a bent element, with the other forces on it fixed.
+/// A slave node over a bent element; the contribution of the other forces is constant.
 fn over<'a>(x: &'a [[f64; 2]], force: [f64; 2], others: Others) -> Over<'a> {
     let surface = Surface {
         name: "s".into(),
@@ -116,7 +116,7 @@ fn bent(count: usize, gap: f64) -> Vec<[f64; 2]> {
     std::iter::once(slave).chain(arc).collect()
 }
 
-/// What the other forces do goes with ξ as its own derivatives say.
+/// Contribution of another force at ξ = −0.6, as a function of ξ.
 fn others_at(xi: f64) -> Others {
     let mut others = Others::default();
     others.add(&Pair::new(&GIVE, 4, xi, -0.6), 0.05);
@@ -171,8 +171,8 @@ fn the_linearised_contact_is_the_derivative_of_its_gap_and_forces() {
     }
 }
 
-/// With F in place of F_n as the unknown, the matrix is that of a potential: what the force does to the degrees of freedom is what these do to
-/// the gap, and the stiffness is symmetric.
+/// With F instead of F_n as the unknown, the matrix derives from a potential: the force column equals the gap row, and the stiffness is
+/// symmetric.
 #[test]
 fn without_friction_there_is_one_potential() {
     let x = bent(5, -0.03);
@@ -191,7 +191,7 @@ fn without_friction_there_is_one_potential() {
             assert!((fixed(i, j) - fixed(j, i)).abs() < 1e-12, "{i} {j}");
         }
     }
-    // No rigid motion does work, a turn about the origin included.
+    // The forces do no work under rigid motions: two translations and a rotation about the origin.
     for (a, b) in [(1.0, 0.0), (0.0, 1.0)] {
         let work: f64 = (0..n).map(|i| at.forces[i] * [a, b][i % 2]).sum();
         assert!(work.abs() < 1e-15);

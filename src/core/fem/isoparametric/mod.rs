@@ -38,7 +38,7 @@ mod tests;
 /// as a multiple of the first one, less one; in axisymmetry σ33. All zero before the first increment.
 pub const MEMORY: usize = 4;
 
-/// Part of the square of the largest ∂X/∂ξ below which an element has no area at a point.
+/// An element has no area at a point where det ∂X/∂ξ is below this fraction of the square of the largest ∂X/∂ξ.
 const FLAT: f64 = 1e-9;
 
 /// An element of N nodes and P points, of a plane body or (`HOOP`) of a body of revolution: its undeformed shape and what it

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 /// Places of the nodes in the parent square.
 pub const PLACES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
-/// Its shape functions at its nodes.
+/// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<4>; 4]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 

@@ -20,7 +20,7 @@ pub const PLACES: [[f64; 2]; 8] = [
     [-1.0, 0.0],
 ];
 
-/// Its shape functions at its nodes.
+/// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<8>; 8]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 

@@ -17,7 +17,7 @@ pub const PLACES: [[f64; 2]; 9] = [
     [0.0, 0.0],
 ];
 
-/// Its shape functions at its nodes.
+/// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<9>; 9]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 

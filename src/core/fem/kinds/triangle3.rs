@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 /// Places of the nodes in the parent triangle.
 pub const PLACES: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
-/// Its shape functions at its nodes.
+/// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<3>; 3]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 

@@ -14,7 +14,7 @@ pub const PLACES: [[f64; 2]; 6] = [
     [0.0, 0.5],
 ];
 
-/// Its shape functions at its nodes.
+/// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<6>; 6]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 
