@@ -1,11 +1,11 @@
 //! The journal of a session: what changed anything, written as it happens, so that it can be replayed to the same bits.
 //!
-//! A text file of RON, one entry a line. The first line is the [`Header`] with the scene whole, so that the file stands
-//! alone; then comes an [`Entry`] for every command that changed something or moved the cursor, with a digest of the
-//! state after it, and before a motion that solves a line that says so. Entries that changed something are synced to
-//! the disk (fdatasync), and so is the folder when a journal begins; moves of the cursor are only handed to the system. A kill loses
-//! neither, a power cut the latter.
-//! A last line without its end is what a kill leaves of an entry; it is dropped, and told.
+//! A RON text file, one entry per line. The first line is the [`Header`] with the whole scene, so the file is
+//! self-contained; then comes an [`Entry`] for every command that changed something or moved the cursor, with a digest of
+//! the state after it, and before a motion that solves a line that announces it. Entries that changed something are synced
+//! to the disk (fdatasync), and so is the folder when a journal begins; cursor moves are only written to the system. A kill
+//! loses neither, a power failure only cursor moves. A last line without its end is an entry cut off by a kill; it is
+//! dropped and reported.
 
 use crate::format::kind::{FileKind, mistaken};
 use crate::format::{SceneError, Spec, notation, read};
