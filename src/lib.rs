@@ -9,7 +9,7 @@
 //! - [`format`](mod@format): the scene file as its author writes it: read, located, described, and set by paths.
 //! - [`scene`]: what to solve: a [`format::Spec`] becomes a checked [`model::Model`].
 //! - [`explain`]: what happened, why, and what could be done about it, in the words that all front ends share.
-//! - [`study`]: many runs of a scene: sweeps, convergence maps, work-precision charts.
+//! - [`study`]: studies with many runs of a scene: sweeps, convergence maps, work-precision charts.
 //! - [`history`]: what was done so far: frames, branches, breakpoints, watches.
 //! - [`record`]: what is kept in files: snapshots, journals, problems written as scenes.
 //! - [`attach`]: solvers that others made, stepped as ours.

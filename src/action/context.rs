@@ -86,7 +86,7 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
     })
 }
 
-/// The one node whose name differs from a word only by dots and dashes: earlier versions called node.1 node-1 in places.
+/// The only node whose name differs from a word just by dots and dashes: earlier versions wrote node.1 as node-1 in places.
 fn respelled(word: &str, model: &Model) -> Option<usize> {
     let plain = |name: &str| name.replace('-', ".");
     let nodes = model.nodes.iter().enumerate();

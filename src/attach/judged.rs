@@ -11,12 +11,12 @@ use crate::model::{Mode, Model};
 /// solvers stop where their own criterion is met, which is often a thousandth, or meet the laws on the average of an element.
 pub(super) const ALLOWED: f64 = 1e-2;
 
-/// Forces below this part of what the solver measures its residual by are round-off, or not worth a word.
+/// Forces below this fraction of the solver's residual scale are round-off or negligible.
 pub(super) const ROUND_OFF: f64 = 1e-6;
 
-/// What amounts are compared with.
+/// Reference sizes for relative amounts.
 pub struct Sizes {
-    /// The largest force of a contact on the way to the state: where all have opened again, what is left is round-off.
+    /// The largest contact force on the way to the state. Once all contacts are open again, only round-off is left.
     pub force: f64,
     /// The largest displacement (length).
     pub length: f64,
@@ -30,7 +30,7 @@ pub fn largest_force(nodes: &[ContactRecord]) -> f64 {
         .fold(0.0, |most: f64, f| most.max(f.abs()))
 }
 
-/// The law that an accepted state is furthest from.
+/// The law with the largest violation in an accepted state.
 pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Option<Finding> {
     let force = sizes.force;
     let length = if sizes.length > 0.0 {

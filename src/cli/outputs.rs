@@ -107,8 +107,8 @@ impl Outputs {
         })
     }
 
-    /// Writes all that is wanted, or none of it; a picture is drawn only then. Standard output, which cannot be taken back, is
-    /// written to when all else is drawn. A reader that closes the pipe has what he wanted.
+    /// Writes all requested outputs or none. Pictures are drawn only here. Standard output cannot be taken back, so it is
+    /// written after everything else is drawn. A reader that closes the pipe is no error.
     ///
     /// # Errors
     /// If it cannot be written or drawn.

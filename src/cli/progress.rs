@@ -5,10 +5,10 @@ use crate::step::event::Event;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// Time between two lines.
+/// Interval between two progress lines.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// The line on a terminal that shows how far a run is.
+/// Progress line on a terminal.
 pub struct Progress {
     wanted: bool,
     shown: bool,
@@ -16,7 +16,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// No line yet; none at all with `quiet`, or where standard error is no terminal.
+    /// `None` before the first line, with `quiet`, and where standard error is no terminal.
     pub fn new(quiet: bool) -> Self {
         Progress {
             wanted: !quiet && io::stderr().is_terminal(),
@@ -25,7 +25,7 @@ impl Progress {
         }
     }
 
-    /// Shows an event, at most every [`INTERVAL`]; `steps` counts the minor iterations so far.
+    /// Shows an event, at most once per [`INTERVAL`]; `steps` is the number of minor iterations so far.
     pub fn show(&mut self, event: &Event, steps: u64) {
         if !self.wanted || self.last.elapsed() < INTERVAL {
             return;

@@ -22,7 +22,7 @@ pub struct Args {
     scene: SceneArgs,
 }
 
-/// The command line that tries the remedies of a scene as it was opened.
+/// The command line that tries the remedies of a scene with its original options.
 pub fn command(scene: &Scene) -> String {
     let set = scene.overrides();
     let set = set.map(|(path, value)| format!(" --set {}", quoted(&format!("{path}={value}"))));

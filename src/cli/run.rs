@@ -217,14 +217,14 @@ struct Tally<'a> {
     majors: u64,
     /// Increments that were accepted in spite of something.
     doubtful: u32,
-    /// Load factors of the accepted increments that jumped, and that lost stability.
+    /// Load factors of the accepted increments that jumped and of those that lost stability.
     jumps: Vec<f64>,
     losses: Vec<f64>,
     /// How often the strategy changed or the increment was cut.
     notes: u32,
     /// Norms of the accepted increment whose forces are known the least.
     noisiest: Norms,
-    /// Largest error of an accepted increment that is within round-off (relative).
+    /// Largest relative error of an accepted increment that is within round-off.
     reached: f64,
     quiet: bool,
     /// Stability of the accepted states, where it is asked for.
@@ -234,7 +234,7 @@ struct Tally<'a> {
     /// Monitors, and what was found at the slave nodes, after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
-    /// Where `touch: auto` decides something.
+    /// Present where `touch: auto` has a choice.
     touch: Option<TouchWatch>,
 }
 
@@ -395,7 +395,7 @@ impl<'a> Run<'a> {
                 tell(&format!(
                     "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
                 ));
-                // The limit load comes last.
+                // The limit load is printed last.
                 for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
                     tell(&format!("  {line}"));
                 }
@@ -404,7 +404,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Tells where the accepted states leave the branch of stable equilibrium.
+    /// Reports where the accepted states leave the branch of stable equilibrium.
     fn tell_marks(&self) {
         let Tally {
             scene,
@@ -435,7 +435,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Tells whether the accepted states are the stable path that was asked for; the exit code says it, too.
+    /// Reports whether the accepted states follow the requested stable path; the exit code reflects it, too.
     fn tell_branches(&self) -> Exit {
         let (name, model) = (&self.tally.scene.name, &self.tally.scene.model);
         self.tell_marks();

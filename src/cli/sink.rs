@@ -51,7 +51,7 @@ impl Sink {
         }
     }
 
-    /// The file, which has no name yet; nothing for standard output.
+    /// The output file before it gets its name; `None` for standard output.
     pub fn into_file(self) -> Option<Output> {
         match self {
             Sink::Standard => None,

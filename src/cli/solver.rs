@@ -53,8 +53,7 @@ impl SolverArgs {
         }
     }
 
-    /// What is said between the two, which a file keeps where that is wanted; `overwrite` says whether it may take the place of
-    /// another one.
+    /// Log of the exchange, stored in a file if requested; `overwrite` allows replacing an existing file.
     pub fn log(&self, overwrite: bool) -> Result<Log, Error> {
         let log = Log::default();
         if let Some(path) = &self.exchange {
@@ -72,7 +71,7 @@ impl SolverArgs {
         Ok(log)
     }
 
-    /// Starts it; `overwrite` says whether the exchange may take the place of another file.
+    /// Starts the solver; `overwrite` allows the exchange to replace an existing file.
     pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
         let log = self.log(overwrite)?;
         let attached = Attached::attach(self.start(), log.clone());

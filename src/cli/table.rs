@@ -4,12 +4,12 @@
 //! and `-inf`.
 //!
 //! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
-//! is 1 where it leaves the branch of stable equilibrium that it began on (it ends on another one, or in an unstable state), else 0. With `history.jumps: dynamic` there are three
-//! columns more, of the damped motion that a jump is: `let_go`, the load factor of the last equilibrium, `steps`, and
-//! `dissipated`, the work that its viscosity took. With `--stability` that of the accepted state comes last
-//! ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues, `divergence` or `not known`. In a scene with solids the very last column is
-//! `worst_stretch`, the smallest principal stretch at their integration points ([`crate::fem::deformation`]). With `history.control: arc` the last
-//! monitor is `arc`, the way along the path of equilibrium.
+//! is 1 where the increment leaves its branch of stable equilibrium (it ends on another branch or in an unstable state),
+//! else 0. `history.jumps: dynamic` adds three columns for the damped motion of a jump: `let_go`, the load factor of the
+//! last equilibrium, `steps`, and `dissipated`, the work of its viscosity. `--stability` adds a last column with the
+//! stability of the accepted state ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues,
+//! `divergence` or `not known`. Scenes with solids have `worst_stretch` as the very last column, the smallest principal
+//! stretch at their integration points ([`crate::fem::deformation`]). With `history.control: arc` the last
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
@@ -52,7 +52,7 @@ pub fn csv_header(model: &Model, stability: bool) -> String {
     line
 }
 
-/// The row of an increment that was just accepted; `u` are its displacements.
+/// Writes the row of the increment just accepted; `u` is its displacement vector.
 pub fn csv_row(
     model: &Model,
     event: &Event,

@@ -8,7 +8,7 @@
 //! Each takes only from those above it:
 //!
 //! - [`broken`]: what is wrong with a file, and where.
-//! - [`seal`]: lines with a digest of themselves.
+//! - [`seal`]: lines with a digest.
 //! - [`words`]: words of a text apart by blanks, with their places.
 //! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
 //! - [`gmsh`]: meshes of Gmsh.

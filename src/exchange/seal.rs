@@ -1,7 +1,7 @@
-//! Lines of a file that carry a digest of themselves, so that a changed character is noticed when they are read.
+//! Lines with a digest, so that a changed character is noticed on reading.
 //!
-//! A sealed line is its text, a tab, and 16 hexadecimal digits: FNV-1a with 64 bits over the bytes of the text. The digest finds
-//! accidents; it is no signature.
+//! A sealed line is its text, a tab, and 16 hexadecimal digits: FNV-1a with 64 bits over the bytes of the text. The digest
+//! detects accidents; it is no signature.
 
 use std::fmt;
 
@@ -23,7 +23,7 @@ impl Digest {
         digest
     }
 
-    /// Adds more text.
+    /// Appends text.
     pub fn add(&mut self, text: &str) {
         for byte in text.bytes() {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
@@ -44,23 +44,23 @@ impl fmt::Display for Digest {
     }
 }
 
-/// What a line says of itself.
+/// Result of checking a line's digest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seal<'a> {
-    /// The text, which has the digest that stands behind it.
+    /// The text, with a matching digest.
     Whole(&'a str),
-    /// The digest is that of another text.
+    /// The digest does not match the text.
     Broken,
     /// The line has no digest.
     Missing,
 }
 
-/// A text of one line with its digest, without an end.
+/// Appends the digest to a single-line text, without a line end.
 pub fn sealed(text: &str) -> String {
     format!("{text}\t{}", Digest::of(text))
 }
 
-/// Checks the digest of a line that has no end.
+/// Checks the digest of a line without its line end.
 pub fn opened(line: &str) -> Seal<'_> {
     let is_digest = |word: &str| {
         word.len() == 16

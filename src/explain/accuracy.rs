@@ -1,8 +1,8 @@
-//! What round-off leaves of a scene's accuracy, in words.
+//! Describes how far round-off limits the accuracy of a scene.
 
 use crate::linear::norms::Norms;
 
-/// What accuracy round-off leaves; `None` if it leaves enough.
+/// Describes the accuracy that round-off permits; `None` if it is sufficient.
 pub fn left(norms: &Norms) -> Option<String> {
     (norms.noise > Norms::AUDIBLE).then(|| {
         format!(
@@ -12,8 +12,8 @@ pub fn left(norms: &Norms) -> Option<String> {
     })
 }
 
-/// That increments were accepted at more than the tolerance, since round-off leaves as much; `reached` is the largest relative
-/// error of them. `None` if none was.
+/// Reports increments accepted above the tolerance because of round-off; `reached` is their largest relative error. `None`
+/// if there were no such increments.
 pub fn raised(tolerance: f64, reached: f64) -> Option<String> {
     (reached > tolerance).then(|| {
         format!(

@@ -1,7 +1,7 @@
-//! What can help against a failure, best first by what is known of its kind alone: the list of what the diagnosis
-//! ([`super::page`]) and the remedies ([`super::remedies`]) try.
+//! Possible remedies for a failure, ordered by its kind alone: the list that the diagnosis ([`super::page`]) and the
+//! remedies ([`super::remedies`]) try.
 //!
-//! Nothing of it is shown as advice before it was tried and helped. What only a person can do is listed as not tried.
+//! A remedy is shown as advice only after a trial in which it helped. Remedies that need a person are listed as not tried.
 
 use super::remedy::{Kind, Remedy};
 use crate::linear::singular::Singular;

@@ -64,7 +64,7 @@ pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
     }
 }
 
-/// The id of a contact in such a scene: its name, as far as that can be one.
+/// The id of a contact in such a scene: its name, with characters that ids cannot have replaced.
 fn id(name: &str, place: usize) -> String {
     match limits::node_id_of(name, limits::NAME - 8) {
         name if name.is_empty() || name.split('.').next() == Some("floor") => {

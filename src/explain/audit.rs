@@ -45,11 +45,11 @@ pub struct Inside {
 /// A point of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretched {
-    /// From 1.
+    /// Increment number, from 1.
     pub increment: u32,
     /// λ at the end of the increment.
     pub load_factor: f64,
-    /// How far it is deformed.
+    /// Deformation at the point.
     pub point: PointDeformation,
 }
 

@@ -9,7 +9,7 @@ use crate::step::state::State;
 pub struct Finer {
     /// The refinement that was tried.
     pub refine: usize,
-    /// How its run ended.
+    /// End of the run.
     pub run: Restart,
 }
 

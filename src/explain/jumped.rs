@@ -1,11 +1,11 @@
-//! Jumps to another branch of equilibrium, and states that have lost their stability, in words.
+//! Describes jumps to another branch of equilibrium and states that lost their stability.
 
 use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::step::event::Event;
 use crate::step::watch::StabilityLoss;
 
-/// What leads away from an unstable state.
+/// The motion that leads away from an unstable state.
 pub fn leads_away(stability: Stability) -> String {
     match stability {
         Stability::Unstable { modes: 1 } => "1 motion leads away from equilibrium".into(),
@@ -16,7 +16,7 @@ pub fn leads_away(stability: Stability) -> String {
     }
 }
 
-/// Why an increment fails that moved from one place to another, and what it would end in.
+/// Why an increment that jumped fails, and the state it would end in.
 pub fn jump(motion: f64, predicted: f64, unstable: Option<Stability>) -> String {
     match unstable {
         Some(stability) => format!(
@@ -29,7 +29,7 @@ pub fn jump(motion: f64, predicted: f64, unstable: Option<Stability>) -> String 
     }
 }
 
-/// What an increment was accepted in spite of; empty where it stays on the branch of stable equilibrium.
+/// Objections against an accepted increment; empty if it stays on the branch of stable equilibrium.
 pub fn reservation(jumped: bool, unstable: Option<&StabilityLoss>) -> String {
     match unstable {
         Some(loss) => {

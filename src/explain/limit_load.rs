@@ -1,9 +1,9 @@
-//! The load at which a body comes loose, and what ends there: friction that is used up, or contact that has nothing left to press
-//! with.
+//! The load at which a body comes loose, and its reason: friction is used up, or no contact presses against the motion any
+//! more.
 //!
-//! The increment that failed is walked again in smaller steps ([`super::reach`]). In the last equilibrium every contact of the body
-//! is asked what it still does against the motion that nothing holds. With v its relative velocity, friction resists with at most
-//! tan φ F_n + c per |v_t|, of which |F_t| is taken; an opening contact yields F_n per v_n until it is empty.
+//! Walks the failed increment again in smaller steps ([`super::reach`]). In the last equilibrium, computes the remaining
+//! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
+//! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
 
 use super::loose::Moving;
 use super::number::four;
@@ -14,20 +14,20 @@ use crate::step::event::Failure;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
-/// Part of the friction, or of the force of the contacts, that counts as nothing left.
+/// Fraction of the friction or of the contact forces below which nothing is left.
 const LEFT: f64 = 1e-2;
 
-/// What a contact that is left does against a motion.
+/// Resistance of the remaining contacts against a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Resistance {
-    /// Friction that could resist, and that does (power).
+    /// Available and used friction (power).
     friction: [f64; 2],
-    /// Contact forces that the motion takes off (power), and their size over the same velocities.
+    /// Contact forces that the motion removes (power), and their magnitude over the same velocities.
     opening: [f64; 2],
 }
 
-/// In words, where the increment failed since nothing holds a body; `None` for other failures, where it was loose from the
-/// start, or where that was stopped. The stepper is left anywhere.
+/// Describes the limit load where the increment failed because nothing holds a body. `None` for other failures, for bodies
+/// that were loose from the start, and if interrupted. The stepper's final state is unspecified.
 pub fn limit_load(
     stepper: &mut Stepper,
     state: &State,
@@ -68,7 +68,7 @@ pub fn limit_load(
     ))
 }
 
-/// The rigid motions that a failure is about.
+/// The rigid motions that a failure reports.
 fn rigid(failure: &Failure) -> Option<&[RigidMotion]> {
     match failure {
         Failure::Singular(Singular::Rigid { motions }) => Some(motions),

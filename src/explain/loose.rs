@@ -201,7 +201,7 @@ impl<'a> Moving<'a> {
         self.nodes.contains(&node)
     }
 
-    /// How a contact stands over its surface.
+    /// Projection of a contact onto its surface.
     fn over(&self, state: &State, s: usize) -> Option<Projection> {
         let at = self.places[self.model.contacts[s].node];
         let spot = state.nodes[s].spot?;
@@ -212,7 +212,7 @@ impl<'a> Moving<'a> {
         self.over(state, s).map_or(0.0, |over| over.gap)
     }
 
-    /// The contacts of the body that stand over a surface, each with its velocity against that: along n, and along t.
+    /// The contacts of the body above a surface, each with its velocity relative to the surface along n and t.
     pub(super) fn rates(&self, state: &State) -> Vec<(usize, [f64; 2])> {
         let rate = |s: usize| {
             let (node, over) = (self.model.contacts[s].node, self.over(state, s)?);

@@ -30,7 +30,7 @@ use crate::step::event::Failure;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 
-/// What is told where the first increment fails and nodes start inside their surface.
+/// Shown where the first increment fails and nodes start inside their surface.
 const OVERLAP: &str = "where: nodes start inside their surface; settings.initial_gaps=ramp pushes them out over the first leg, adjust moves them onto the surface";
 /// Most remedies that are tried for a page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
@@ -67,7 +67,7 @@ pub fn page(
         tell(&page.shown(&format!("trying {} …", remedy.label)));
         match attempt(stepper, state, spec, remedy, stop) {
             Some(trial) => page.trials.push((remedy.clone(), trial)),
-            // A scene that cannot be changed so is no trial.
+            // A scene that cannot be changed this way gives no trial.
             None if matches!(remedy.how, How::Restart(_)) && !stop() => {}
             None => return None,
         }
@@ -275,7 +275,7 @@ impl Page {
                 "why: past the load at which equilibrium ends nothing stops what moves".into(),
             ),
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
-            // The element stands before all else.
+            // The element comes first.
             Failure::Inverted(_) => {}
         }
     }
@@ -382,7 +382,7 @@ impl Page {
         }
     }
 
-    /// What to do, best first: what was tried and helped, what did not help, and what was not tried.
+    /// Remedies, best first: those that helped, those that did not, and those that were not tried.
     fn to_do(&self) -> Vec<String> {
         let mut trials: Vec<&(Remedy, Trial)> = self
             .trials
@@ -395,7 +395,7 @@ impl Page {
                 remedy.how,
                 How::Set(..) | How::Increment(_) | How::IncrementOn(..)
             );
-            // Only a change of the scene removes a cause that lies in the scene.
+            // A cause in the scene can only be removed by changing the scene.
             let scene = matches!(remedy.how, How::Restart(_));
             (!scene, !lasts, trial.factorizations, trial.minors)
         });

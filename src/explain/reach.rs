@@ -29,7 +29,7 @@ pub struct Reach {
     pub from: f64,
     /// Load factor that failed.
     pub wanted: f64,
-    /// The state that was come to.
+    /// The state that was reached.
     pub at: Box<State>,
     /// Size of the step that failed last, and of what. `None` where the load that failed was come to, or the number of
     /// trials was used up.
@@ -107,7 +107,7 @@ fn step(
     let until = Until::end().minors(MINORS).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| match &stepper.event().outcome {
         Outcome::Increment { jumped: false, .. } => ControlFlow::Break(Ok(stepper.state().clone())),
-        // What has left the branch is no answer near the last one.
+        // A state that has left the branch is no answer near the last state.
         Outcome::Increment { .. } => {
             ControlFlow::Break(Err(Failure::Singular(Singular::Unexplained)))
         }

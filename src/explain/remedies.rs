@@ -218,7 +218,7 @@ pub fn attempt_attached(
     Some(trial)
 }
 
-/// Tries a remedy that changes the scene from its start; `None` if it was stopped, or there is no such scene.
+/// Tries a remedy that changes the scene from its start; `None` if interrupted, or if there is no such scene.
 fn attempt_restart(
     spec: &Spec,
     state: &State,
@@ -250,7 +250,7 @@ fn attempt_restart(
     Some(trial)
 }
 
-/// Tries a remedy; `None` if it was stopped. `spec` is the scene as its author wrote it, for remedies that change it.
+/// Tries a remedy; `None` if interrupted. `spec` is the original scene, for remedies that change it.
 pub fn attempt(
     stepper: &mut Stepper,
     state: &State,

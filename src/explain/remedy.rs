@@ -50,9 +50,9 @@ pub enum Kind {
     Start(Mode),
     /// A node keeps its mode while it misses its condition by little.
     Hysteresis,
-    /// What becomes of nodes that start inside their surface; tried from the start of the scene.
+    /// Treatment of nodes that start inside their surface; tried from the start of the scene.
     Gaps(InitialGaps),
-    /// A material law that holds where a solid is outside the range of its own; tried from the start of the scene.
+    /// A material law whose range contains the state of a solid; tried from the start of the scene.
     Law,
 }
 
@@ -67,7 +67,7 @@ pub enum How {
     IncrementOn(usize, f64),
     /// A consistent state of the census, by its number from 0.
     StartFrom(usize),
-    /// Values of the scene, by path, with which it starts again.
+    /// Values to change in the scene, by path, for a restart.
     Restart(Vec<(String, &'static str)>),
     /// Only from the list of remedies.
     Listed,
@@ -135,7 +135,7 @@ impl Remedy {
         match kind {
             Kind::Answer(_) | Kind::Law => None,
             Kind::Gaps(gaps) => {
-                // Later increments do not begin with the overlap any more.
+                // Later increments do not begin with the overlap.
                 let starts = state.next.increment == 1;
                 let keeps = model.settings.initial_gaps == InitialGaps::Keep;
                 let inside = |found: &StartGaps| !found.inside.is_empty();
@@ -146,7 +146,7 @@ impl Remedy {
                 };
                 let how = How::Restart(vec![("settings.initial_gaps".to_owned(), word)]);
                 let overlaps = starts && keeps && start_gaps(model).iter().any(inside);
-                // Of a surface that is the wrong way round every node is inside.
+                // If a surface has the wrong orientation, all nodes are inside.
                 (overlaps && turned(model).is_empty()).then(|| remedy(label, how, Vec::new()))
             }
             Kind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
@@ -179,8 +179,8 @@ impl Remedy {
         }
     }
 
-    /// Another law for the materials that are outside the range of their own in a failed state, and whether they are to blame
-    /// for certain. `None` where none is outside.
+    /// Another law for materials outside the range of theirs in a failed state, and whether the law is certainly the cause.
+    /// `None` if all are inside.
     pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<(Remedy, bool)> {
         let cause = MaterialCause::of(model, state, failure)?;
         let points = cause.before.into_iter().chain([cause.point]);

@@ -405,8 +405,8 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
     }
 }
 
-/// Where and why a run ended, and up to which load it is sound. `at` and `load` are those of the minor iteration that
-/// failed, and `state` is what it left.
+/// Where and why a run ended, and the last load with a sound state. `at` and `load` belong to the failed minor iteration,
+/// and `state` is the state after it.
 pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &Failure) -> String {
     let again = match at.attempt {
         0 | 1 => String::new(),

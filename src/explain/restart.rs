@@ -1,5 +1,5 @@
-//! A changed scene, tried from its start to the load at which a state failed: for changes that no intervention can make in a
-//! run, such as another mesh or another material law.
+//! Tries a changed scene from its start to the load of a failure: for changes that are impossible within a run, such as
+//! another mesh or material law.
 
 use crate::format::spec::Spec;
 use crate::model::Settings;
@@ -12,10 +12,10 @@ use crate::step::stepper::Stepper;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Most minor iterations of the trial.
+/// Maximum number of minor iterations in the trial.
 const BUDGET: u64 = 4000;
 
-/// How the trial ended.
+/// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Restart {
     /// Minor iterations from the start.
@@ -24,12 +24,12 @@ pub struct Restart {
     pub majors: u64,
     /// Factorizations from the start.
     pub factorizations: u64,
-    /// What it failed of; `None` inside where its budget was used up, and outside where it came to the load.
+    /// The failure. `Some(None)`: the budget was used up; `None`: the load was reached.
     pub failure: Option<Option<Failure>>,
 }
 
-/// The solver of a changed scene at its start, with the settings and friction of a failed state. `None` where there is no such
-/// scene.
+/// The solver of a changed scene at its start, with the settings and friction of a failed state. `None` if the scene cannot
+/// be built.
 pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
     let own = spec.slaves.iter().filter_map(|group| group.friction);
     let by_area = own
@@ -44,8 +44,8 @@ pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
         ..state.controls.settings
     };
     stepper.intervene(&Intervention::Settings(settings)).ok()?;
-    // Friction that was changed for all nodes is that of the new ones; groups of nodes, and cohesion by area, have what the
-    // scene says.
+    // A friction change for all nodes applies to the new nodes, too. Node groups and cohesion by area keep the scene's
+    // values.
     if !by_area
         && let [first, rest @ ..] = state.controls.friction.as_slice()
         && rest.iter().all(|friction| friction == first)
@@ -60,7 +60,7 @@ pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
     Some(stepper)
 }
 
-/// Runs a changed scene to the load that failed in a state. `None` where that was stopped.
+/// Runs a changed scene to the load at which a state failed. `None` if interrupted.
 pub fn restart(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<Restart> {
     let target = (state.start.leg, state.load_factor);
     let (mut minors, mut majors) = (0, 0);
@@ -89,7 +89,7 @@ pub fn restart(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) ->
     })
 }
 
-/// Whether the last accepted state has come to a load on a leg of the path.
+/// Whether the last accepted state has reached a load on a leg of the path.
 fn is_past(stepper: &Stepper, (leg, load): (usize, f64)) -> bool {
     let (state, path) = (stepper.state(), &stepper.model().path);
     let start = &state.start;

@@ -1,4 +1,4 @@
-//! Solids that leave the range of their law, in words: which element, how far it is deformed, and which law to use instead
+//! Describes solids outside the range of their law: which element, its deformation, and which law to use instead
 //! ([`crate::fem::deformation`]).
 
 use super::number::four;
@@ -7,10 +7,10 @@ use crate::model::{BodyKind, Elastic, Law, Model, Update};
 use crate::step::event::Failure;
 use crate::step::state::State;
 
-/// Displacements beyond this many times the scene's length are those of no shape.
+/// Displacements beyond this multiple of the scene's length are meaningless as a shape.
 const LOST: f64 = 10.0;
 
-/// The material of an element: its numbers, and its name in the scene.
+/// The material of an element: its number data and its name in the scene.
 fn material<'a>(model: &'a Model, point: &PointDeformation) -> Option<(&'a Elastic, &'a str)> {
     let BodyKind::Solid(solid) = &model.bodies.get(point.body)?.kind else {
         return None;
@@ -20,19 +20,19 @@ fn material<'a>(model: &'a Model, point: &PointDeformation) -> Option<(&'a Elast
     Some((solid.materials.get(number)?, name))
 }
 
-/// An element by number and body.
+/// Names an element by number and body.
 pub fn element(model: &Model, point: &PointDeformation) -> String {
     let body = model.bodies.get(point.body).map_or("?", |body| &body.name);
     format!("element {} of {body}", point.element + 1)
 }
 
-/// An element and the place of its worst point.
+/// Names an element and the location of its worst point.
 fn place(model: &Model, point: &PointDeformation) -> String {
     let [x, y] = point.at.map(four);
     format!("{} at ({x}, {y})", element(model, point))
 }
 
-/// An inverted element, as a part of a sentence.
+/// Describes an inverted element, as part of a sentence.
 pub fn inverted(model: &Model, point: &PointDeformation) -> String {
     format!(
         "{} is inverted: det F = {}, smallest principal stretch {}",
@@ -42,7 +42,7 @@ pub fn inverted(model: &Model, point: &PointDeformation) -> String {
     )
 }
 
-/// An element outside the range of its law, as a part of a sentence.
+/// Describes an element outside the range of its law, as part of a sentence.
 pub fn outside(model: &Model, point: &PointDeformation) -> String {
     let stretch = four(point.stretch);
     format!(
@@ -60,7 +60,7 @@ fn range(model: &Model, point: &PointDeformation) -> Range {
     material(model, point).map_or(Range::Unlimited, |(elastic, _)| Range::of(elastic))
 }
 
-/// The range of an element's law, and what happens outside.
+/// Describes the range of an element's law and the behaviour outside.
 pub fn limit(model: &Model, point: &PointDeformation) -> String {
     match (range(model, point), material(model, point)) {
         (Range::Stretch(least), Some((elastic, _))) if elastic.update == Update::Small => format!(
@@ -78,7 +78,7 @@ pub fn limit(model: &Model, point: &PointDeformation) -> String {
     }
 }
 
-/// What of the scene gives an element a law that holds there: path and value. `None` where there is no such law.
+/// The scene value, as path and value, that gives an element a law valid there. `None` if there is no such law.
 pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, &'static str)> {
     let (elastic, name) = material(model, point)?;
     match (elastic.update, elastic.law) {
@@ -88,7 +88,7 @@ pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, &'s
     }
 }
 
-/// That an accepted increment leaves the range, with the law to use instead.
+/// Reports that an accepted increment leaves the range, with the law to use instead.
 pub fn left(model: &Model, point: &PointDeformation) -> String {
     let suggested = other_law(model, point).map_or(String::new(), |(path, value)| {
         format!(" (suggested, not tried: {path}={value})")
@@ -96,18 +96,18 @@ pub fn left(model: &Model, point: &PointDeformation) -> String {
     format!("{}{suggested}", outside(model, point))
 }
 
-/// What the law of a solid has to do with a failure.
+/// Role of a solid's law in a failure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaterialCause {
-    /// The worst point, in the iterate that failed where that is outside, else in the last equilibrium.
+    /// The worst point of the failed iterate if outside the range, else of the last equilibrium.
     pub point: PointDeformation,
-    /// The worst point of the last equilibrium, where one was outside already.
+    /// The worst point of the last equilibrium, if it was already outside.
     pub before: Option<PointDeformation>,
 }
 
 impl MaterialCause {
-    /// The element of a failed state that is outside the range of its law. `None` where all are inside, or the failure has
-    /// another cause for certain.
+    /// The element of a failed state that is outside the range of its law. `None` if all are inside, or if the failure
+    /// certainly has another cause.
     pub fn of(model: &Model, state: &State, failure: &Failure) -> Option<MaterialCause> {
         use crate::linear::singular::Singular;
         if matches!(
@@ -133,14 +133,14 @@ impl MaterialCause {
         })
     }
 
-    /// Whether the law is to blame: what was accepted is outside its range already, or an element is inverted. An iterate that
-    /// is outside may be so for other reasons.
+    /// Whether the law is the cause: the accepted state is already outside its range, or an element is inverted. An iterate
+    /// may be outside for other reasons.
     pub fn is_certain(&self) -> bool {
         let upright = self.point.determinant > 0.0;
         self.before.is_some() || !upright
     }
 
-    /// In words.
+    /// Describes the cause.
     pub fn words(&self, model: &Model) -> String {
         let before = match &self.before {
             Some(before) if before.stretch != self.point.stretch => format!(

@@ -1,8 +1,9 @@
-//! How much it matters where nodes are held that touch within an increment.
+//! Measures how far the forces depend on where nodes are held that touch within an increment.
 //!
-//! `touch: auto` holds them where their straight way meets the surface (ρ, eqn 14) where a body is a mesh; an implicit step of
-//! Coulomb's law, as other codes make it, holds them at the foot of where they were (`touch: start`). The increment of a run in
-//! which nodes with the largest friction limit touched is solved again with the latter, and the forces are compared.
+//! `touch: auto` holds them where their straight path meets the surface (ρ, eqn 14) if a body is a mesh; an implicit step
+//! of Coulomb's law, as in other codes, holds them at the projection of their starting point (`touch: start`). The
+//! increment of a run in which nodes with the largest friction limit touched is solved again with `touch: start`, and the
+//! forces are compared.
 
 use crate::model::{Mode, Model, Touch};
 use crate::step::drive::{RunEnd, Until};
@@ -13,16 +14,16 @@ use crate::step::stepper::Stepper;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Differences of forces that are told, over the largest force.
+/// Smallest reported difference of forces, relative to the largest force.
 const TOLD: f64 = 1e-4;
-/// Most minor iterations of the increment that is solved again.
+/// Maximum number of minor iterations in the increment solved again.
 const MOST_MINORS: u64 = 1000;
 
-/// A run, watched for the increment in which the place of touching decides most.
+/// Watches a run for the increment that depends most on the point of first contact.
 pub struct TouchWatch {
-    /// The state from which the present increment starts.
+    /// The state at the start of the current increment.
     start: State,
-    /// Increment and attempt that are under way, and the nodes that touched in it.
+    /// Current increment and attempt, and the nodes that touched in it.
     attempt: (u32, u32),
     touched: Vec<bool>,
     decided: Option<Decided>,
@@ -39,18 +40,18 @@ struct Decided {
     forces: Vec<[f64; 2]>,
 }
 
-/// What `touch: start` makes of an increment.
+/// Result of an increment with `touch: start`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
     /// The increment.
     pub increment: u32,
-    /// The largest difference of a force on a slave node, over the largest such force; `None` where the increment does not
-    /// converge at once.
+    /// The largest difference of a force on a slave node, relative to the largest such force; `None` if the increment does
+    /// not converge in one attempt.
     pub forces: Option<f64>,
 }
 
 impl TouchWatch {
-    /// The watch of a run from a state.
+    /// Starts to watch a run from a state.
     pub fn new(start: &State) -> TouchWatch {
         TouchWatch {
             start: start.clone(),
@@ -60,7 +61,7 @@ impl TouchWatch {
         }
     }
 
-    /// Sees what a minor iteration did, and the state that it left.
+    /// Records the event of a minor iteration and the state after it.
     pub fn see(&mut self, event: &Event, state: &State) {
         let at = event.position;
         if self.attempt != (at.increment, at.attempt) {
@@ -94,7 +95,7 @@ impl TouchWatch {
         self.start.clone_from(state);
     }
 
-    /// Solves the increment that was found again; `None` where nothing touched, or the forces are the same.
+    /// Solves the recorded increment again; `None` if no node touched, or if the forces agree.
     pub fn measure(&self, model: &Arc<Model>) -> Option<Difference> {
         let decided = self.decided.as_ref()?;
         let mut stepper = Stepper::new(model.clone());
@@ -130,7 +131,7 @@ fn forces(state: &State) -> Vec<[f64; 2]> {
     state.nodes.iter().map(force).collect()
 }
 
-/// The largest difference, over the largest force of the first.
+/// The largest difference, relative to the largest force in `ours`.
 fn difference(ours: &[[f64; 2]], theirs: &[[f64; 2]]) -> f64 {
     let largest = ours.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
     let pairs = ours.iter().zip(theirs);
@@ -139,7 +140,7 @@ fn difference(ours: &[[f64; 2]], theirs: &[[f64; 2]]) -> f64 {
 }
 
 impl Difference {
-    /// The difference in words, with what to do about it.
+    /// Describes the difference and how to avoid it.
     pub fn words(&self) -> String {
         let start = "touch: start (one implicit step of Coulomb's law)";
         let what = match self.forces {

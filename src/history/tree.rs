@@ -7,8 +7,8 @@
 //! [`BUDGET`] bytes allows; beyond it frames are thinned: first those inside major iterations, far from the cursor
 //! before near, then ends of majors, then every second end of an increment. A thinned frame keeps its place, its
 //! intervention and its monitors, and is computed again from the nearest whole one before it when it is wanted.
-//! The root, the cursor's frame and the tip of every branch are always whole; with the strips, these are bounded by
-//! [`BRANCH_BUDGET`], beyond which no branch begins.
+//! The root, the cursor's frame and the tip of every branch are always whole. [`BRANCH_BUDGET`] bounds these frames and the
+//! strips; beyond it no branch can begin.
 
 use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
@@ -24,7 +24,8 @@ use std::sync::Arc;
 
 /// Most bytes that whole frames may take.
 pub const BUDGET: usize = 256 << 20;
-/// Most bytes of what is never thinned, the tips of all branches and the strips of all points, at which a branch may begin.
+/// Maximum size in bytes of the data that is never thinned (tips of all branches, strips of all points) at which a branch
+/// can begin.
 pub const BRANCH_BUDGET: usize = 256 << 20;
 /// Once over the budget, frames are thinned until this part of it is used, so that it is not done at every iteration.
 const AFTER_THINNING: f64 = 0.75;
@@ -162,8 +163,8 @@ impl Tree {
         self.ledger.bytes
     }
 
-    /// Bytes of what is never thinned: the place and the strip of every point, and a whole frame at the tip of every branch.
-    /// They depend on the tree alone, so that a replay comes to the same.
+    /// Size in bytes of the data that is never thinned: the place and the strip of every point, and a whole frame at the
+    /// tip of every branch. It depends on the tree alone, so a replay computes the same value.
     pub fn kept(&self) -> usize {
         let away: usize = self.branches.iter().map(|branch| branch.away.len()).sum();
         let strip = Strip::BYTES_PER_ITERATION + self.model.contacts.len() * Strip::BYTES_PER_NODE;
@@ -451,7 +452,7 @@ impl Ledger {
     }
 }
 
-/// What a whole frame takes that shares nothing.
+/// Size of a whole frame that shares no data.
 fn whole_bytes(frame: &Frame) -> usize {
     let mut bytes = size_of_val(&frame.state.nodes[..]);
     each_shared(frame, &mut |_, part| bytes += part);

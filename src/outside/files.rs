@@ -89,7 +89,7 @@ impl Output {
         self.ready()?.place()
     }
 
-    /// Writes it to the disk, so that only its name is missing; a device or a pipe has all then.
+    /// Syncs the file to the disk, so that only its name is missing; a device or a pipe is complete then.
     fn ready(self) -> Result<Ready, FileError> {
         let Output {
             target,
@@ -144,11 +144,11 @@ fn straight(path: &Path) -> io::Result<File> {
     Ok(open)
 }
 
-/// A file that is written, without its name.
+/// A complete file without its name.
 struct Ready {
     target: PathBuf,
     overwrite: bool,
-    /// Nothing where a device or a pipe was written to.
+    /// `None` for a device or a pipe.
     file: Option<NamedTempFile>,
 }
 
@@ -160,13 +160,13 @@ impl Ready {
         }
     }
 
-    /// What has the name now, under another one; nothing where nothing has it.
+    /// A copy (hard link if possible) of the file that has the name now; `None` if there is none.
     fn former(&self) -> Result<Option<NamedTempFile>, FileError> {
         if self.file.is_none() || !self.overwrite || !self.target.is_file() {
             return Ok(None);
         }
         let kept = |path: &Path| {
-            // Some file systems have no second names.
+            // Some file systems have no hard links.
             std::fs::hard_link(&self.target, path)
                 .or_else(|_| std::fs::copy(&self.target, path).map(drop))?;
             File::open(path)
@@ -178,7 +178,7 @@ impl Ready {
         Ok(Some(former))
     }
 
-    /// Gives it its name.
+    /// Gives the file its name.
     fn place(self) -> Result<(), FileError> {
         let Some(file) = self.file else {
             return Ok(());
@@ -197,8 +197,8 @@ impl Ready {
     }
 }
 
-/// Finishes several files, all or none: none takes its name before all are on the disk, and where one cannot take its name,
-/// those that have taken theirs give them back. A device or a pipe keeps what it was given.
+/// Finishes several files, all or none: no file takes its name before all are on the disk. If a file cannot take its name,
+/// those that already have theirs are reverted. Data written to a device or a pipe stays.
 ///
 /// # Errors
 /// As [`Output::finish`].
@@ -211,7 +211,7 @@ pub fn finish_all(outputs: Vec<Output>) -> Result<(), FileError> {
         let target = file.file.is_some().then(|| file.target.clone());
         if let Err(error) = file.place() {
             for (target, former) in placed {
-                // What cannot be undone is told by the error that it comes from.
+                // A failure to revert is covered by the original error.
                 let _ = match former {
                     Some(former) => former.persist(&target).map(drop).map_err(|e| e.error),
                     None => std::fs::remove_file(&target),
@@ -283,7 +283,7 @@ fn beside(target: &Path) -> io::Result<NamedTempFile> {
     }
     let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
     sweep(directory);
-    // Temporary files are private unless told otherwise; results are as public as other files are.
+    // Temporary files are private by default; results get the usual permissions.
     let public = PermissionsExt::from_mode(0o666);
     let made = builder().permissions(public).tempfile_in(directory)?;
     // Where a file system knows no locks, the process's number has to do.
@@ -297,7 +297,7 @@ fn folder(target: &Path) -> &Path {
     parent.unwrap_or(Path::new("."))
 }
 
-/// What makes temporary files.
+/// Builder of temporary files.
 fn builder() -> tempfile::Builder<'static, 'static> {
     static NAME: LazyLock<String> = LazyLock::new(|| format!("{PREFIX}{}-", std::process::id()));
     let mut builder = tempfile::Builder::new();

@@ -1,11 +1,11 @@
 //! The journal of a session: what changed anything, written as it happens, so that it can be replayed to the same bits.
 //!
-//! A text file of RON, one entry a line. The first line is the [`Header`] with the scene whole, so that the file stands
-//! alone; then comes an [`Entry`] for every command that changed something or moved the cursor, with a digest of the
-//! state after it, and before a motion that solves a line that says so. Entries that changed something are synced to
-//! the disk (fdatasync), and so is the folder when a journal begins; moves of the cursor are only handed to the system. A kill loses
-//! neither, a power cut the latter.
-//! A last line without its end is what a kill leaves of an entry; it is dropped, and told.
+//! A RON text file, one entry per line. The first line is the [`Header`] with the whole scene, so the file is
+//! self-contained; then comes an [`Entry`] for every command that changed something or moved the cursor, with a digest of
+//! the state after it, and before a motion that solves a line that announces it. Entries that changed something are synced
+//! to the disk (fdatasync), and so is the folder when a journal begins; cursor moves are only written to the system. A kill
+//! loses neither, a power failure only cursor moves. A last line without its end is an entry cut off by a kill; it is
+//! dropped and reported.
 
 use crate::format::kind::{FileKind, mistaken};
 use crate::format::{SceneError, Spec, notation, read};
@@ -283,7 +283,7 @@ impl Journal {
         &self.path
     }
 
-    /// Whether what is written can be found under its name: the file was neither deleted nor replaced.
+    /// Whether the journal still exists under its name: the file was neither deleted nor replaced.
     pub(crate) fn is_there(&self) -> bool {
         let at = |found: Metadata| (found.dev(), found.ino());
         let named = std::fs::metadata(&self.path).map(at);
@@ -492,7 +492,7 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
     }
 }
 
-/// Syncs the name of a new file. Some file systems sync no folders: the file's own bytes are synced in any case.
+/// Syncs the name of a new file. Some file systems cannot sync folders; the file itself is synced in any case.
 fn sync_folder(file: &Path) {
     let folder = file.parent().filter(|folder| *folder != Path::new(""));
     let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
@@ -541,7 +541,7 @@ pub fn newest() -> Result<PathBuf, JournalError> {
     newest.map(|(_, path)| path).ok_or_else(none)
 }
 
-/// A digest of a state's bits, over its text in RON, in which floats are exact.
+/// A digest of a state's bits, computed from its RON text, in which floats are exact.
 pub fn digest(state: &State) -> String {
     let state = state.digested();
     #[cfg(mutants)]
@@ -612,7 +612,7 @@ mod tests {
     use super::*;
     use rustix::fs::{CWD, Mode, mkfifoat};
 
-    /// A pipe takes bytes and refuses to be synced, so that a sync that is asked of the system shows as an error.
+    /// A pipe accepts bytes but fails to sync, so a sync request shows as an error.
     #[test]
     fn what_changed_something_is_synced_and_a_move_of_the_cursor_is_not() {
         let folder = tempfile::tempdir().unwrap();

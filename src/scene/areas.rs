@@ -61,8 +61,8 @@ pub(super) fn tributary(
     both.map(|(area, alone)| area.or(alone)).collect()
 }
 
-/// Gives what a node on the axis has of a side to the next one. Its ring has no length, so no pressure acts on it; and at the
-/// end of a surface that is dented there, its normal leans off the axis by what the elements leave of the symmetry.
+/// Moves the area of a node on the axis to the next node of its side. Its ring has no length, so no pressure acts on it;
+/// and if the surface is dented at that end, its normal deviates from the axis by the symmetry error of the elements.
 fn off_axis(side: &Side<'_>, nodes: &[Node], shares: &mut [f64]) {
     let Some(made_of) = side.made_of else {
         return;

@@ -1,13 +1,14 @@
-//! Masters that are cut at their convex corners, and which way their slave nodes face ([`crate::contact::facing`]).
+//! Masters that are cut at their convex corners, and the directions that their slave nodes face
+//! ([`crate::contact::facing`]).
 
 use crate::model::{Body, BodyKind, Contact, Facing, Node};
 use std::collections::HashMap;
 
-/// Angle between two elements from which on their border is a real corner, and not a curve in pieces (30 degrees).
+/// Angle between two elements above which their border is a real corner rather than part of a curve (30 degrees).
 pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_6;
 
-/// Angle by which a walk turns left where it comes to the end of one element and goes on along another (radians). The outside
-/// is on the right, so the border is convex where the angle is positive.
+/// Angle of the left turn from the end of one element to the start of the next (radians). The outside is on the right, so
+/// the border is convex if the angle is positive.
 pub(super) fn turn(one: &[usize], other: &[usize], at: impl Fn(usize) -> [f64; 2]) -> f64 {
     let ([.., before, last], [first, behind, ..]) = (one, other) else {
         return 0.0;
@@ -35,8 +36,8 @@ pub(super) fn cut(mut chain: Vec<Vec<usize>>, nodes: &[Node]) -> Vec<Vec<Vec<usi
     pieces.map(<[_]>::to_vec).collect()
 }
 
-/// Finds which way the slave nodes of cut masters face; `pieces` are the numbers of the surfaces that are pieces, and `pairs` has
-/// the pair of each slave node.
+/// Finds the directions that the slave nodes of cut masters face; `pieces` are the numbers of the surfaces that are pieces,
+/// and `pairs` has the pair of each slave node.
 pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &mut [Contact]) {
     if pieces.is_empty() {
         return;
@@ -54,7 +55,7 @@ pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &
         own.sort_unstable();
         let pair = pair_of.get(&slave.node);
         let slides = |edge: &&&Vec<usize>| edge.iter().all(|node| pair_of.get(node) == pair);
-        // The sides of the slave surface; a node without one faces where both of its sides do.
+        // The sides of the slave surface, or all sides of the node if it is on none of them.
         let on_side = outline(slave.node, edges.iter().filter(slides).copied());
         let outline = on_side.or_else(|| outline(slave.node, edges.iter().copied()));
         slave.facing = outline.filter(|_| own.len() > 1).map(|outline| Facing {
@@ -64,7 +65,7 @@ pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &
     }
 }
 
-/// The nodes before and after a node along these edges, or itself at an end; `None` where it is on none of them.
+/// The nodes before and after a node along these edges, or the node itself at an end; `None` if it is on no edge.
 fn outline<'a>(node: usize, edges: impl Iterator<Item = &'a Vec<usize>>) -> Option<[usize; 2]> {
     let mut ends = [node; 2];
     for edge in edges {
@@ -95,7 +96,8 @@ mod tests {
 
     #[test]
     fn a_chain_is_cut_where_it_is_convex_and_not_where_it_is_concave_or_bends_slightly() {
-        // Up a wall, left over a step (convex), down into a notch (convex), left again (concave), and on at 17 degrees.
+        // Up a wall, left over a step (convex), down into a notch (convex), left again (concave), then a turn of 17
+        // degrees.
         let nodes = nodes(&[
             [0.0, 0.0],
             [0.0, 1.0],

@@ -107,12 +107,12 @@ pub(crate) fn element_nodes(path: &Path, total: usize, setting: Option<f64>) -> 
     })
 }
 
-/// The id of a single node that is called so elsewhere: its name, as long as that may be, with - for what no id may have.
+/// A valid id for a single node with this name: the name, cut to the maximum length, with - for invalid characters.
 pub(crate) fn node_id_of(name: &str, most: usize) -> String {
     let letters: Vec<char> = name.chars().take(most).collect();
     let is_letter = |k: Option<usize>| k.and_then(|k| letters.get(k)).is_some_and(|c| *c != '.');
     let usable = |(k, c): (usize, &char)| match c {
-        // Dots stand between other letters.
+        // Dots are valid between other characters.
         '.' if is_letter(k.checked_sub(1)) && is_letter(Some(k + 1)) => '.',
         '_' => '_',
         c if c.is_alphanumeric() => *c,
@@ -121,7 +121,7 @@ pub(crate) fn node_id_of(name: &str, most: usize) -> String {
     letters.iter().enumerate().map(usable).collect()
 }
 
-/// Refuses ids of single nodes as [`id`] does; they may have dots between other letters, as the names of a chain's nodes have.
+/// Refuses ids of single nodes as [`id`] does; dots are valid between other characters, as in the node names of a chain.
 pub(crate) fn node_id(path: &Path, node: &str) -> Result<(), Fault> {
     match node.split('.').all(|part| !part.is_empty()) {
         true => id(path, &node.replace('.', "_")),

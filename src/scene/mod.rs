@@ -6,7 +6,7 @@
 //! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
 //! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
 //! - [`attached`]: scenes that attached solvers told.
-//! - `pressed`: prescribed motions that press a solid out of the range of its law.
+//! - `pressed`: prescribed motions that compress a solid beyond the range of its law.
 //! - [`problems`]: interface problems that other programs have written.
 //! - [`builtin`]: the scenes that the program carries.
 
@@ -95,11 +95,11 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// What [`Scene::open`] takes for a scene that the file `own` names: a file beside that one or in a folder below, as for the
-    /// files that scenes and decks name, or a built-in scene.
+    /// Opens a scene that the file `own` names: a file in the same folder or below, as for the files named in scenes and
+    /// decks, or a built-in scene.
     ///
     /// # Errors
-    /// A message that says why there is none.
+    /// A message with the reason.
     pub fn named_in(own: &str, named: &str) -> Result<String, String> {
         let own = std::path::Path::new(own);
         let found = match input::beside(own, named.trim_start_matches("./")) {

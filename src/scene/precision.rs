@@ -1,14 +1,14 @@
-//! Whether double precision can carry a scene, before it is run.
+//! Checks before a run whether double precision is sufficient for a scene.
 
 use crate::linear::norms::Norms;
 use crate::linear::sizes::expected_noise;
 use crate::model::{BodyKind, Model};
 
-/// What is expected of the round-off is this many times what runs find of it.
+/// Ratio of the expected round-off to the round-off found in runs.
 const GENEROUS: f64 = 10.0;
 
-/// That one body is so much stiffer than another that round-off eats the accuracy of the forces; `None` where it leaves
-/// enough.
+/// Reports a body that is so much stiffer than another that round-off reduces the accuracy of the forces; `None` if the
+/// accuracy is sufficient.
 pub fn warning(model: &Model) -> Option<String> {
     let (number, noise) = expected_noise(model)?;
     let noise = noise / GENEROUS;

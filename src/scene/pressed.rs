@@ -1,19 +1,19 @@
-//! Prescribed motions that press a solid out of the range of its law, found before anything is solved.
+//! Finds prescribed motions that compress a solid beyond the range of its law, before any solve.
 //!
-//! Between two points of a solid, one above the other, whose motions along that line are prescribed, the mean stretch along
-//! the line is given: s = (ΔX + Δu) / ΔX. Where lines across it stay across, as under flat plates, no mean of the smallest
-//! principal stretch is larger, whatever happens sideways. A point is held by a support, by a prescribed displacement, or
-//! by a rigid surface that comes towards it by more than its gap.
+//! Between two points of a solid, one above the other, with prescribed motions along their line, the mean stretch along the
+//! line is given: s = (ΔX + Δu) / ΔX. If lines across it stay straight, as under flat plates, the mean of the smallest
+//! principal stretch is at most s, whatever happens sideways. A point is held by a support, by a prescribed displacement,
+//! or by a rigid surface that approaches it by more than its gap.
 
 use crate::contact::projection::{project, projection_at};
 use crate::fem::deformation::{Range, SOFTENING};
 use crate::model::{Body, BodyKind, Model, Solid};
 
-/// Cosine from which on a surface's normal is along an axis.
+/// Cosine above which a surface's normal counts as along an axis.
 const ALONG: f64 = 0.99;
-/// Two points lie above each other within this part of their distance.
+/// Two points are above each other within this fraction of their distance.
 const ABOVE: f64 = 0.1;
-/// Most points of a body that are compared in pairs.
+/// Maximum number of points of a body that are compared in pairs.
 const MOST: usize = 2000;
 
 /// A point of a solid whose motion along an axis is prescribed.
@@ -24,7 +24,7 @@ struct HeldPoint {
     node: usize,
 }
 
-/// A sentence for each solid that the prescribed motions press out of the range of St Venant-Kirchhoff's law.
+/// One sentence for each solid that prescribed motions compress beyond the range of St Venant-Kirchhoff's law.
 pub fn warnings(model: &Model) -> Vec<String> {
     let bodies = model.bodies.iter();
     let told = bodies.filter_map(|body| match &body.kind {
@@ -61,7 +61,7 @@ fn told(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
     ))
 }
 
-/// The load factors at which a prescribed motion may be largest: corners of the path and of the motions' own scales.
+/// The load factors at which a prescribed motion can be largest: corners of the path and of the motions' own scales.
 fn loads(model: &Model) -> Vec<f64> {
     let scales = model.prescribed.iter().flat_map(|p| &p.scale.0);
     let ends = model
@@ -78,10 +78,10 @@ fn loads(model: &Model) -> Vec<f64> {
     all
 }
 
-/// What the degrees of freedom without an equation do.
+/// Values of the degrees of freedom without an equation.
 struct Motions<'a> {
     model: &'a Model,
-    /// Number of the prescribed value of each degree of freedom.
+    /// Number of the prescribed value for each degree of freedom.
     prescribed: Vec<Option<usize>>,
 }
 
@@ -94,7 +94,7 @@ impl<'a> Motions<'a> {
         Motions { model, prescribed }
     }
 
-    /// Displacement of a node along an axis at a load factor; `None` where it is unknown.
+    /// Displacement of a node along an axis at a load factor; `None` if unknown.
     fn at(&self, node: usize, axis: usize, load: f64) -> Option<f64> {
         let dof = self.model.dofs.first[node] + axis;
         if self.model.dofs.equation.get(dof)?.is_some() {
@@ -142,7 +142,7 @@ fn held_points(
     own.chain(pushed).take(MOST).collect()
 }
 
-/// The smallest mean stretch between two points of which one lies above the other, and their nodes.
+/// The smallest mean stretch between two points, one above the other, and their nodes.
 fn smallest_stretch(points: &[HeldPoint], axis: usize) -> Option<(f64, [usize; 2])> {
     let mut least: Option<(f64, [usize; 2])> = None;
     for (k, a) in points.iter().enumerate() {

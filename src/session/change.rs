@@ -76,7 +76,7 @@ impl Session {
         Ok(Reply(told))
     }
 
-    /// Refuses another branch where there is no memory for one.
+    /// Refuses another branch if the branches use their memory budget.
     fn check_room(&self) -> Result<(), Refusal> {
         let (taken, most) = (self.tree.kept(), self.branch_budget);
         match taken < most {

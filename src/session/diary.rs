@@ -82,7 +82,7 @@ impl Diary {
         }
     }
 
-    /// Writes the journal again where its file was deleted, and says so.
+    /// Writes the journal again if its file was deleted, and reports it.
     pub fn renew(&mut self, scene: &Scene) {
         let Kept::Open(journal) = &self.at else {
             return;

@@ -58,7 +58,7 @@ pub struct Session {
     /// What the start gaps are, and what is doubtful about them.
     start: (String, Vec<String>),
     pub(super) tree: Tree,
-    /// Most bytes of the branches at which another one may begin.
+    /// Maximum size in bytes of all branches at which another branch can begin.
     pub(super) branch_budget: usize,
     pub(super) cursor: usize,
     pub(super) worker: Worker,
@@ -119,7 +119,7 @@ impl Session {
         Session::begun(scene, model, start, (worker, background), bytes)
     }
 
-    /// Lets branches begin as long as all of them take less than so many bytes ([`tree::BRANCH_BUDGET`] for others).
+    /// Sets the size in bytes of all branches beyond which no branch can begin (default [`tree::BRANCH_BUDGET`]).
     pub fn limit_branches(&mut self, bytes: usize) {
         self.branch_budget = bytes;
     }

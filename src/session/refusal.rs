@@ -57,15 +57,15 @@ pub enum Refusal {
     /// There is one branch only.
     #[error("there is no other branch; an intervention before the tip starts one")]
     OneBranch,
-    /// The branches that there are take all memory that they may.
+    /// The existing branches use the whole memory budget.
     #[error(
         "no new branch: those that there are take {} of at most {} MB; steps from the tip of a branch start none",
         taken >> 20, most >> 20
     )]
     NoRoom {
-        /// Bytes that they take.
+        /// Size of the branches in bytes.
         taken: usize,
-        /// Most bytes that they may take when one begins.
+        /// Maximum size in bytes at which a branch can begin.
         most: usize,
     },
     /// A name that is empty, or not one line.

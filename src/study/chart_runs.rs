@@ -30,7 +30,7 @@ pub struct Timed {
 }
 
 impl Timed {
-    /// Whether its numbers are finite, as those of every run are.
+    /// Whether its numbers are finite, as in every real run.
     fn is_sound(&self) -> bool {
         self.seconds.is_finite() && self.run.is_sound()
     }

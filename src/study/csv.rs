@@ -6,7 +6,7 @@
 //! tried load and major iteration, after how many minor ones, and has no monitors. One that was stopped from outside
 //! has a last row `interrupted`; one that had not begun has none.
 //!
-//! `jumped` is 1 where an increment leaves the branch of stable equilibrium that it began on, else 0.
+//! `jumped` is 1 where an increment leaves its branch of stable equilibrium, else 0.
 //!
 //! Floats have as many digits as they need to read back to the same bits.
 

@@ -1,4 +1,4 @@
-//! Convergence maps of more cells than can be listed: groups of runs of one problem, made when their turn comes.
+//! Convergence maps with too many cells to list: groups of runs of one problem, created on demand.
 //!
 //! Cells are numbered group by group: all runs that differ only in how they are computed stand together, since they are compared
 //! with one of them ([`map`](super::map)); scenes and what is varied of their problems change slower, the last path fastest.

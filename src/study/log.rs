@@ -5,8 +5,8 @@
 //! is there already is not computed again. A line whose key is `input` tells what the results are of ([`Input`]). A line that
 //! a kill has cut off has no end, and is taken away, or passed over where the file is only read.
 //!
-//! Each line ends with a digest of itself ([`stickslip_exchange::seal`]); one that does not match refuses the file. Earlier
-//! versions wrote none: such lines are read, but not after a line that has one.
+//! Each line ends with its digest ([`stickslip_exchange::seal`]); a mismatch refuses the file. Earlier versions wrote no
+//! digests: such lines are read, but not after a line with a digest.
 
 use super::origin;
 use super::shard::Key;
@@ -77,7 +77,7 @@ pub enum LogError {
     /// Two results of one cell are not the same.
     #[error(transparent)]
     Disagree(#[from] Box<Disagreement>),
-    /// A result is none that can be kept.
+    /// A result that cannot be stored.
     #[error("{}: a result has a number that is not finite, and cannot be kept", .0.display())]
     Unsound(PathBuf),
     /// A line of it cannot be read.
@@ -112,20 +112,20 @@ pub struct Disagreement {
 
 /// Most bytes of a file that is taken up.
 const MOST_BYTES: u64 = 2 << 30;
-/// What is wrong with a line whose digest is not its own.
+/// Error for a line whose digest does not match.
 const CHANGED: &str = "the line was changed after it was written (its digest differs); without the line, the result is computed again";
 /// What stands before a line that tells what results are of.
 const INPUT: &str = "input";
 
-/// What is wrong with a result that no run can have.
+/// Error for a result that no run can have.
 const UNSOUND: &str = "the result has a number that is not finite, which no run has; without the line, it is computed again";
 
-/// A kind of results.
+/// A kind of result.
 #[derive(Debug)]
 pub struct ResultKind<T> {
-    /// Most bytes of one of them in a file.
+    /// Maximum size in bytes of a result in a file.
     pub most: usize,
-    /// Whether a run can have it: its numbers are finite wherever those of a run are.
+    /// Whether a run can have this result: its numbers are finite wherever those of a run are.
     pub is_sound: fn(&T) -> bool,
 }
 
@@ -370,7 +370,7 @@ fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogEr
     })
 }
 
-/// Reads a file of results of a kind, which may be written to at the same time, and leaves it as it is.
+/// Reads a file of results of a kind, without changing it; another process may be writing to it.
 ///
 /// # Errors
 /// If it cannot be read, or is of something else.
@@ -384,7 +384,7 @@ pub fn read<T: DeserializeOwned>(
 }
 
 impl Log {
-    /// Opens a file of results of a kind, or begins one, and reads what is there.
+    /// Opens or creates a file of results of a kind, and reads its content.
     ///
     /// # Errors
     /// If it cannot be read or written, if it is something else, or if another run has it open.
@@ -460,7 +460,7 @@ mod tests {
         is_sound: |values| values.iter().all(|value| !value.is_nan()),
     };
 
-    /// What is wrong with a file of results, and in which line.
+    /// The error in a file of results, and its line.
     fn refused(path: &Path) -> (usize, String) {
         match Log::open(path, &KIND, None) {
             Err(LogError::Broken { line, message, .. }) => (line, message),
@@ -487,7 +487,7 @@ mod tests {
             let line = 2 + rest[..place].matches('\n').count();
             assert_eq!(refused(&path), (line, CHANGED.to_owned()), "{changed}");
         }
-        // Without the line, all else is there.
+        // Without this line, the other results remain.
         let left: Vec<&str> = rest.lines().skip(1).collect();
         std::fs::write(&path, format!("{head}\n{}\n", left.join("\n"))).unwrap();
         let (_, found) = Log::open(&path, &KIND, None).unwrap();

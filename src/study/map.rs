@@ -136,7 +136,7 @@ impl Ended {
         })
     }
 
-    /// Whether its numbers are finite, as those of every run are.
+    /// Whether its numbers are finite, as in every real run.
     fn is_sound(&self) -> bool {
         let failed = self.failed.is_none_or(|(_, _, load)| load.is_finite());
         let mut monitors = self.monitors.iter();

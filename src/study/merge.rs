@@ -39,7 +39,7 @@ pub struct Cells<'a> {
 
 /// How the results of one kind of sweep are read.
 pub struct Reading<T> {
-    /// What they are in a file.
+    /// The kind of results in a file.
     pub kind: log::ResultKind<T>,
     /// What two results of one cell come to; `None` where they contradict each other.
     pub join: fn(&T, &T) -> Option<T>,
@@ -207,7 +207,7 @@ impl<T: Serialize + DeserializeOwned + Clone> Kept<T> {
     /// Keeps a result.
     ///
     /// # Errors
-    /// If it cannot be written, or no file with it could be read again.
+    /// If it cannot be written, or if a file with it could not be read again.
     pub fn keep(&self, key: Key, value: &T) -> Result<(), LogError> {
         match &self.log {
             None => Ok(()),

@@ -230,7 +230,7 @@ impl Study {
         }
     }
 
-    /// The study of a file, with its scenes as they are opened from here ([`Scene::named_in`]).
+    /// The study of a file; its scenes are opened by [`Scene::named_in`].
     fn beside(mut self, file: &str) -> Result<Study, SceneError> {
         for scene in &mut self.scenes {
             *scene = Scene::named_in(file, scene).map_err(|why| SceneError::whole(file, why))?;

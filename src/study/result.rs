@@ -93,7 +93,7 @@ impl Run {
         self.rows.last().unwrap_or(&self.start)
     }
 
-    /// Whether its numbers are finite, as those of every run are.
+    /// Whether its numbers are finite, as in every real run.
     pub fn is_sound(&self) -> bool {
         let mut rows = std::iter::once(&self.start).chain(&self.rows);
         let failed = self.failed().is_none_or(|failed| failed.load.is_finite());

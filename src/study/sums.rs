@@ -95,7 +95,7 @@ impl Count {
 }
 
 impl Sums {
-    /// Whether runs can have its numbers: errors are from 0 to infinity.
+    /// Whether runs can have these numbers: errors are from 0 to infinity.
     fn is_sound(&self) -> bool {
         let worst = self.counts.values().filter_map(|count| count.worst);
         let failing = self.failing.iter().filter_map(|run| run.error);

@@ -70,7 +70,7 @@ pub struct Trial {
 }
 
 impl Judged {
-    /// Whether a run can have its numbers: a violation is infinite where there is no end, and none that is right.
+    /// Whether a run can have these numbers: a violation may be infinite without an end, but is within the tolerance if right.
     pub(super) fn is_sound(&self) -> bool {
         let right = |trial: &Trial| trial.verdict == RunVerdict::Right;
         let mut trials = self.trials.iter();

@@ -1,4 +1,4 @@
-//! What a run is worth: the words that convergence maps sort runs by.
+//! Verdicts on runs: the classes of convergence maps.
 
 use super::reason::Reason;
 use crate::interface::method::NotFound;

@@ -1,4 +1,4 @@
-//! Convergence maps as pictures: random problems as a bar for each strategy, scenes as a grid of cells.
+//! Figures of convergence maps: one bar per strategy for random problems, a grid of cells for scenes.
 
 use super::drawn::PlotError;
 use super::map::{Map, Panel};

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Minor iterations within which a step of free mode must find its predictions.
 const MOST_STEPS: u32 = 1000;
 
-/// A question, the answer that the solver gave, and the replies, with their numbers.
+/// A question with the solver's answer and the replies, numbers filled in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answered {
     /// Place of the step, from 0.
@@ -26,7 +26,7 @@ pub struct Answered {
     pub answer: String,
     /// The reply to the right answer.
     pub then: String,
-    /// The reply to a wrong one.
+    /// The reply to a wrong answer.
     pub hint: String,
 }
 

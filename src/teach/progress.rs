@@ -140,12 +140,12 @@ impl Progress {
 }
 
 impl Reached {
-    /// Whether the lesson was taken to its end.
+    /// Whether the lesson was finished.
     pub fn is_done(&self) -> bool {
         self.ended > 0
     }
 
-    /// In a few words: `done, 4/4 right`, or `step 3 of 13` for the step that comes next.
+    /// A short description: `done, 4/4 right`, or `step 3 of 13` for the next step.
     pub fn told(&self) -> String {
         match (self.ended, self.asked) {
             (0, _) => format!("step {} of {}", (self.steps + 1).min(self.of), self.of),

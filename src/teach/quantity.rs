@@ -200,7 +200,8 @@ impl LessonQuantity {
         }
     }
 
-    /// Whether it needs more than the shown state: the decision, the verdict, or iterations to come. A hint cannot have it.
+    /// Whether the quantity needs more than the shown state: the decision, the verdict, or later iterations. Hints cannot
+    /// contain it.
     fn looks_ahead(&self) -> bool {
         match self {
             LessonQuantity::Right => true,
@@ -340,10 +341,10 @@ impl Template {
         Ok(Template(pieces))
     }
 
-    /// Whether it can be shown as help with a question: it must neither look ahead nor contain `asked`, the answer.
+    /// Whether the quantity is allowed in a hint: it must neither look ahead nor contain `asked`, the answer.
     ///
     /// # Errors
-    /// [`Unknown::TellsAnswer`] where it does.
+    /// [`Unknown::TellsAnswer`] if it is not allowed.
     pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), Unknown> {
         let tells = |piece: &Piece| match piece {
             Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,

@@ -105,7 +105,7 @@ pub enum Unknown {
     /// A question with more than one right choice.
     #[error("more than one of the choices is true")]
     SeveralTrue,
-    /// A hint with the answer in it, or with a number of iterations to come.
+    /// A hint that contains the answer, or a number from a later iteration.
     #[error("the hint contains the answer or looks ahead; use numbers of the shown iteration only")]
     TellsAnswer,
     /// A brace without its end.

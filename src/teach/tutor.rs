@@ -58,9 +58,9 @@ pub struct Question {
     /// What can be chosen, where the answer is a choice.
     pub options: Vec<String>,
     right: Right,
-    /// The decision at the node that is asked about, where there is one, and whether there is friction.
+    /// The decision at the node in question, if any, and whether there is friction.
     node: Option<(usize, Decision, bool)>,
-    /// Whether that decision is one that the user has not reached yet.
+    /// Whether the user has not reached that decision yet.
     is_ahead: bool,
     hint: String,
     then: String,
@@ -302,7 +302,7 @@ impl Tutor {
                 _ => 0,
             };
             let enough = guess.right >= wanted;
-            // Past the last iteration nothing is left to predict.
+            // There is nothing to predict after the last iteration.
             let over = frame.state.status == Status::Finished && !guess.is_open(cursor, frame);
             self.done = enough || over;
             let mut text = format!("{} ({} of {wanted})", capital(&text), guess.right);
@@ -356,7 +356,7 @@ impl Tutor {
         })
     }
 
-    /// Whether the judge's verdict must not be seen yet, for the same reasons.
+    /// Whether to hide the judge's verdict, for the same reasons.
     pub fn hides_verdict(&self) -> bool {
         let judges = |(_, truth): &(_, Truth)| matches!(truth, Truth::Obeys | Truth::Breaks(_));
         self.asks_about(|ask| match &ask.answer {
@@ -365,7 +365,7 @@ impl Tutor {
         })
     }
 
-    /// Whether such a question waits for an answer, or comes before the next action.
+    /// Whether such a question is open, or comes before the next action.
     fn asks_about(&self, about: impl Fn(&Ask) -> bool) -> bool {
         if self.done && self.question.is_some() {
             return false;
@@ -435,7 +435,7 @@ impl Tutor {
 }
 
 impl Question {
-    /// Asks the solver for the right answer. What is shown before the answer is filled from the present state `now`.
+    /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state `now`.
     fn ask(ask: &Ask, now: &Look) -> Result<Question, Unknown> {
         let look = now.ahead(ask.ahead)?;
         let found = |slave: usize| -> Result<_, Unknown> {
@@ -537,7 +537,7 @@ impl Question {
         format!("Right: {}", self.explained())
     }
 
-    /// The reply to a wrong answer that may be followed by another one.
+    /// The reply to a wrong answer that permits another attempt.
     pub(super) fn reply_to_wrong(&self) -> String {
         format!("No. {}", self.help())
     }

@@ -55,7 +55,7 @@ pub struct Offer {
     pub name: String,
     /// Its title; empty where it is not read yet.
     pub title: String,
-    /// How far the user came in it before, if it is a lesson.
+    /// The user's progress, if it is a lesson.
     pub reached: Option<Reached>,
 }
 

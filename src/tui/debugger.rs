@@ -397,7 +397,7 @@ impl Debugger {
         self.app.say(said);
     }
 
-    /// Where a failure is explained; empty where nothing has failed.
+    /// Where to find the explanation of a failure; empty if there is no failure.
     fn next_step(&self) -> String {
         let idle = self
             .session

@@ -100,7 +100,7 @@ impl App {
         lesson.or(self.guess.as_ref())
     }
 
-    /// Whether any decision of the shown frame, or the judge's verdict on it, must not be seen yet.
+    /// Whether to hide any decision of the shown frame, or the judge's verdict on it.
     pub fn hides_any(&self, view: &View) -> bool {
         let frame = view.frame();
         let lesson = |tutor: &Tutor| tutor.hides() || tutor.hides_verdict();
@@ -111,7 +111,7 @@ impl App {
                     .is_some_and(|guess| guess.is_open(view.cursor, frame)))
     }
 
-    /// Whether the judge's verdict must not be seen yet.
+    /// Whether to hide the judge's verdict.
     pub fn hides_verdict(&self) -> bool {
         self.lesson.as_ref().is_some_and(Tutor::hides_verdict)
     }

@@ -139,7 +139,7 @@ pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String
 /// How long to wait for a key: while the solver is at work the screen follows it.
 pub(super) const IDLE: Duration = Duration::from_millis(100);
 pub(super) const BUSY: Duration = Duration::from_millis(40);
-/// crossterm's reader does not look at its input at all when it may wait for no time. Below 1 ms it does not sleep.
+/// With a timeout of zero, crossterm's reader does not look at its input. Below 1 ms it does not sleep.
 const LEAST_WAIT: Duration = Duration::from_micros(200);
 
 fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
@@ -180,7 +180,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
                 return Ok(());
             }
             debugger.breathe();
-            // The screen follows a burst of keys, too.
+            // Redraws during a burst of keys, too.
             input = match drawn.elapsed() < BUSY {
                 true => next_event(Duration::ZERO)?,
                 false => None,
@@ -198,7 +198,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     Ok(())
 }
 
-/// The next event, if one comes within `wait`. Input that is there already is always found.
+/// The next event within `wait`, if any. Input that is already there is always found.
 pub(super) fn next_event(wait: Duration) -> io::Result<Option<Event>> {
     match event::poll(wait.max(LEAST_WAIT))? {
         true => event::read().map(Some),
@@ -206,7 +206,7 @@ pub(super) fn next_event(wait: Duration) -> io::Result<Option<Event>> {
     }
 }
 
-/// Carries out what only the event loop can; true for the end. `complain` shows an error.
+/// Executes requests that need the event loop; returns true to quit. `complain` shows an error.
 pub(super) fn obey(
     outside: Outside,
     terminal: &mut Terminal,
@@ -230,16 +230,16 @@ pub(super) fn obey(
     Ok(false)
 }
 
-/// Stops the process because another one sent SIGTSTP.
+/// Stops the process after a SIGTSTP from another process.
 pub(super) fn stop(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     terminal.stop()?;
     continued(signals);
     Ok(())
 }
 
-/// Whether the process was stopped and continued since this was asked last.
+/// Whether the process was stopped and continued since the last call.
 fn continued(signals: &Signals) -> bool {
-    // The stop signal that the process group was sent arrives here, too.
+    // The SIGTSTP sent to the process group arrives here, too.
     signals.stop();
     signals.resumed()
 }

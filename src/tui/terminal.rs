@@ -1,9 +1,9 @@
-//! The real terminal: taken over, and given back whatever happens.
+//! Takes over the real terminal, and restores it in every case.
 //!
-//! It is given back when [`Terminal`] is dropped (the end, or an error on its way up), by the panic hook (before the
-//! message is printed, so that it can be read), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP
-//! give it back, stop the process as the shell expects, and take it again with a full redraw when the process continues.
-//! Taking and giving back exclude each other, so that a signal in between cannot leave half of it behind.
+//! The terminal is restored when [`Terminal`] is dropped (at the end or on an error), by the panic hook (before the message
+//! is printed, so that it is readable), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP restore
+//! it, stop the process as the shell expects, and take it over again with a full redraw when the process continues. Taking
+//! over and restoring exclude each other, so a signal in between cannot leave either half done.
 
 use crate::tui::app::App;
 use crate::tui::screen;
@@ -31,7 +31,7 @@ use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Whether the terminal is ours.
+/// Whether the program has taken over the terminal.
 static OWNERSHIP: Ownership = Ownership(Mutex::new(false));
 /// Whether the mouse is to be heeded whenever the terminal is ours.
 static MOUSE: AtomicBool = AtomicBool::new(false);
@@ -119,13 +119,13 @@ impl Terminal {
         self.screen.resize(size.into())
     }
 
-    /// Gives the terminal back, stops the process until it is continued, and takes the terminal again. Returns at once
-    /// where no shell with job control could continue the process.
+    /// Restores the terminal, stops the process until it is continued, and takes over the terminal again. Returns at once
+    /// if no shell with job control could continue the process.
     ///
-    /// The signal goes to the whole process group, as the terminal itself does it by Ctrl-Z: a parent such as cargo would
-    /// wait endlessly otherwise, and the shell never get its prompt back. This process catches SIGTSTP, so it stops by
-    /// SIGTTIN: unlike SIGSTOP, the kernel ignores that signal in a process group without a shell above (POSIX: an
-    /// orphaned one), where nobody would continue it.
+    /// The signal goes to the whole process group, as from the terminal itself on Ctrl-Z: otherwise a parent such as cargo
+    /// would wait endlessly, and the shell would never show its prompt. This process catches SIGTSTP, so it stops by
+    /// SIGTTIN: unlike SIGSTOP, the kernel ignores that signal in a process group without a shell above it (an orphaned
+    /// group in POSIX), where nothing would continue the process.
     pub fn suspend(&mut self) -> io::Result<()> {
         self.released(|| {
             rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
@@ -133,7 +133,7 @@ impl Terminal {
         })
     }
 
-    /// The same after a SIGTSTP from another process, which can continue this one, too.
+    /// The same after a SIGTSTP from another process, which can also continue this process.
     pub fn stop(&mut self) -> io::Result<()> {
         self.released(|| {
             rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
@@ -141,7 +141,7 @@ impl Terminal {
         })
     }
 
-    /// Gives the terminal back for as long as `work` takes.
+    /// Restores the terminal while `work` runs.
     fn released(&mut self, work: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
         give_back();
         let worked = work();
@@ -162,7 +162,7 @@ impl Drop for Terminal {
     }
 }
 
-/// Whether the terminal is ours. Nobody sees a state in between.
+/// Whether the program has taken over the terminal. The lock hides intermediate states.
 struct Ownership(Mutex<bool>);
 
 impl Ownership {
@@ -170,7 +170,7 @@ impl Ownership {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes the terminal by `enter`, unless it is ours. What `enter` began before it failed is undone by `leave`.
+    /// Takes over the terminal by `enter`, unless already done. If `enter` fails half way, `leave` undoes it.
     fn take(&self, enter: impl FnOnce() -> io::Result<()>, leave: impl FnOnce()) -> io::Result<()> {
         let mut taken = self.lock();
         if *taken {
@@ -184,7 +184,7 @@ impl Ownership {
         entered
     }
 
-    /// Gives the terminal back by `leave`, if it is ours. Nobody can take it before the guard is dropped.
+    /// Restores the terminal by `leave`, if it was taken over. It cannot be taken over again before the guard is dropped.
     fn give_back(&self, leave: impl FnOnce()) -> MutexGuard<'_, bool> {
         let mut taken = self.lock();
         if std::mem::take(&mut *taken) {
@@ -212,8 +212,8 @@ fn enter() -> io::Result<()> {
     }
 }
 
-/// Lets a read return nothing where nothing is there. The terminal library reads on after half an escape sequence, and after
-/// one that it does not know, and would keep the screen waiting for the next key. Raw mode's end restores the old setting.
+/// Makes a read return empty when there is no input. The terminal library reads on after half an escape sequence and after
+/// an unknown one, and would block the screen until the next key. Leaving raw mode restores the old setting.
 fn read_without_waiting() -> io::Result<()> {
     let mut settings = tcgetattr(stdin())?;
     settings.special_codes[SpecialCodeIndex::VMIN] = 0;
@@ -221,7 +221,7 @@ fn read_without_waiting() -> io::Result<()> {
     Ok(tcsetattr(stdin(), OptionalActions::Now, &settings)?)
 }
 
-/// Errors are of no use here: there may be no terminal any more.
+/// Errors are ignored: the terminal may be gone.
 fn leave() {
     let _ = execute!(
         stdout(),
@@ -324,7 +324,7 @@ impl Drop for Signals {
 }
 
 /// Waits on a separate thread for the signals that end the process. The event loop gets a moment to end by itself; it may
-/// be stuck in a write to a terminal that is gone.
+/// be blocked in a write to a terminal that is gone.
 fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
     let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
     let handle = signals.handle();
@@ -365,7 +365,7 @@ mod tests {
         });
         entering.1.recv().unwrap();
         let giver = thread::spawn(move || drop(OWNED.give_back(|| told.send(()).unwrap())));
-        // A signal comes while the screen is entered: what is not entered yet cannot be left.
+        // A signal arrives while the screen is being entered: leaving must wait until it is complete.
         let early = left.recv_timeout(Duration::from_millis(50));
         assert_eq!(early, Err(RecvTimeoutError::Timeout));
         entered.0.send(()).unwrap();

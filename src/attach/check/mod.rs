@@ -20,7 +20,7 @@ pub use report::{Checked, Report, Verdict};
 use stickslip_exchange::attach::message::State;
 use trial::{Trial, millis};
 
-/// Tries a solver; the log has all that is said, of one start after the other.
+/// Tries a solver. The log records all messages, one start after the other.
 pub fn check(start: &Start, log: &Log) -> Report {
     let mut report = Report {
         name: start.typed(),

@@ -28,7 +28,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Starts it; the log has what is said.
+    /// Starts the solver; the log records the messages.
     ///
     /// # Errors
     /// The fault by which it ends.

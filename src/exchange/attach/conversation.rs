@@ -1,19 +1,19 @@
 //! A kept exchange: every line that went between debugger and solver, in order.
 //!
-//! The first line of such a file is [`SEALED_HEAD`]; each other one begins with a sign that says where it went, and a blank: `>`
-//! to the solver, `<` from it, `!` what it wrote to its standard error, `#` what happened besides (it was started, it ended).
-//! Messages stand there as they went, so that the file can be read by eye, by a script, and by [`Kept::read`]. Behind each stands
-//! its digest ([`crate::seal`]); files of earlier versions begin with [`HEAD`] alone and have none.
+//! The first line of such a file is [`SEALED_HEAD`]; every other line begins with a sign for its direction and a blank: `>`
+//! to the solver, `<` from it, `!` its standard error, `#` other events (start, end). Messages are stored verbatim, for
+//! people, scripts and [`Kept::read`]. Each line ends with its digest ([`crate::seal`]); files of earlier versions begin
+//! with [`HEAD`] alone and have no digests.
 
 use crate::broken::Broken;
 use crate::seal::{self, Seal};
 
-/// How the first line begins.
+/// Beginning of the first line.
 pub const HEAD: &str = "# stickslip exchange 1";
 /// The first line of a file whose lines have digests.
 pub const SEALED_HEAD: &str = "# stickslip exchange 1, each line with its digest";
 
-/// What is wrong with a line whose digest is not its own.
+/// Error for a line whose digest does not match.
 const CHANGED: &str = "the line was changed after it was written (its digest differs)";
 
 /// Where a line went.
@@ -72,7 +72,7 @@ impl Kept {
     /// Reads a file. A last line that is torn (the writer was killed) is left out.
     ///
     /// # Errors
-    /// If it is no kept exchange, a line has no sign, or one was changed after it was written.
+    /// If the file is no stored exchange, a line has no sign, or a line was changed after it was written.
     pub fn read(text: &str) -> Result<Vec<Kept>, Broken> {
         if !Kept::is_one(text) {
             let message = format!("the first line of a kept exchange begins with {HEAD:?}");

@@ -147,7 +147,7 @@ fn cells(model: &Model, grid: &mut Grid) {
     ];
 }
 
-/// How far the elements of solids are deformed; the cells of bodies come first, in their order.
+/// Deformation of the elements of solids, one value per cell; the cells of bodies come first, in order.
 fn deformations(model: &Model, state: &State, grid: &mut Grid) {
     if !model.has_solids() {
         return;

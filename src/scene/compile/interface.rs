@@ -24,7 +24,7 @@ pub(super) struct Surfaces {
 }
 
 impl Surfaces {
-    /// Numbers of those that are pieces of a surface that is cut.
+    /// Numbers of the surfaces that are pieces of a cut surface.
     pub(super) fn cut(&self, spec: &Spec) -> Vec<usize> {
         let listed = self.listed.iter().enumerate();
         let cut = listed.filter(|(_, listed)| spec.surfaces[**listed].cut);
@@ -100,7 +100,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
 pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut Surfaces) -> Result<(), Fault> {
     for (surface, &k) in surfaces.made.iter_mut().zip(&surfaces.listed) {
         let wanted = &spec.surfaces[k];
-        // A piece of one straight element is smooth as it is.
+        // A piece with one straight element is already smooth.
         if !wanted.smooth || wanted.cut && surface.elements.len() == 1 {
             continue;
         }

@@ -1,11 +1,11 @@
-//! What the elements of surfaces give under point forces ([`crate::contact::point_force`]): those that are elements of a beam with a
-//! shear stiffness.
+//! Compliance of surface elements under point forces ([`crate::contact::point_force`]): those of a beam with a shear
+//! stiffness.
 
 use crate::fem::lagrange::{gauss, shape};
 use crate::model::{Beam, Body, BodyKind, Node, PointForce, PointGive, Surface};
 use std::collections::HashMap;
 
-/// Finds it for all surfaces. Smooth ones do not follow a beam's line, and have nothing.
+/// Computes the compliance for all surfaces. Smooth surfaces do not follow a beam's line and have none.
 pub(super) fn find_gives(
     wanted: PointForce,
     bodies: &[Body],
@@ -32,7 +32,7 @@ pub(super) fn find_gives(
     }
 }
 
-/// The nodes of an element, whichever way it is walked.
+/// The nodes of an element, in either direction.
 fn walked(element: &[usize]) -> Vec<usize> {
     let mut nodes = element.to_vec();
     if nodes.first() > nodes.last() {

@@ -13,7 +13,7 @@ use crate::format::spec::{History, SlaveSpec, Spec};
 use crate::linear::estimate::Estimate;
 use crate::model::{Control, Model, Settings};
 
-/// Settings that more than the solver reads: nodes are moved or surfaces made for them, or the scene is refused.
+/// Settings that are used outside the solver, too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];
 /// What of the history the model has as it is written.
 const OF_HISTORY: [&str; 5] = ["path", "increment", "increments", "least", "jumps"];

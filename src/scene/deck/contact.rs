@@ -165,7 +165,7 @@ impl Made<'_> {
         made
     }
 
-    /// Whether a master surface without real corners is to be smooth: nodes that give way touch it, and it can bend.
+    /// Whether to smooth a master surface without real corners: its slave nodes have a compliant law, and it can deform.
     fn is_made_smooth(&self, master: usize, sides: &[(usize, usize)], all: &[Touching]) -> bool {
         let gives = |touching: &Touching| {
             let penalty = matches!(touching.laws.law, ContactLaw::Penalty { .. });
@@ -177,7 +177,7 @@ impl Made<'_> {
         all.iter().any(gives) && sides.len() > 1 && sides.iter().flatten().any(moves)
     }
 
-    /// Whether one of these sides goes on from another at a real corner that is convex, and at one that is concave.
+    /// Whether these sides have a real convex corner, and a real concave one.
     fn corners(&self, sides: &[(usize, usize)]) -> [bool; 2] {
         let deck = self.deck;
         let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();

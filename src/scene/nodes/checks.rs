@@ -18,7 +18,7 @@ pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
             continue;
         };
         limits::node_id(&here, id)?;
-        // What stands before a dot could be a chain that has this node.
+        // The part before a dot could be a chain with this node.
         let mut dots = id.match_indices('.').map(|(at, _)| &id[..at]);
         let is_chain = |chain: &&str| {
             let named = spec.nodes.iter().find(|other| other.id() == *chain);
@@ -41,7 +41,7 @@ pub(crate) fn unique<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Resu
     once(list, ids.into_iter())
 }
 
-/// Refuses second ones of the ids of a list.
+/// Refuses duplicate ids in a list.
 fn once<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
     let mut seen = HashMap::new();
     for (k, id) in ids.enumerate() {

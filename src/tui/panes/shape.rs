@@ -39,7 +39,7 @@ const MOTION: f64 = 0.15;
 const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
 /// Mark of a node that the diagnosis is about, right of its letter.
 const MARK: &str = "!";
-/// Mark of the worst point of a solid that is outside the range of its law, or inverted.
+/// Mark of the worst point of a solid that is outside the range of its law or inverted.
 const WORST: &str = "◆";
 /// Dots between two normals of an element.
 const SPACING: f64 = 16.0;
@@ -367,7 +367,7 @@ fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
     view.examination().flatten().filter(|found| found.fails)
 }
 
-/// The worst point of the solids, where one is outside the range of its law or inverted.
+/// The worst point of the solids, if outside the range of its law or inverted.
 fn worst(view: &View) -> Option<PointDeformation> {
     let found = deformation(view.model, &view.frame().state.u)?;
     found.inverted().or(found.outside)

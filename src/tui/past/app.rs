@@ -129,7 +129,7 @@ impl App {
         self.message = Message { text, tone };
     }
 
-    /// Shows an error in the line of messages.
+    /// Shows an error in the message line.
     pub(super) fn complain(&mut self, text: &str) {
         self.say(text, Tone::Error);
     }

@@ -59,7 +59,7 @@ fn events(app: &mut App, terminal: &mut Terminal, signals: &Signals) -> io::Resu
             {
                 return Ok(());
             }
-            // How far help can be scrolled is known once it is drawn.
+            // The scroll range of the help is known only after drawing.
             let waits = matches!(app.overlay, Overlay::Help(..)) || drawn.elapsed() >= BUSY;
             input = match waits {
                 true => None,
