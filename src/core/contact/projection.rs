@@ -6,7 +6,6 @@
 //! lies to the right of the walk along the chain, t is n turned 90 degrees anticlockwise, that is, t points along
 //! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
 
-use crate::contact::corner;
 use crate::contact::element::{Element, Places};
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
@@ -253,15 +252,14 @@ pub fn element_size(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]
     Bounds::new(&surface.elements[spot.element], positions).size()
 }
 
-/// Half the angle (radians) between the normals of the two elements that meet at a border ([`corner::half_angle`]): positive
-/// where they form a concave corner, negative at a convex vertex. `turned` corrects dx/dξ at an end of an element for the local
-/// rotation there. `None` where no two elements meet, and on a smooth chain, which has no corners.
-pub fn half_angle(
+/// dx/dξ of the two elements that meet at a border, in the order of the walk. `turned` corrects each for the local rotation of its
+/// element there. `None` where no two elements meet, and on a smooth chain, which has no corners.
+pub fn slopes_at_border(
     surface: &Surface,
     border: SurfacePoint,
     positions: &[[f64; 2]],
     turned: impl Fn(SurfacePoint, [f64; 2]) -> [f64; 2],
-) -> Option<f64> {
+) -> Option<[[f64; 2]; 2]> {
     if !surface.smooth.is_empty() {
         return None;
     }
@@ -276,9 +274,9 @@ pub fn half_angle(
     };
     let (own, across) = (slope(border.element, border.xi), slope(other, xi));
     Some(if border.xi > 0.0 {
-        corner::half_angle(own, across)
+        [own, across]
     } else {
-        corner::half_angle(across, own)
+        [across, own]
     })
 }
 
@@ -342,9 +340,15 @@ fn normal_at(
     let Some((other, xi)) = neighbour(surface, spot) else {
         return own;
     };
-    let across = right_of(slope_at(surface, other, xi, positions));
+    let across = slope_at(surface, other, xi, positions);
     #[cfg(mutants)]
-    let across = crate::mutants::pick("normal-of-one-side-at-a-border", across, own);
+    let across = crate::mutants::pick("normal-of-one-side-at-a-border", across, slope);
+    mean_normal(slope, across)
+}
+
+/// Mean of the outward normals (unit) of two sides with these dx/dξ.
+pub fn mean_normal(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    let [own, across] = [one, other].map(right_of);
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
 
@@ -367,7 +371,7 @@ fn slope_at(surface: &Surface, element: usize, xi: f64, positions: &[[f64; 2]]) 
 }
 
 /// The element that meets the spot's own there, and ξ on it. `None` inside an element, and at an end of the chain.
-fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
+pub(super) fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
     let count = surface.elements.len();
     let own = Element::of(surface, spot.element);
     let at = |other: usize| Element::of(surface, other);

@@ -16,8 +16,8 @@ use crate::contact::crossing;
 use crate::contact::facing::{MOST, faced, is_piece};
 use crate::contact::point_force;
 use crate::contact::projection::{
-    self, STRAIGHT, SurfacePoint, beside, border, element_size, normal, project, projection_at,
-    sharpen, tangent,
+    Projection, STRAIGHT, SurfacePoint, beside, border, element_size, mean_normal, neighbour,
+    normal, project, projection_at, sharpen, slopes_at_border, tangent,
 };
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
@@ -76,16 +76,20 @@ impl Ground<'_> {
             if !was_held && node.corner.is_none() && slave.surfaces.len() > 1 {
                 self.meet_between(node, slave, at);
             }
+            let flexible =
+                |spot: SurfacePoint| point_force::of(&self.surfaces[spot.surface], spot).is_some();
+            if node.spot.is_some_and(flexible) {
+                leave_border(self.surfaces, node);
+            }
         }
         match node.spot {
             Some(spot) => {
                 if node.second.is_none() {
                     let over = projection_at(self.surfaces, spot, self.positions, at);
-                    node.normal = match node.corner {
-                        Some(_) => over.normal,
-                        None => {
-                            point_force::normal(&self.surfaces[spot.surface], spot, &over, node.f_n)
-                        }
+                    node.normal = if node.corner.is_some() || over.curve.is_none() {
+                        self.border_normal(spot, node.f_n, &over)
+                    } else {
+                        point_force::normal(&self.surfaces[spot.surface], spot, &over, node.f_n)
                     };
                 }
                 if was_held != node.corner.is_some() {
@@ -211,12 +215,25 @@ impl Ground<'_> {
         (corner::cross(own, across) * way < 0.0).then_some((on, -way.signum()))
     }
 
-    /// Half the angle (radians) of a corner ([`projection::half_angle`]), less the kink that F_n causes in elements with local flexibility
-    /// ([`point_force`]).
-    fn half_angle(&self, border: SurfacePoint, f_n: f64) -> Option<f64> {
+    /// dx/dξ of the two sides of a border, rotated by F_n where they have local flexibility ([`point_force`]).
+    fn sides(&self, border: SurfacePoint, f_n: f64) -> Option<[[f64; 2]; 2]> {
         let surface = &self.surfaces[border.surface];
         let turned = |end, slope| point_force::turned_end(surface, end, slope, f_n);
-        projection::half_angle(surface, border, self.positions, turned)
+        slopes_at_border(surface, border, self.positions, turned)
+    }
+
+    /// Half the angle (radians) of a corner ([`corner::half_angle`]): positive if it is concave, negative at a convex vertex. The kink that
+    /// F_n causes in elements with local flexibility is subtracted.
+    fn half_angle(&self, border: SurfacePoint, f_n: f64) -> Option<f64> {
+        let [before, behind] = self.sides(border, f_n)?;
+        Some(corner::half_angle(before, behind))
+    }
+
+    /// n (unit) at a border of one chain: the mean of both sides' normals.
+    fn border_normal(&self, border: SurfacePoint, f_n: f64, over: &Projection) -> [f64; 2] {
+        let flexible = point_force::of(&self.surfaces[border.surface], border).is_some();
+        let sides = self.sides(border, f_n).filter(|_| flexible);
+        sides.map_or(over.normal, |[before, behind]| mean_normal(before, behind))
     }
 
     /// Notes that a node has come to another element, and holds it in the corner where it slides back to the one that it
@@ -265,7 +282,8 @@ impl Ground<'_> {
         let half = self.half_angle(end, node.f_n);
         let half = half.filter(|half| *half > STRAIGHT)?;
         let (at, [f_x, f_y]) = (self.positions[slave.node], node.force());
-        let [c, s] = projection_at(self.surfaces, end, self.positions, at).normal;
+        let over = projection_at(self.surfaces, end, self.positions, at);
+        let [c, s] = self.border_normal(end, node.f_n, &over);
         let mut held = ContactState {
             mode: Mode::Fixed,
             spot: Some(end),
@@ -458,6 +476,17 @@ impl Ground<'_> {
         );
         node.anchor_at(there, slave.bond.give()[1]);
         self.find_anchor(node, slave);
+    }
+}
+
+/// Lets a node that slides away from a border stand on the side along which it slides, whose curve is part of its tangent.
+pub fn leave_border(surfaces: &[Surface], node: &mut ContactState) {
+    let slides = node.mode == Mode::Sliding && node.corner.is_none();
+    let spot = node.spot.filter(|spot| slides && spot.xi.abs() == 1.0);
+    let Some(spot) = spot else { return };
+    let surface = &surfaces[spot.surface];
+    if neighbour(surface, spot).is_some() {
+        node.spot = Some(beside(surface, spot, node.sign < 0.0));
     }
 }
 

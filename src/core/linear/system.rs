@@ -224,6 +224,8 @@ impl System {
             let over = |spot| projection_at(&model.surfaces, spot, &self.positions, point);
             interface.projection = node.spot.map(over).map(|here| match node.second {
                 Some(_) => here.along(node.normal, point),
+                // The sides of a border may be rotated by the force.
+                None if self.has_points && here.curve.is_none() => here.along(node.normal, point),
                 // A tied node does not travel over its surface.
                 None if slave.bond.is_tied() => here.along(node.normal, point),
                 None => here,

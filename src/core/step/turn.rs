@@ -25,6 +25,7 @@
 
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
+use crate::contact::tracking::leave_border;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::linear::source::Solved;
 use crate::model::{BoundUpdate, Friction, Mode};
@@ -129,6 +130,7 @@ impl Stepper {
                     to,
                     sign: force,
                     held,
+                    through: false,
                 });
             }
         }
@@ -204,14 +206,14 @@ impl Stepper {
     /// at which contacts changed first. `None` where there is no such corner, or where that was what failed.
     pub(super) fn turn_corner(&mut self, why: &Failure, smallest: bool) -> Option<Outcome> {
         let way = self.state.way.as_mut()?;
-        if !way.known || way.turned {
+        if !way.known || way.turned && !way.pass_through() {
             return None;
         }
         let reach = if smallest { AHEAD } else { AT_START };
         let foreseen = !way.next.is_empty() && way.next_at <= reach * way.step;
-        if !foreseen && smallest && !way.seen.is_empty() {
+        if !way.turned && !foreseen && smallest && !way.seen.is_empty() {
             way.next = way.seen.clone();
-        } else if !foreseen {
+        } else if !way.turned && !foreseen {
             return None;
         }
         way.turned = true;
@@ -223,16 +225,37 @@ impl Stepper {
 
     /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do, and holds in a
     /// concave corner those that slide into one, or that stick at one and would slide by the friction of one side; false where
-    /// nothing can be linearised then.
+    /// nothing can be linearised then. A contact that goes `through` such a corner slides out of it at once.
     fn enter_corners(&mut self) -> bool {
         let changes = self.state.way.as_ref();
         let mut changes = changes.map_or_else(Vec::new, |way| way.next.to_vec());
         let starts = self.state.start.clone();
-        if (changes.iter()).any(|change| starts.nodes[change.contact].corner.is_some()) {
+        for change in changes.iter().filter(|change| change.through) {
+            let start = &starts.nodes[change.contact];
+            if let Some(held) = self.source.held_in_corner(change.contact, start, None) {
+                self.state.nodes[change.contact] = held;
+            }
+        }
+        let passes = changes.iter().any(|change| change.through);
+        if passes {
+            // The way out depends on the new mode.
+            self.state.change_modes();
+            self.linearised = false;
+        }
+        let leaves = |change: &Change| {
+            let start = &starts.nodes[change.contact];
+            let at_border = start.spot.is_some_and(|spot| spot.xi.abs() == 1.0);
+            start.corner.is_some() || change.to == Mode::Sliding && at_border
+        };
+        if changes.iter().any(leaves) {
             self.follow();
             self.state.change_modes();
+            for change in &changes {
+                let node = &mut self.state.nodes[change.contact];
+                leave_border(&self.model.surfaces, node);
+            }
         }
-        for change in &mut changes {
+        for change in changes.iter_mut().filter(|change| !change.through) {
             let start = &starts.nodes[change.contact];
             let motion = match (change.from, change.to) {
                 (Mode::Fixed, Mode::Sliding) => None,
@@ -271,6 +294,7 @@ impl Stepper {
             to: record.decision.next,
             sign: nodes[contact].sign,
             held: false,
+            through: false,
         });
         let seen: Vec<Change> = seen.collect();
         if !seen.is_empty() {
@@ -426,6 +450,7 @@ mod tests {
                 to,
                 sign,
                 held: false,
+                through: false,
             };
             agreeing(&change, rates, &friction, None)
         };

@@ -64,6 +64,9 @@ pub struct Change {
     pub sign: f64,
     /// Whether it is held in the concave corner into which it slides.
     pub held: bool,
+    /// Whether it slides out of the concave corner at which it sticks, since no increment ends in that corner.
+    #[serde(default)]
+    pub through: bool,
 }
 
 /// What binds an increment.
@@ -171,6 +174,20 @@ impl Way {
             Aim::Dof { dof, to } => to - u[dof],
             Aim::Tangent | Aim::Slip(_) | Aim::Load(_) => 0.0,
         }
+    }
+
+    /// Lets contacts that the corner of the path holds in a concave corner slide out of it. Returns whether there are any.
+    pub(super) fn pass_through(&mut self) -> bool {
+        let sticks = |change: &Change| change.from == Mode::Fixed && change.held;
+        if !self.next.iter().any(sticks) {
+            return false;
+        }
+        for change in Arc::make_mut(&mut self.next) {
+            if sticks(change) {
+                (change.to, change.held, change.through) = (Mode::Sliding, false, true);
+            }
+        }
+        true
     }
 
     /// Way from the start along the tangent.
