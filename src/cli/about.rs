@@ -46,6 +46,7 @@ fn features() -> String {
     let all = [
         ("tui", cfg!(feature = "tui")),
         ("plot", cfg!(feature = "plot")),
+        ("fclib", cfg!(feature = "fclib")),
     ];
     let with = |wanted: bool| {
         let names = all.iter().filter(|(_, has)| *has == wanted);

@@ -26,6 +26,7 @@ use crate::step::stepper::Stepper;
 use crate::study::pen;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stickslip_exchange::fclib;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -77,6 +78,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     match kind.extension {
         "svg" | "png" => pen::ready().map_err(|e| usage(e.to_string()))?,
         "cast" => front::ready()?,
+        "h5" => fclib::ready().map_err(|e| usage(e.to_string()))?,
         _ => {}
     }
     // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.

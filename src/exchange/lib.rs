@@ -17,7 +17,7 @@
 //! - [`calculix`]: how a run of CalculiX went, and the stiffness that it stores.
 //! - [`siconos`]: friction problems of Siconos, as text.
 //! - [`matrix_market`]: single matrices in the Matrix Market's exchange format.
-//! - [`fclib`]: friction problems in the HDF5 files of the library fclib.
+//! - [`fclib`]: friction problems in the HDF5 files of the library fclib, with the feature `fclib`.
 //! - [`vtu`]: results for ParaView: VTK's unstructured grids, and collections of them.
 //! - [`attach`]: the protocol by which other programs' solvers are stepped.
 

@@ -1,4 +1,4 @@
-//! Friction problems in HDF5, as the library fclib (Acary & al., INRIA technical report 444) keeps them, in the plane.
+//! fclib's files, read and written with hdf5-pure.
 //!
 //! ```text
 //! /fclib_local    spacedim, W, vectors (q, mu), and with V and R: vectors/s        u = W r + V l + q,  Vᵀ r + R l + s = 0
@@ -14,14 +14,20 @@ use crate::broken::Broken;
 use crate::problem::{Bilateral, Global, Local, Matrix, Problem, is_there};
 use hdf5_pure::{Dataset, File, FileBuilder, GroupBuilder, LibVer};
 
-/// How every HDF5 file begins.
-pub const MARK: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Numbers of a file are taken to have this many bytes for each byte that they take in it: it may be compressed.
 const COMPRESSION: u64 = 64;
 /// Compressed columns.
 const BY_COLUMNS: i64 = -1;
 /// Compressed rows.
 const BY_ROWS: i64 = -2;
+
+/// Whether this build reads and writes such files: it does.
+///
+/// # Errors
+/// Never.
+pub fn ready() -> Result<(), Broken> {
+    Ok(())
+}
 
 /// Reads such a file.
 ///
