@@ -171,9 +171,9 @@ fn ended(event: &Event) -> (Ended, Option<message::Norms>, Option<f64>) {
         | Outcome::Damped { .. }
         | Outcome::Climbed { .. }
         | Outcome::HeldBack { .. } => (Ended::Iteration, None, None),
-        Outcome::Cut { size, .. } | Outcome::Leaps { size, .. } | Outcome::Detour { size, .. } => {
-            (Ended::Cut, None, number(*size))
-        }
+        Outcome::Cut { size, .. }
+        | Outcome::Leaps { size, .. }
+        | Outcome::Fallback { size, .. } => (Ended::Cut, None, number(*size)),
         Outcome::Turns { .. } | Outcome::Moves(_) => (Ended::Cut, None, None),
         Outcome::Major { after, .. } | Outcome::Refused { after, .. } => {
             (Ended::Equilibrium, Some(norms(after)), None)
@@ -203,7 +203,7 @@ fn reason(model: &Model, event: &Event) -> String {
         Outcome::Failed(why)
         | Outcome::Cut { why, .. }
         | Outcome::Leaps { why, .. }
-        | Outcome::Detour { why, .. }
+        | Outcome::Fallback { why, .. }
         | Outcome::Turns { why, .. } => report::describe_failure(model, why),
         _ => String::new(),
     }

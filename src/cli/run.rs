@@ -509,7 +509,7 @@ impl Tally<'_> {
             | Outcome::Cut { .. }
             | Outcome::Leaps { .. }
             | Outcome::Turns { .. }
-            | Outcome::Detour { .. }
+            | Outcome::Fallback { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
             Outcome::Increment { .. } => {

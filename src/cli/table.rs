@@ -27,7 +27,7 @@ use crate::fem::deformation::deformation;
 use crate::linear::stability::Stability;
 use crate::model::{Control, Friction, Jumps, Model, Monitor, ToldKind, Watched};
 use crate::step::event::{Event, Failure, Outcome};
-use crate::step::motion::Motion;
+use crate::step::recovery::motion::Motion;
 use crate::study::csv::field;
 use std::fmt::Write;
 

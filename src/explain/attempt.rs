@@ -54,7 +54,7 @@ impl Attempt {
                 | Outcome::Cut { .. }
                 | Outcome::Leaps { .. }
                 | Outcome::Turns { .. }
-                | Outcome::Detour { .. }
+                | Outcome::Fallback { .. }
                 | Outcome::Moves(_) => ControlFlow::Break(()),
                 Outcome::Minor
                 | Outcome::Damped { .. }

@@ -114,7 +114,7 @@ fn step(
         // Cutting is done here.
         Outcome::Cut { why, .. }
         | Outcome::Leaps { why, .. }
-        | Outcome::Detour { why, .. }
+        | Outcome::Fallback { why, .. }
         | Outcome::Turns { why, .. } => ControlFlow::Break(Err(why.clone())),
         Outcome::Moves(Moves::LetsGo { why, .. }) => ControlFlow::Break(Err(why.clone())),
         _ => ControlFlow::Continue(()),

@@ -188,7 +188,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             )
         }
         Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
-        Outcome::Detour { why, by, size } => format!(
+        Outcome::Fallback { why, by, size } => format!(
             "{at}: {}; the halves have failed: tries {}, from {size} on",
             describe_failure(model, why),
             by.words()

@@ -106,7 +106,7 @@ impl TouchWatch {
         let until = Until::end().minors(MOST_MINORS);
         let end = stepper.drive(until, |stepper| match stepper.event().outcome {
             Outcome::Increment { .. } => ControlFlow::Break(true),
-            Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Detour { .. } => {
+            Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Fallback { .. } => {
                 ControlFlow::Break(false)
             }
             _ => ControlFlow::Continue(()),

@@ -52,7 +52,7 @@ impl PointKind {
             Outcome::Climbed { .. } => PointKind::Climbed,
             Outcome::Cut { .. }
             | Outcome::Leaps { .. }
-            | Outcome::Detour { .. }
+            | Outcome::Fallback { .. }
             | Outcome::Turns { .. }
             | Outcome::Moves(_) => PointKind::Cut,
             Outcome::HeldBack { .. } => PointKind::Damped,

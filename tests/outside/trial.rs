@@ -8,8 +8,8 @@ use stickslip::model::Model;
 use stickslip::model::{AtLimit, Component, SlipCount, Sticking, Ties};
 use stickslip::model::{BodyKind, Form, Monitor, Watched};
 use stickslip::scene::Scene;
-use stickslip::step::detour::Detour;
 use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::recovery::fallback::Fallback;
 use stickslip::step::state::IncrementStart;
 use stickslip::step::stepper::Stepper;
 
@@ -59,7 +59,7 @@ pub struct Trial {
     /// Accepted states of a node that touched, and whose friction no touch point on its way explains.
     pub unexplained: usize,
     /// The ways round on which increments were accepted whose halves had failed.
-    pub detours: Vec<Detour>,
+    pub detours: Vec<Fallback>,
 }
 
 impl Trial {
@@ -119,7 +119,7 @@ impl Trial {
             }
             match &stepper.event().outcome {
                 Outcome::Increment { .. } => self.detours.extend(detour.take()),
-                Outcome::Detour { by, .. } => {
+                Outcome::Fallback { by, .. } => {
                     (detour, passages) = (Some(*by), Passages::default());
                     continue;
                 }
@@ -144,7 +144,16 @@ impl Trial {
             let now = seen(&model, &state.start, &reactions);
             let pulls = now.pulls.iter().map(|pull| norm(pull.force));
             let forces = now.forces.iter().map(|f| norm(*f));
-            scales.force = pulls.chain(forces).fold(scales.force, f64::max);
+            // A node that floats balances its load to round-off.
+            let load = state.start.load_factor;
+            let loads = model
+                .loads
+                .iter()
+                .map(|l| (l.value * l.scale.at(load)).abs());
+            scales.force = pulls
+                .chain(forces)
+                .chain(loads)
+                .fold(scales.force, f64::max);
             let brought: Vec<f64> = match self.increments {
                 0 => model.contacts.iter().map(|s| -s.state.slip).collect(),
                 _ => vec![0.0; model.contacts.len()],

@@ -8,7 +8,7 @@ use crate::outside::tally;
 use crate::outside::trial::End;
 use stickslip::model::Friction;
 use stickslip::scene::Scene;
-use stickslip::step::detour::Detour;
+use stickslip::step::recovery::fallback::Fallback;
 
 /// As many as a few seconds allow.
 const SCENES: u64 = 60;
@@ -46,7 +46,7 @@ fn an_increment_whose_halves_all_fail_is_finished_on_a_way_round_and_is_not_wron
     let row = &rows[0];
     assert_eq!(row.trial.end, End::Finished, "{}", row.line());
     assert!(
-        row.trial.detours.contains(&Detour::Section),
+        row.trial.detours.contains(&Fallback::Section),
         "{}",
         row.line()
     );

@@ -5,7 +5,7 @@ use crate::common::{Accepted, Run, run, scene};
 use std::sync::Arc;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Moves, Outcome};
-use stickslip::step::motion::Motion;
+use stickslip::step::recovery::motion::Motion;
 use stickslip::step::stepper::Stepper;
 
 /// The increments that end a damped motion that is a jump.

@@ -44,7 +44,7 @@ pub struct At<'a> {
     /// Largest displacement change in the last major iteration over the scene's length.
     pub correction: f64,
     /// Stiffness that holds sliding back in this major iteration (force by length); 0 where nothing does
-    /// ([`crate::step::brake`]).
+    /// ([`crate::step::recovery::proximal`]).
     pub brake: f64,
     /// The source's own unknowns about which the stiffness in use is taken; `None` for `u`.
     pub factored: Option<&'a [f64]>,

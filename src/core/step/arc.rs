@@ -12,7 +12,7 @@
 //!
 //! Where a converged state is beyond the leg's corner, or a bound of the history, the increment goes on with that as its
 //! constraint, and ends exactly there. The next size follows from the number of major iterations; what fails is cut, or begins again behind
-//! the corner of the path that it started at ([`crate::step::turn`]).
+//! the corner of the path that it started at ([`crate::step::recovery::path_corner`]).
 
 use crate::contact::laws::{Finding, Verdict};
 use crate::contact::state::ContactState;
@@ -24,7 +24,6 @@ use crate::step::jump::Landing;
 use crate::step::pace::RATIO;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
-use crate::step::turn::smaller;
 use crate::step::way::{Aim, Change, ROUNDING, farthest};
 use std::sync::Arc;
 
@@ -292,23 +291,6 @@ impl Stepper {
         way.slips = Arc::new(state.nodes.iter().map(slip).collect());
         (way.last, way.known, way.turned) = (Arc::new(last), false, false);
         ends
-    }
-
-    /// Cuts the present increment's size, to half of it or to the next corner. `None` where it is at its smallest.
-    pub(super) fn cut_way(&mut self) -> Option<f64> {
-        let least = self.model.arc.least;
-        let way = self.state.way.as_mut();
-        let way = way.filter(|way| way.known || way.turned)?;
-        let least = least.unwrap_or(ArcLength::LEAST * way.first);
-        let cut = smaller(way);
-        if cut < least * (1.0 - ROUNDING) {
-            return None;
-        }
-        way.step = cut;
-        if way.turned {
-            (way.turned, way.known) = (false, false);
-        }
-        Some(cut)
     }
 }
 

@@ -9,9 +9,9 @@ use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::stability::Stability;
 use crate::model::{Model, Strategy};
-use crate::step::detour::Detour;
 use crate::step::major_history::MajorCycle;
-use crate::step::motion::Motion;
+use crate::step::recovery::fallback::Fallback;
+use crate::step::recovery::motion::Motion;
 use crate::step::watch::StabilityLoss;
 use crate::step::way::{Change, ROUNDING, farthest};
 use serde::{Deserialize, Serialize};
@@ -115,14 +115,14 @@ pub enum Outcome {
         /// Size of the whole (load factor).
         size: f64,
     },
-    /// Along the path: the increment failed at a corner of it, and is started again behind that (`step::turn`).
+    /// Along the path: the increment failed at a corner of it, and is started again behind that (`step::recovery::path_corner`).
     Turns {
         /// What it failed of.
         why: Failure,
         /// The contacts that take another mode there.
         changes: Arc<Vec<Change>>,
     },
-    /// Sliding is held back ([`crate::step::brake`]), and is so more from here on; the major iteration starts again.
+    /// Sliding is held back ([`crate::step::recovery::proximal`]), and is so more from here on; the major iteration starts again.
     HeldBack {
         /// What its minor iterations failed of. `None` where they settled, and a node slid too far or against its force.
         why: Option<Failure>,
@@ -132,11 +132,11 @@ pub enum Outcome {
     /// A damped motion past a limit point begins, has made a step, or makes one again.
     Moves(Moves),
     /// The halves of an increment failed: it is started again on a way round.
-    Detour {
+    Fallback {
         /// What was tried last failed of.
         why: Failure,
         /// The way that is tried now.
-        by: Detour,
+        by: Fallback,
         /// Size of the part that is tried (load factor).
         size: f64,
     },

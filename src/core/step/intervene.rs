@@ -6,7 +6,7 @@ use crate::contact::table1::t_max;
 use crate::linear::estimate::Estimate;
 use crate::model::{Friction, Settings, Touch, least};
 use crate::model::{Mode, Model};
-use crate::step::brake::Brake;
+use crate::step::recovery::proximal::Brake;
 use crate::step::state::{Progress, State, Status};
 use crate::step::sub_increment::SubIncrement;
 use std::sync::Arc;
@@ -191,7 +191,7 @@ impl State {
         controls.least = least(model.least, increment).min(increment);
         self.motion = None;
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);
-        self.detour = None;
+        self.fallback = None;
         self.start_again();
         Ok(())
     }

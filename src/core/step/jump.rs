@@ -8,7 +8,7 @@
 //! than the fourth root is a jump, and the increment is accepted and marked. Motions due to a change of modes, to a node that
 //! opens, slides or touches, or to the onset of a load do shrink. If increments are not cut, suspected increments are marked.
 //!
-//! A way round ([`crate::step::detour`]) must not jump: what lies on another branch is no answer to halves that fail, and where a
+//! A way round ([`crate::step::recovery::fallback`]) must not jump: what lies on another branch is no answer to halves that fail, and where a
 //! structure lets go may not depend on the increment.
 //!
 //! Near a limit point the halves may have no end at all, where the whole increment has one beyond. Where they fail, the suspected
@@ -18,9 +18,9 @@ use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::linear::stability::Stability;
 use crate::model::Jumps;
-use crate::step::detour::{Detour, Route};
 use crate::step::event::{Failure, Outcome};
 use crate::step::pace::{Pace, Suspect};
+use crate::step::recovery::fallback::{Fallback, FallbackState};
 use crate::step::stepper::Stepper;
 use crate::step::watch::{FAR, StabilityLoss};
 use crate::strategy;
@@ -119,7 +119,7 @@ impl Stepper {
             && self.model.jumps != Jumps::Accept;
         let far = motion > FAR * length;
         let sudden = motion > NOTHING * length && expected.is_exceeded(motion, cuts);
-        let exceeds = sudden || far && self.can_move();
+        let exceeds = sudden || far && self.stalled().can_move();
         let (majors, cost) = (state.next.major, self.source.stability_cost());
         let looks = !exceeds && (far || state.watch.is_due(majors, cost));
         let here = Suspect {
@@ -157,8 +157,8 @@ impl Stepper {
         if jumps == Jumps::Dynamic && smallest && trip.follows() {
             return None;
         }
-        let round = |route: Route| !matches!(route.by, Detour::Held | Detour::Back);
-        if jumps != Jumps::Accept && self.state.detour.is_some_and(round) {
+        let round = |route: FallbackState| !matches!(route.by, Fallback::Held | Fallback::Back);
+        if jumps != Jumps::Accept && self.state.fallback.is_some_and(round) {
             self.next_major();
             return Some(self.fail(why.clone()));
         }
@@ -175,22 +175,6 @@ impl Stepper {
         }
         self.next_major();
         Some(Outcome::Failed(why.clone()))
-    }
-
-    /// Takes an increment whole whose halves have failed that were to tell whether it jumps.
-    pub(super) fn leap_over(&mut self, why: &Failure) -> Option<Outcome> {
-        let rungs = strategy::rungs(self.state.controls.settings.strategy);
-        let cuts = !rungs.is_empty() && self.model().jumps == Jumps::Cut;
-        if !cuts || matches!(why, Failure::Leapt { .. }) {
-            return None;
-        }
-        let suspect = self.state.pace.suspect.take()?;
-        self.state.pace.over = true;
-        let from = self.state.start.load_factor;
-        self.restart(suspect.sub_increment.remaining(from));
-        let size = (self.state.load_factor - self.state.start.load_factor).abs();
-        let why = why.clone();
-        Some(Outcome::Leaps { why, size })
     }
 
     /// Accepts the state.

@@ -110,7 +110,7 @@ fn after(at: Position, outcome: &Outcome) -> Position {
         Outcome::Cut { .. }
         | Outcome::Leaps { .. }
         | Outcome::Turns { .. }
-        | Outcome::Detour { .. }
+        | Outcome::Fallback { .. }
         | Outcome::Moves(_) => Position {
             attempt: next(at.attempt),
             major: 1,

@@ -11,13 +11,13 @@ use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::{Accepted, At};
 use crate::model::least;
 use crate::model::{Control, Friction, Model, Settings, SlipCount};
-use crate::step::brake::Brake;
-use crate::step::detour::Route;
 use crate::step::event::{Failure, Position};
 use crate::step::intervention::{Intervention, Value};
 use crate::step::major_history::MajorHistory;
-use crate::step::motion::Motion;
 use crate::step::pace::Pace;
+use crate::step::recovery::fallback::FallbackState;
+use crate::step::recovery::motion::Motion;
+use crate::step::recovery::proximal::Brake;
 use crate::step::sub_increment::SubIncrement;
 use crate::step::watch::StabilityWatch;
 use crate::step::way::Way;
@@ -81,7 +81,7 @@ pub struct State {
     /// Stability of the accepted states, as far as checked.
     #[serde(default, skip_serializing_if = "StabilityWatch::is_new")]
     pub watch: StabilityWatch,
-    /// How sliding is held back in the present attempt ([`crate::step::brake`]). `None` where it is not.
+    /// How sliding is held back in the present attempt ([`crate::step::recovery::proximal`]). `None` where it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub brake: Option<Brake>,
     /// How far the way along the path has come. `None` under load control.
@@ -90,9 +90,9 @@ pub struct State {
     /// The damped motion past a limit point that is under way; every step of it is an attempt of the increment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
-    /// The way round that is tried, where the halves of the increment have failed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub detour: Option<Route>,
+    /// The fallback that is tried if the halves of the increment have failed.
+    #[serde(rename = "detour", default, skip_serializing_if = "Option::is_none")]
+    pub fallback: Option<FallbackState>,
     /// Where an attached solver is, which keeps what it goes on from itself. `None` for a solver of our own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outside: Option<Box<Outside>>,
@@ -242,7 +242,7 @@ impl State {
             brake: None,
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             motion: None,
-            detour: None,
+            fallback: None,
             cuts: BTreeMap::new(),
             outside: None,
             status: Status::Running,
@@ -251,12 +251,12 @@ impl State {
         state
     }
 
-    /// The settings in force: the strategy is what the ladder has come to, T_max enters as it wants, and a detour changes
+    /// The settings in force: the strategy is what the ladder has come to, T_max enters as it wants, and a fallback changes
     /// what it is to change.
     pub fn settings(&self) -> Settings {
         let rung = self.search.rung;
         let mut settings = strategy::in_force(&self.controls.settings, rung);
-        if let Some(route) = self.detour {
+        if let Some(route) = self.fallback {
             settings = route.by.in_force(settings, rung);
         }
         if self.brake.is_some() && !self.net {

@@ -61,7 +61,7 @@ impl Stepper {
         match self.cut(&why) {
             Some(cut) => cut,
             None if worst.law == Law::Touch => self.land(after, verdict, Some(worst)),
-            None => self.detour(&why).unwrap_or_else(|| {
+            None => self.fall_back(&why).unwrap_or_else(|| {
                 self.next_major();
                 Outcome::Failed(why)
             }),

@@ -34,7 +34,7 @@ pub struct Way {
     pub last: Arc<Vec<f64>>,
     /// Change of the load factor in it.
     pub last_load: f64,
-    /// The contacts that come first to the end of their mode along the tangent (`step::turn`).
+    /// The contacts that come first to the end of their mode along the tangent (`step::recovery::path_corner`).
     #[serde(default)]
     pub next: Arc<Vec<Change>>,
     /// Arc from the start of the increment to there.

@@ -106,7 +106,7 @@ fn caption(shown: &Shown) -> String {
         (
             Outcome::Cut { .. }
             | Outcome::Leaps { .. }
-            | Outcome::Detour { .. }
+            | Outcome::Fallback { .. }
             | Outcome::Turns { .. },
             _,
         ) => "the increment begins again".to_owned(),

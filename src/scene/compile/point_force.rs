@@ -5,6 +5,9 @@ use crate::fem::lagrange::{gauss, shape};
 use crate::model::{Beam, Body, BodyKind, Node, PointForce, PointGive, Surface};
 use std::collections::HashMap;
 
+/// Gauss points for the length of an element, which may be strongly curved.
+const POINTS: usize = 36;
+
 /// Computes the compliance for all surfaces. Smooth surfaces do not follow a beam's line and have none.
 pub(super) fn find_gives(
     wanted: PointForce,
@@ -51,7 +54,7 @@ fn give(wanted: PointForce, beam: &Beam, ga: f64, element: &[usize], nodes: &[No
         };
         along(0).hypot(along(1))
     };
-    let length: f64 = gauss(count).iter().map(|(xi, w)| w * speed(*xi)).sum();
+    let length: f64 = gauss(POINTS).iter().map(|(xi, w)| w * speed(*xi)).sum();
     PointGive {
         shear: length / (8.0 * ga),
         bending: match wanted {

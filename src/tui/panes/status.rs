@@ -255,7 +255,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         | Outcome::Turns { .. }
         | Outcome::HeldBack { .. }
         | Outcome::Moves(_)
-        | Outcome::Detour { .. }
+        | Outcome::Fallback { .. }
         | Outcome::Refused { .. }
         | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
         Outcome::Increment {

@@ -23,6 +23,7 @@
 //! This is what pivoting methods do at the end of an edge of a piecewise linear path (Eaves 1972). Where the contacts that
 //! change together do not agree on a sign, the path does not go on in these modes.
 
+use super::{Effect, Recovery, Retry, Stalled};
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::contact::tracking::leave_border;
@@ -81,7 +82,7 @@ impl Stepper {
     /// Direction in which the path goes on along a tangent (−1 or 1) that was solved for so that its inner product with the
     /// increment before is positive, and is as that with itself. Where all sliding contacts would slide against their friction
     /// then, and no slower than they slid before, that increment was no measure: it went round a corner. They slide on.
-    pub(super) fn onwards(&self, given: &[NodeIncrement]) -> f64 {
+    pub(in crate::step) fn onwards(&self, given: &[NodeIncrement]) -> f64 {
         let nodes = &self.state.nodes;
         let slips = self.state.way.as_ref().map(|way| way.slips.clone());
         let slips = slips.unwrap_or_default();
@@ -97,7 +98,7 @@ impl Stepper {
 
     /// The contacts that come first to the end of their mode along the tangent that was just solved for, and how many times
     /// the solved motion that is away. The path goes on in the direction `sign` of the solve. Empty where none does.
-    pub(super) fn next_changes(&self, sign: f64) -> (f64, Vec<Change>) {
+    pub(in crate::step) fn next_changes(&self, sign: f64) -> (f64, Vec<Change>) {
         let state = &self.state;
         let mut first = (f64::INFINITY, Vec::new());
         for (contact, node) in state.nodes.iter().enumerate() {
@@ -142,7 +143,7 @@ impl Stepper {
     ///
     /// # Errors
     /// Why there is none.
-    pub(super) fn tangent_behind(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+    pub(in crate::step) fn tangent_behind(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
         if !self.enter_corners() {
             return Err(Failure::DoubledBack);
         }
@@ -186,7 +187,9 @@ impl Stepper {
     ///
     /// # Errors
     /// That they have no solution.
-    pub(super) fn solve_tangent(&mut self) -> Result<(Vec<f64>, Vec<NodeIncrement>), Failure> {
+    pub(in crate::step) fn solve_tangent(
+        &mut self,
+    ) -> Result<(Vec<f64>, Vec<NodeIncrement>), Failure> {
         let mut at = self.state.at();
         at.settings.t_max = BoundUpdate::Consistent;
         let solved = self.source.solve(&at);
@@ -200,27 +203,6 @@ impl Stepper {
         self.source.advance(&mut motion);
         let contacts = 0..self.state.nodes.len();
         Ok((motion, contacts.map(|k| self.source.increment(k)).collect()))
-    }
-
-    /// Starts an increment that failed again behind the corner that it starts at; where it is at its `smallest`, behind that
-    /// at which contacts changed first. `None` where there is no such corner, or where that was what failed.
-    pub(super) fn turn_corner(&mut self, why: &Failure, smallest: bool) -> Option<Outcome> {
-        let way = self.state.way.as_mut()?;
-        if !way.known || way.turned && !way.pass_through() {
-            return None;
-        }
-        let reach = if smallest { AHEAD } else { AT_START };
-        let foreseen = !way.next.is_empty() && way.next_at <= reach * way.step;
-        if !way.turned && !foreseen && smallest && !way.seen.is_empty() {
-            way.next = way.seen.clone();
-        } else if !way.turned && !foreseen {
-            return None;
-        }
-        way.turned = true;
-        let changes = way.next.clone();
-        self.restart(self.state.sub_increment);
-        let why = why.clone();
-        Some(Outcome::Turns { why, changes })
     }
 
     /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do, and holds in a
@@ -278,7 +260,7 @@ impl Stepper {
     }
 
     /// Notes which contacts were the first to change their modes in the present increment.
-    pub(super) fn note_changes(&mut self) {
+    pub(in crate::step) fn note_changes(&mut self) {
         let Some(way) = &mut self.state.way else {
             return;
         };
@@ -305,7 +287,7 @@ impl Stepper {
     /// Whether a contact that changed at the corner has not kept to it; or, in an increment that starts at none, one has come
     /// to stick that slides along the tangent. At every state of sliding there is a second way on: back with the load, where all
     /// contacts stick. That is not the path.
-    pub(super) fn turned_back(&self) -> bool {
+    pub(in crate::step) fn turned_back(&self) -> bool {
         let nodes = &self.state.nodes;
         let Some(way) = &self.state.way else {
             return false;
@@ -319,8 +301,49 @@ impl Stepper {
     }
 }
 
+/// Behind the corner of the path at which the increment starts.
+pub(super) struct Turn;
+
+impl Recovery for Turn {
+    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+        turn(why, stalled, AT_START, false)
+    }
+}
+
+/// At the least arc: behind the corner just ahead, or that at which contacts changed first.
+pub(super) struct TurnAtLast;
+
+impl Recovery for TurnAtLast {
+    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+        turn(why, stalled, AHEAD, true)
+    }
+}
+
+/// Starts the increment again behind a corner that lies at most this part of its size ahead. `None` where there is no such corner, or
+/// where that was what failed.
+fn turn(why: &Failure, stalled: &Stalled<'_>, reach: f64, seen: bool) -> Option<Retry> {
+    let mut way = stalled.state.way.clone().filter(|way| way.known)?;
+    if !stalled.size_helps(why) || way.turned && !way.pass_through() {
+        return None;
+    }
+    let foreseen = !way.next.is_empty() && way.next_at <= reach * way.step;
+    if !way.turned && !foreseen {
+        if !seen || way.seen.is_empty() {
+            return None;
+        }
+        way.next = way.seen.clone();
+    }
+    way.turned = true;
+    let (why, changes) = (why.clone(), way.next.clone());
+    Some(Retry {
+        part: stalled.state.sub_increment,
+        effect: Effect::Path(way),
+        outcome: Outcome::Turns { why, changes },
+    })
+}
+
 /// The size that an increment is cut to: to end before the next corner where that lies within it, else half.
-pub(super) fn smaller(way: &Way) -> f64 {
+pub(in crate::step) fn smaller_arc(way: &Way) -> f64 {
     let to = BEFORE * way.next_at;
     let ahead = !way.next.is_empty() && !way.turned && to < BEFORE * BEFORE * way.step;
     if ahead && to > AT_START * way.step {

@@ -17,14 +17,16 @@
 //! stride, it is accepted, marked as a jump; else the motion goes on. Viscosity only ever takes work, Σ (c / Δt) |Δu|²; it is
 //! summed up and told.
 
+use super::motion::Motion;
+use super::{Effect, Recovery, Retry, Stalled};
 use crate::contact::laws::{Finding, Law, Verdict};
 use crate::linear::norms::Norms;
-use crate::model::Jumps;
 use crate::step::event::{Failure, Moves, Outcome, Slow};
 use crate::step::jump::Landing;
-use crate::step::motion::Motion;
+
 use crate::step::pace::Pace;
 use crate::step::stepper::Stepper;
+use crate::step::sub_increment::SubIncrement;
 use crate::step::watch::StabilityWatch;
 use std::sync::Arc;
 
@@ -47,48 +49,68 @@ const JUMP: f64 = 1e-3;
 /// Most steps of a motion.
 const MOST_STEPS: u32 = 5000;
 
-impl Stepper {
-    /// Whether the scene wants damped motions, and what deforms can make them.
-    pub(super) fn can_move(&self) -> bool {
-        self.model().jumps == Jumps::Dynamic && self.source.damps()
-    }
+/// A damped motion from the last equilibrium: the smallest increment has failed.
+pub(super) struct Release;
 
-    /// The smallest increment has failed: goes on from the last equilibrium, the loads as they are. `None` where the scene
-    /// does not want that.
-    pub(super) fn let_go(&mut self, why: &Failure) -> Option<Outcome> {
-        if !self.can_move() || self.state.motion.is_some() {
-            return None;
-        }
-        self.restart(self.state.sub_increment);
+impl Recovery for Release {
+    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+        let helps = stalled.size_helps(why) || matches!(why, Failure::Singular(_));
+        let (why, load) = (why.clone(), stalled.state.start.load_factor);
+        (helps && stalled.can_move()).then_some(Retry {
+            part: stalled.state.sub_increment,
+            effect: Effect::Release,
+            outcome: Outcome::Moves(Moves::LetsGo { why, load }),
+        })
+    }
+}
+
+/// A slower step of the damped motion.
+pub(super) struct Slower;
+
+impl Recovery for Slower {
+    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+        slower(Slow::Failed(why.clone()), stalled)
+    }
+}
+
+/// The step again with more drag; coming to rest was too early.
+fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
+    let mut motion = stalled.state.motion?;
+    if motion.coming_to_rest {
+        motion.coming_to_rest = false;
+    } else if motion.drag < STIFFEST * motion.stiffness {
+        motion.drag *= FASTER;
+    } else {
+        return None;
+    }
+    Some(Retry {
+        part: stalled.state.sub_increment,
+        effect: Effect::Motion(motion),
+        outcome: Outcome::Moves(Moves::Slower(slow)),
+    })
+}
+
+impl Stepper {
+    /// Prepares a damped motion from the last equilibrium, the loads as they are. `None` where nothing can be linearised there.
+    pub(super) fn release(&mut self, part: SubIncrement) -> Option<()> {
+        self.restart(part);
         if !self.linearise() {
             return None;
         }
         let (from, stiffness) = (self.state.start.load_factor, self.source.spring());
         self.state.motion = Some(Motion::new(from, stiffness));
         Arc::make_mut(&mut self.state.start).load_factor = self.state.load_factor;
-        self.restart(self.state.sub_increment);
-        Some(Outcome::Moves(Moves::LetsGo {
-            why: why.clone(),
-            load: from,
-        }))
+        Some(())
     }
 
-    /// A step has failed: it is taken slower; coming to rest was too early.
-    pub(super) fn slow_down(&mut self, slow: Slow) -> Option<Outcome> {
-        let motion = self.state.motion.as_mut()?;
-        if motion.coming_to_rest {
-            motion.coming_to_rest = false;
-        } else if motion.drag < STIFFEST * motion.stiffness {
-            motion.drag *= FASTER;
-        } else {
-            return None;
-        }
-        self.restart(self.state.sub_increment);
-        Some(Outcome::Moves(Moves::Slower(slow)))
+    /// Takes a step again, slower. `None` where it is as slow as can be.
+    fn slow_down(&mut self, slow: Slow) -> Option<Outcome> {
+        let retry = slower(slow, &self.stalled())?;
+        self.try_again(retry)
     }
 
     /// A step has converged, and the judge has nothing against it that could be repaired.
-    pub(super) fn end_step(
+    pub(in crate::step) fn end_step(
         &mut self,
         after: Norms,
         verdict: Verdict,

@@ -1,0 +1,183 @@
+//! Recoveries: how an increment that failed is tried again.
+//!
+//! A recovery looks at a failure and at the state in which it happened, and proposes how to start the increment again, or nothing. These
+//! are all of them; the first that proposes something is taken.
+//!
+//! ```text
+//! damped motion        Slower      the step again, with more viscosity
+//! along a path         Turn        behind the corner of the path at which the increment starts
+//!                      ShorterArc  half the arc, or the way to the next corner
+//!                      TurnAtLast  at the least arc: behind the corner at which contacts changed first
+//! at a given load      Halve       half the increment
+//!                      Whole       halves that were to tell whether it jumps have failed: the whole increment after all
+//!                      Release     the loads stay, and the nodes move damped to the next equilibrium
+//! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back (`fallback`)
+//! ```
+//!
+//! A node that makes more than [`MOST_CUTS`] parts of a whole increment fail ends this: its state does not depend on the size.
+
+mod cut;
+mod damped;
+pub mod fallback;
+pub mod motion;
+mod path_corner;
+pub mod proximal;
+mod stalled;
+mod whole;
+
+pub(super) use path_corner::smaller_arc;
+pub(super) use stalled::Stalled;
+
+use crate::linear::source::Source;
+use crate::model::Model;
+use crate::step::event::{Failure, Outcome};
+use crate::step::state::State;
+use crate::step::stepper::Stepper;
+use crate::step::sub_increment::SubIncrement;
+use crate::step::way::Way;
+use fallback::{Fallback, FallbackState};
+use motion::Motion;
+use proximal::Brake;
+
+/// Maximum number of cuts of a whole increment because of the same node, before the increment fails.
+const MOST_CUTS: u32 = 300;
+
+/// One way to start an increment again.
+trait Recovery: Sync {
+    /// What to try after the failure `why`. `None` if this recovery does not apply, or has been tried.
+    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry>;
+}
+
+const MOVING: [&dyn Recovery; 1] = [&damped::Slower];
+const ALONG: [&dyn Recovery; 3] = [
+    &path_corner::Turn,
+    &cut::ShorterArc,
+    &path_corner::TurnAtLast,
+];
+const LOADED: [&dyn Recovery; 3] = [&cut::Halve, &whole::Whole, &damped::Release];
+const FALLBACKS: [&dyn Recovery; 6] = [
+    &Fallback::Section,
+    &Fallback::Consistent,
+    &Fallback::Start,
+    &Fallback::Newton,
+    &Fallback::Held,
+    &Fallback::Back,
+];
+
+/// How to start an increment again.
+pub(super) struct Retry {
+    /// The part of it that is tried.
+    part: SubIncrement,
+    /// What it changes in the state.
+    effect: Effect,
+    /// What is reported.
+    outcome: Outcome,
+}
+
+/// What a recovery changes in the state.
+enum Effect {
+    /// One more cut, because of this slave node if any.
+    Cut(Option<usize>),
+    /// The arc and the corner of the path.
+    Path(Box<Way>),
+    /// The increment is accepted although it jumps.
+    Whole,
+    /// The loads stay, and a damped motion begins.
+    Release,
+    /// Another drag of the damped motion.
+    Motion(Motion),
+    /// The fallback.
+    Fallback(FallbackState),
+}
+
+impl Stepper {
+    /// The state of a failed increment, for the recoveries.
+    pub(super) fn stalled(&self) -> Stalled<'_> {
+        let source: &dyn Source = &*self.source;
+        let model: &Model = &self.model;
+        Stalled {
+            model,
+            state: &self.state,
+            source,
+        }
+    }
+
+    /// Starts the increment again if a recovery applies; else it fails.
+    pub(super) fn fail(&mut self, mut why: Failure) -> Outcome {
+        if let Failure::LadderEnded { scales, .. } = &mut why {
+            *scales = self.stalled().scales();
+        }
+        if let Some(stop) = self.cut_too_often(&why) {
+            return Outcome::Failed(stop);
+        }
+        let again = self.cut(&why).or_else(|| self.fall_back(&why));
+        again.unwrap_or(Outcome::Failed(why))
+    }
+
+    /// Failure of an increment that was cut [`MOST_CUTS`] times because of the same node: each part is accepted, and the next part
+    /// fails at the same node.
+    pub(super) fn cut_too_often(&self, why: &Failure) -> Option<Failure> {
+        let slave = why.culprit()?;
+        let cuts = *self.state.cuts.get(&slave)?;
+        (cuts >= MOST_CUTS).then(|| Failure::CutTooOften {
+            slave,
+            cuts,
+            last: Box::new(why.clone()),
+        })
+    }
+
+    /// Starts the increment again with another size. `None` if no recovery for that applies.
+    pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
+        let recoveries: &[&dyn Recovery] = match &self.state {
+            State {
+                motion: Some(_), ..
+            } => &MOVING,
+            State { way: Some(_), .. } => &ALONG,
+            _ => &LOADED,
+        };
+        self.recover(recoveries, why)
+    }
+
+    /// Starts the increment again on the next fallback. `None` if none applies.
+    pub(super) fn fall_back(&mut self, why: &Failure) -> Option<Outcome> {
+        self.recover(&FALLBACKS, why)
+    }
+
+    fn recover(&mut self, recoveries: &[&dyn Recovery], why: &Failure) -> Option<Outcome> {
+        recoveries.iter().find_map(|recovery| {
+            let retry = recovery.propose(why, &self.stalled())?;
+            self.try_again(retry)
+        })
+    }
+
+    /// Starts the increment again. `None` if a damped motion cannot start.
+    pub(super) fn try_again(&mut self, retry: Retry) -> Option<Outcome> {
+        let Retry {
+            part,
+            effect,
+            outcome,
+        } = retry;
+        let state = &mut self.state;
+        let mut held = false;
+        match effect {
+            Effect::Cut(slave) => {
+                if let Some(slave) = slave {
+                    *state.cuts.entry(slave).or_default() += 1;
+                }
+            }
+            Effect::Path(way) => state.way = Some(way),
+            Effect::Whole => (state.pace.suspect, state.pace.over) = (None, true),
+            Effect::Release => self.release(part)?,
+            Effect::Motion(motion) => state.motion = Some(motion),
+            Effect::Fallback(fallback) => {
+                held = fallback.by == Fallback::Held;
+                state.fallback = Some(fallback);
+            }
+        }
+        self.restart(part);
+        if held {
+            self.state.brake = Some(Brake::new(self.source.spring()));
+        }
+        Some(outcome)
+    }
+}

@@ -1,0 +1,125 @@
+//! What recoveries ask about a failed increment.
+
+use crate::contact::state::ContactState;
+use crate::linear::singular::Singular;
+use crate::linear::source::Source;
+use crate::model::{BodyKind, Factor, Jumps, Mode, Model};
+use crate::step::event::Failure;
+use crate::step::state::State;
+
+/// Smallest part of an increment that halves can be.
+const SMALLEST_HALF: f64 = 1e-9;
+
+/// A failed increment.
+pub(in crate::step) struct Stalled<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    pub source: &'a dyn Source,
+}
+
+impl Stalled<'_> {
+    /// Whether an increment that failed so may succeed with another size.
+    pub fn size_helps(&self, why: &Failure) -> bool {
+        match why {
+            Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
+            Failure::Singular(Singular::Rigid { .. }) => !self.starts_loose(),
+            Failure::LadderEnded { scales, .. } => !scales,
+            _ => true,
+        }
+    }
+
+    /// Size below which an increment is not cut: where a damped motion follows, that which the limit load is found to.
+    pub fn least(&self) -> f64 {
+        let controls = &self.state.controls;
+        if !self.can_move() {
+            return controls.least;
+        }
+        let largest = self.model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        // The smallest half is less than twice the least.
+        let wanted = controls.settings.limit_load * largest / 2.0;
+        // Halves are counted in 32 bits.
+        let whole = (self.state.sub_increment.to - self.state.sub_increment.from).abs();
+        wanted.max(whole * SMALLEST_HALF).min(controls.least)
+    }
+
+    /// Whether the scene wants damped motions, and what deforms can make them.
+    pub fn can_move(&self) -> bool {
+        self.model.jumps == Jumps::Dynamic && self.source.damps()
+    }
+
+    /// Whether an increment that failed so may succeed where sliding is held back.
+    pub fn can_hold(&self, why: &Failure) -> bool {
+        let helps = matches!(
+            why,
+            Failure::MajorCycle(_)
+                | Failure::MajorLimit { .. }
+                | Failure::Diverged { .. }
+                | Failure::LadderEnded { .. }
+                | Failure::NoAnswer { .. }
+                | Failure::Refused(_)
+                | Failure::Leapt { .. }
+        );
+        let touches = |node: &ContactState| node.mode != Mode::Free;
+        let mut nodes = self.state.nodes.iter().chain(&self.state.start.nodes);
+        (helps || self.drowned(why))
+            && nodes.any(touches)
+            && self.source.brakes()
+            && self.model.jumps != Jumps::Stop
+    }
+
+    /// Whether a failure by round-off is one of what ran away: it drowns in that before it is out of all bounds.
+    pub fn drowned(&self, why: &Failure) -> bool {
+        matches!(why, Failure::RoundOff { .. }) && self.state.next.major > 2
+    }
+
+    /// Whether all bodies are given by numbers.
+    pub fn is_given(&self) -> bool {
+        let mut bodies = self.model.bodies.iter();
+        bodies.all(|body| matches!(body.kind, BodyKind::Linear(_)))
+    }
+
+    /// Whether the problem at a part of the load is the same in every way: matrices without gaps, cohesion and prescribed
+    /// motions, loaded in proportion for the first time. Motions and forces scale then, and modes are the same.
+    pub fn scales(&self) -> bool {
+        let (model, start) = (self.model, &self.state.start);
+        let matrices = !model.bodies.is_empty()
+            && model
+                .bodies
+                .iter()
+                .all(|body| matches!(body.kind, BodyKind::Linear(_)))
+            && model.surfaces.iter().all(|surface| surface.endless)
+            && model.prescribed.is_empty();
+        let proportional = model
+            .loads
+            .iter()
+            .all(|load| load.scale == Factor::default());
+        let unloaded = start.load_factor == 0.0
+            && start.u.iter().all(|u| *u == 0.0)
+            && start
+                .nodes
+                .iter()
+                .all(|n| n.f_n == 0.0 && n.f_t == 0.0 && n.slip == 0.0);
+        let closed = |contact: usize| {
+            self.source
+                .kinematics(contact)
+                .is_some_and(|k| k.gap == 0.0)
+        };
+        matrices
+            && proportional
+            && unloaded
+            && self.state.next.major == 1
+            && self
+                .state
+                .controls
+                .friction
+                .iter()
+                .all(|f| f.cohesion == 0.0)
+            && (0..model.contacts.len()).all(closed)
+    }
+
+    /// Whether nothing holds a body in the modes that the increment starts with, whatever its size.
+    fn starts_loose(&self) -> bool {
+        let found = self.source.explain(&self.state.start.nodes);
+        matches!(found, Singular::Rigid { .. })
+    }
+}

@@ -1,0 +1,28 @@
+//! The whole increment after all: halves were to tell whether it jumps to another branch ([`crate::step::jump`]), and have failed. Near a
+//! limit point they may have no equilibrium, where the whole increment has one beyond.
+
+use super::{Effect, Recovery, Retry, Stalled};
+use crate::model::Jumps;
+use crate::step::event::{Failure, Outcome};
+use crate::strategy;
+
+pub(super) struct Whole;
+
+impl Recovery for Whole {
+    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+        let state = stalled.state;
+        let rungs = strategy::rungs(state.controls.settings.strategy);
+        let cuts = !rungs.is_empty() && stalled.model.jumps == Jumps::Cut;
+        if !cuts || matches!(why, Failure::Leapt { .. }) || !stalled.size_helps(why) {
+            return None;
+        }
+        let from = state.start.load_factor;
+        let part = state.pace.suspect?.sub_increment.remaining(from);
+        let (why, size) = (why.clone(), (part.target() - from).abs());
+        Some(Retry {
+            part,
+            effect: Effect::Whole,
+            outcome: Outcome::Leaps { why, size },
+        })
+    }
+}
