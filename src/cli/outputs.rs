@@ -136,8 +136,8 @@ impl Outputs {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write_table(&mut self, table: &str) -> Result<(), Error> {
-        if let Some(mut sink) = self.csv.take() {
+    pub fn write_table(self, table: &str) -> Result<(), Error> {
+        if let Some(mut sink) = self.csv {
             sink.send(table)?;
             sink.finish()?;
         }

@@ -69,7 +69,8 @@ fn results_are_in_the_order_of_the_product_whatever_finishes_first() {
         "0.05 30", "0.05 35", "0.05 40", "0.5 30", "0.5 35", "0.5 40",
     ];
     assert_eq!(values, expected);
-    assert_eq!(plan.increments(), 3 * (50 + 5));
+    let increments = plan.cases.iter().map(|case| case.increments);
+    assert_eq!(increments.sum::<u64>(), 3 * (50 + 5));
     let runs = all_of(&plan, 4);
     let accepted: Vec<usize> = runs.iter().map(|run| run.rows.len()).collect();
     assert_eq!(accepted, [50, 50, 50, 5, 5, 5]);
