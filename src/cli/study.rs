@@ -55,7 +55,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let plan = plan(args)?;
     args.sweep.run(&run::sweep(&plan), &interrupt, |runs| {
-        let runs: Vec<Run> = runs.into_iter().flatten().collect();
+        let pairs = plan.cases.iter().cloned().zip(runs);
+        let (cases, runs): (_, Vec<Run>) = pairs.filter_map(|(c, run)| Some((c, run?))).unzip();
+        let plan = Plan {
+            cases,
+            ..plan.clone()
+        };
         let chart = Rc::new(figure::chart(&plan, &runs));
         let again = chart.clone();
         Ok(Report {

@@ -288,7 +288,7 @@ proptest! {
     fn a_log_that_was_cut_anywhere_goes_on_to_the_same_whole(cut in 0.0_f64..1.0, torn in 0_usize..2) {
         let directory = tempfile::tempdir().unwrap();
         let here = directory.path();
-        let words = "map osc-two3 --over friction=5,20,45 --over increment=0.5,0.25";
+        let words = "map osc-two3 --over friction=5,10,20,40 --over increment=0.5,0.25";
         let whole = well(&ran(here, words, &["--csv", "-"]));
         let logs = shards(here, words, 2);
         let text = bytes(here, &logs[torn]);
