@@ -12,7 +12,6 @@ use crate::study::precision::{Cost, Measure, Point, Precision, PrecisionError, R
 use crate::study::precision_table;
 use crate::study::{Vary, precision_figure};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -82,7 +81,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             Error::Usage(told.map_or(error.to_string(), |told| format!("{name}: {told}")))
         })?;
         let outputs = Outputs::open(&args.sweep.out)?;
-        report(Rc::new(charts)).write(outputs, args.sweep.out.quiet)?;
+        report(charts).write(outputs, args.sweep.out.quiet)?;
         return Ok(Exit::Good);
     }
     if let Some(shard) = args.sweep.part().filter(|_| args.sweep.out.writes()) {
@@ -119,18 +118,16 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
                 error => Error::Usage(error.to_string()),
             })?);
         }
-        Ok(report(Rc::new(charts)))
+        Ok(report(charts))
     })
 }
 
-fn report(charts: Rc<Vec<Precision>>) -> Report<'static> {
-    let again = charts.clone();
+fn report(charts: Vec<Precision>) -> Report<'static> {
     Report {
         table: precision_table::csv(&charts),
         lines: charts.iter().flat_map(lines).collect(),
         warnings: Vec::new(),
-        svg: Box::new(move || precision_figure::sheet(&charts)?.svg()),
-        png: Box::new(move || precision_figure::sheet(&again)?.png()),
+        picture: Box::new(move || precision_figure::sheet(&charts)),
     }
 }
 

@@ -16,7 +16,6 @@ use crate::study::trial::{Judged, TOLERANCE, Variant};
 use crate::study::{Plan, Study, Vary, verdict_figure};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
-use std::rc::Rc;
 use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
@@ -107,12 +106,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let sweep = survey::sweep(&population, &variants);
     args.sweep.run(&sweep, &interrupt, |judged| {
-        let survey = Rc::new(Survey {
+        let survey = Survey {
             population: population.clone(),
             variants: variants.clone(),
             judged,
-        });
-        let again = survey.clone();
+        };
         Ok(Report {
             table: match args.totals {
                 true => survey.totals(),
@@ -120,8 +118,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             },
             lines: survey_lines(&survey),
             warnings: Vec::new(),
-            svg: Box::new(move || verdict_figure::bars(&survey)?.svg()),
-            png: Box::new(move || verdict_figure::bars(&again)?.png()),
+            picture: Box::new(move || verdict_figure::bars(&survey)),
         })
     })
 }
@@ -151,14 +148,12 @@ fn scenes(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let plan = Arc::new(Plan::new(study)?);
     args.sweep.run(&map::sweep(&plan), &interrupt, |ended| {
-        let map = Rc::new(Map::judged(plan.clone(), args.tolerance, ended));
-        let again = map.clone();
+        let map = Map::judged(plan.clone(), args.tolerance, ended);
         Ok(Report {
             table: map.csv(),
             lines: map_lines(&map),
             warnings: Vec::new(),
-            svg: Box::new(move || verdict_figure::grid(&map)?.svg()),
-            png: Box::new(move || verdict_figure::grid(&again)?.png()),
+            picture: Box::new(move || verdict_figure::grid(&map)),
         })
     })
 }

@@ -8,8 +8,7 @@ use super::sweep::{Report, SweepArgs};
 use crate::explain::number::six;
 use crate::study::benchmarks::Benchmarks;
 use crate::study::figure;
-use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, csv, plot, run};
-use std::rc::Rc;
+use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, csv, run};
 
 /// Monitors shown in the table of runs.
 const MONITORS: usize = 2;
@@ -61,12 +60,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             cases,
             ..plan.clone()
         };
-        let chart = Rc::new(figure::chart(&plan, &runs));
-        let again = chart.clone();
+        let chart = figure::chart(&plan, &runs);
         Ok(Report {
             table: csv::table(&plan, &runs),
-            svg: Box::new(move || plot::svg(&chart)),
-            png: Box::new(move || plot::png(&again)),
+            picture: Box::new(move || chart.sheet()),
             lines: lines(&plan, &runs),
             warnings: warnings(&plan, &runs),
         })

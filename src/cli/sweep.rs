@@ -8,6 +8,7 @@ use crate::study::drawn::PlotError;
 use crate::study::log::{LogError, Outcome};
 use crate::study::origin;
 use crate::study::shard::{NoShard, Shard, ranges};
+use crate::study::sheet::Sheet;
 use crate::study::sweep::{Keeping, Missing, RunError, Store, Sweep};
 use std::path::PathBuf;
 
@@ -34,8 +35,8 @@ fn shard(text: &str) -> Result<Shard, NoShard> {
 /// What came of a sweep.
 pub struct Report<'a> {
     pub table: String,
-    pub svg: Box<dyn FnOnce() -> Result<String, PlotError> + 'a>,
-    pub png: Box<dyn FnOnce() -> Result<Vec<u8>, PlotError> + 'a>,
+    /// Drawn only if a picture is wanted.
+    pub picture: Box<dyn FnOnce() -> Result<Sheet, PlotError> + 'a>,
     /// Summary for the user, left out with `--quiet`.
     pub lines: Vec<String>,
     pub warnings: Vec<String>,
@@ -44,7 +45,7 @@ pub struct Report<'a> {
 impl Report<'_> {
     /// Writes all files, and prints the rest.
     pub fn write(self, outputs: Outputs, quiet: bool) -> Result<(), Error> {
-        outputs.write(&self.table, self.svg, self.png)?;
+        outputs.write(&self.table, self.picture)?;
         let lines = self.lines.iter().filter(|_| !quiet);
         lines.chain(&self.warnings).for_each(|line| tell(line));
         Ok(())

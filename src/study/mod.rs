@@ -5,7 +5,7 @@
 //! - [`run`](mod@run): the cases as a sweep; [`one`](mod@one): one run, on one thread; [`room`]: as many as the memory has room for;
 //!   [`result`]: what one of them came to;
 //!   [`monitor_kind`]: what its numbers are measured in.
-//! - [`csv`]: all results as one table; [`figure`]: as curves; [`drawn`]: curves and shapes as plain data; [`plot`] and
+//! - [`csv`]: all results as one table; [`figure`]: as [`curves`]; [`sheet`]: drawings as plain data, of [`drawn`] shapes;
 //!   [`pen`]: these as SVG and PNG, with the feature `plot`; [`placing`]: places for labels; [`log_axis`]: an axis in powers of ten.
 //!
 //! Values that are known from elsewhere: [`benchmarks`].
@@ -13,7 +13,7 @@
 //! Convergence maps:
 //!
 //! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, judged; [`survey`]: all of them.
-//! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures; [`sheet`]: pictures as plain data.
+//! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures.
 //! - [`verdict`]: what a run is worth; [`origin`]: where results come from.
 //!
 //! What all sweeps share:
@@ -34,6 +34,7 @@ pub mod builtin;
 pub mod chart_file;
 pub mod chart_runs;
 pub mod csv;
+pub mod curves;
 pub mod drawn;
 pub mod figure;
 pub mod log;
@@ -50,7 +51,6 @@ pub mod pen;
 pub mod pen;
 pub mod placing;
 pub mod plan;
-pub mod plot;
 pub mod precision;
 pub mod precision_figure;
 pub mod precision_table;
