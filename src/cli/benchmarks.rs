@@ -15,7 +15,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
         return Err(Error::Usage(told));
     }
     let interrupt = Interrupt::listen();
-    let mut outputs = Outputs::open(out)?;
+    let outputs = Outputs::open(out)?;
     let watch = Watch {
         stop: &|| interrupt.came(),
         done: &|_| {},

@@ -1,16 +1,16 @@
 //! `stickslip chart`: what settings cost, and how far from the truth they are.
 
-use super::base::{Error, Exit, NoValue, SetArgs, tell};
+use super::base::{Error, Exit, NoValue, SetArgs};
 use super::interrupt::Interrupt;
-use super::outputs::{OutputArgs, Outputs, aligned};
-use super::parts::{PartArgs, failed};
+use super::outputs::{Outputs, aligned};
+use super::sweep::{Report, SweepArgs, failed};
 use crate::explain::number::six;
 use crate::format::kind::{FileKind, mistaken};
 use crate::study::chart_file::{Chart, Truth};
-use crate::study::chart_runs::{self, Planned};
-use crate::study::precision::{self, Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};
+use crate::study::chart_runs::{Planned, sweep};
+use crate::study::precision::{Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};
 use crate::study::precision_table;
-use crate::study::{Vary, Watch, precision_figure};
+use crate::study::{Vary, precision_figure};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
@@ -55,9 +55,7 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 3)]
     repeats: usize,
     #[command(flatten)]
-    part: PartArgs,
-    #[command(flatten)]
-    out: OutputArgs,
+    sweep: SweepArgs,
 }
 
 fn target(text: &str) -> Result<f64, NoValue> {
@@ -82,8 +80,14 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             let told = mistaken(&name, &text, FileKind::ChartTable);
             Error::Usage(told.map_or(error.to_string(), |told| format!("{name}: {told}")))
         })?;
-        let outputs = Outputs::open(&args.out)?;
-        return finish(args, outputs, &charts);
+        let outputs = Outputs::open(&args.sweep.out)?;
+        report(charts).write(outputs, args.sweep.out.quiet)?;
+        return Ok(Exit::Good);
+    }
+    if let Some(shard) = args.sweep.part().filter(|_| args.sweep.out.writes()) {
+        return Err(Error::Usage(format!(
+            "--shard {shard} runs a part of the cells, and a chart compares all; --merge makes table and picture of all logs"
+        )));
     }
     let interrupt = Interrupt::listen();
     let mut planned = Vec::new();
@@ -98,67 +102,36 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         }
         planned.push(Planned::new(chart)?);
     }
-    let outputs = Outputs::open(&args.out)?;
-    let increments = planned.iter().map(Planned::increments).sum();
-    let progress = args.out.progress(increments, "increments");
-    let watch = Watch {
-        stop: &|| interrupt.came(),
-        done: &|increments| progress.inc(increments),
-    };
-    let keeping = args.part.keeping(&args.out)?;
-    let kept = chart_runs::open(&planned, args.repeats, &keeping).map_err(|e| failed(e.into()))?;
-    if let Some(incomplete) = args.part.whole(&kept) {
-        return Ok(incomplete);
-    }
-    if args.part.is_part() {
-        let done = chart_runs::run_part(&planned, args.repeats, &kept, &watch);
-        progress.finish_and_clear();
-        let done = done.map_err(failed)?;
-        return Ok(args.part.end(&kept, |k| done[k], args.out.quiet));
-    }
     let measure = Measure {
         cost: args.cost,
         target: args.target,
         repeats: args.repeats,
     };
-    let made = |planned: &Planned| precision::run_kept(planned, measure, &kept, &watch);
-    let charts: Result<Vec<Precision>, _> = planned.iter().map(made).collect();
-    progress.finish_and_clear();
-    let charts = match charts {
-        Err(_) if interrupt.came() => {
-            tell("interrupted before there was anything to compare");
-            return Ok(Exit::Interrupted);
+    let sweep = sweep(&planned, args.repeats);
+    args.sweep.run(&sweep, &interrupt, |mut results| {
+        let mut charts = Vec::new();
+        for planned in &planned {
+            let rest = results.split_off(planned.runs());
+            let own = std::mem::replace(&mut results, rest);
+            charts.push(Precision::new(planned, own, measure).map_err(|e| match e {
+                PrecisionError::Run(error) => failed(*error),
+                error => Error::Usage(error.to_string()),
+            })?);
         }
-        Err(PrecisionError::Run(error)) => return Err(failed(*error)),
-        charts => charts.map_err(|e| Error::Usage(e.to_string()))?,
-    };
-    finish(args, outputs, &charts)
-}
-
-/// Writes, draws and tells charts.
-fn finish(args: &Args, outputs: Outputs, charts: &[Precision]) -> Result<Exit, Error> {
-    outputs.write(
-        &precision_table::csv(charts),
-        || precision_figure::sheet(charts)?.svg(),
-        || precision_figure::sheet(charts)?.png(),
-    )?;
-    for chart in charts {
-        if !args.out.quiet {
-            tell_chart(chart);
-        }
-    }
-    let left: usize = charts.iter().map(|c| c.planned - c.points.len()).sum();
-    if left > 0 {
-        tell(&format!("interrupted; {left} runs were not done"));
-    }
-    Ok(match left {
-        0 => Exit::Good,
-        _ => Exit::Interrupted,
+        Ok(report(charts))
     })
 }
 
-fn tell_chart(chart: &Precision) {
-    tell(&chart.title);
+fn report(charts: Vec<Precision>) -> Report<'static> {
+    Report {
+        table: precision_table::csv(&charts),
+        lines: charts.iter().flat_map(lines).collect(),
+        warnings: Vec::new(),
+        picture: Box::new(move || precision_figure::sheet(&charts)),
+    }
+}
+
+fn lines(chart: &Precision) -> Vec<String> {
     let heads = [
         "",
         "series",
@@ -201,20 +174,15 @@ fn tell_chart(chart: &Precision) {
             end,
         ]);
     }
-    for line in aligned(&table, 3) {
-        tell(&line);
-    }
-    tell("* beaten by no other run in cost and error   + as near as is wanted");
+    let mut lines = vec![chart.title.clone()];
+    lines.extend(aligned(&table, 3));
+    lines.push("* beaten by no other run in cost and error   + as near as is wanted".to_owned());
     if chart.points.iter().any(Point::is_round_off) {
-        tell(&format!(
+        lines.push(format!(
             "= round-off: errors below {ROUND_OFF:.1e} are equal"
         ));
     }
-    for line in chart
-        .verdict()
-        .into_iter()
-        .chain(chart.about.iter().cloned())
-    {
-        tell(&line);
-    }
+    lines.extend(chart.verdict());
+    lines.extend(chart.about.iter().cloned());
+    lines
 }

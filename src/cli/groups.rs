@@ -2,7 +2,7 @@
 
 use crate::format::error::did_you_mean;
 use crate::scene::builtin;
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -70,6 +70,10 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
+/// Options of earlier revisions, and what replaces them.
+const REMOVED: [(&str, &str); 2] = [("--aggregate", ROWS), ("--failing", ROWS)];
+const ROWS: &str = "no longer exists; --shard K/N --csv FILE writes all rows of a shard, and DuckDB or Polars sums them up (`help cluster`)";
+
 /// What to say where the first word of a command line is no subcommand, and what follows makes sense for no scene.
 pub fn mistyped(error: &clap::Error, first: Option<OsString>) -> Option<String> {
     let kinds = [
@@ -79,6 +83,13 @@ pub fn mistyped(error: &clap::Error, first: Option<OsString>) -> Option<String> 
     ];
     if !kinds.contains(&error.kind()) {
         return None;
+    }
+    if let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg)
+        && let Some((_, why)) = REMOVED
+            .iter()
+            .find(|(removed, _)| option.starts_with(removed))
+    {
+        return Some(format!("{option} {why}"));
     }
     unknown(first?.to_str()?)
 }

@@ -2,24 +2,21 @@
 
 use super::base::{Error, Exit, NoValue, SetArgs, say, tell};
 use super::interrupt::Interrupt;
-use super::many::{self, Wanted};
-use super::outputs::{OutputArgs, Outputs, aligned};
-use super::parts::{PartArgs, failed};
+use super::outputs::aligned;
+use super::sweep::{Report, SweepArgs};
 use crate::model::{BoundUpdate, Strategy};
 use crate::outside::files;
 use crate::scene::builtin;
 use crate::strategy::method;
 use crate::study::map::{self, Cell, Map};
-use crate::study::merge::Keeping;
-use crate::study::plan::product;
+use crate::study::plan::{MOST_CASES, product};
 use crate::study::random::{self, NODES, Population};
-use crate::study::sums::MANY;
 use crate::study::survey::{self, Survey};
 use crate::study::trial::{Judged, TOLERANCE, Variant};
-use crate::study::{Plan, Study, Vary, Watch, verdict_figure};
-use std::num::NonZeroU64;
+use crate::study::{Plan, Study, Vary, verdict_figure};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -62,19 +59,8 @@ pub struct Args {
     /// Ends that differ from the reference by more than this part of the largest value are wrong branches
     #[arg(long, value_name = "PART", default_value_t = map::TOLERANCE)]
     tolerance: f64,
-    /// Keeps each result in this file as it comes, and takes up what is there already, also of other maps
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["log", "merge"])]
-    resume: Option<PathBuf>,
     #[command(flatten)]
-    part: PartArgs,
-    /// Keeps sums of so many cells together, and not each cell's result [default: 10000 above 10^7 cells]
-    #[arg(long, value_name = "CELLS", conflicts_with_all = ["resume", "totals"])]
-    aggregate: Option<NonZeroU64>,
-    /// With sums: writes a row for each run that failed, with the number of its cell
-    #[arg(long, value_name = "FILE|-")]
-    failing: Option<String>,
-    #[command(flatten)]
-    out: OutputArgs,
+    sweep: SweepArgs,
 }
 
 fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
@@ -94,12 +80,14 @@ fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
 }
 
 fn count(text: &str) -> Result<usize, NoValue> {
-    const MOST: usize = 10_000_000_000;
-    let count = text
-        .parse::<usize>()
-        .ok()
-        .filter(|n| (1..=MOST).contains(n));
-    count.ok_or_else(|| NoValue::new(format!("it must be a whole number from 1 to {MOST}")))
+    let count = text.parse::<u64>().ok();
+    let count = count.filter(|n| (1..=MOST_CASES).contains(n));
+    let wrong = || {
+        NoValue::new(format!(
+            "it must be a whole number from 1 to {MOST_CASES}; of more, run several seeds"
+        ))
+    };
+    count.map(|n| n as usize).ok_or_else(wrong)
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -114,10 +102,25 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(k) = args.write {
         return write(args, &population, k);
     }
-    if args.aggregate.is_some() || population.count as u64 > MANY {
-        return many::random_problems(&sums(args)?, &population, &variants(args)?);
-    }
-    random_problems(args, population)
+    let variants = variants(args)?;
+    let interrupt = Interrupt::listen();
+    let sweep = survey::sweep(&population, &variants);
+    args.sweep.run(&sweep, &interrupt, |judged| {
+        let survey = Survey {
+            population: population.clone(),
+            variants: variants.clone(),
+            judged,
+        };
+        Ok(Report {
+            table: match args.totals {
+                true => survey.totals(),
+                false => survey.csv(),
+            },
+            lines: survey_lines(&survey),
+            warnings: Vec::new(),
+            picture: Box::new(move || verdict_figure::bars(&survey)),
+        })
+    })
 }
 
 /// Writes one random problem.
@@ -131,7 +134,7 @@ fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> 
     let text = random::text(&population.draw(k).problem, &head);
     match &args.output {
         Some(path) if path.as_os_str() != "-" => {
-            files::write(path, &text, args.out.force)?;
+            files::write(path, &text, args.sweep.out.force)?;
             tell(&format!("wrote {}", path.display()));
         }
         _ => say(&text)?,
@@ -142,65 +145,17 @@ fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> 
 /// Runs scenes over settings.
 fn scenes(args: &Args) -> Result<Exit, Error> {
     let study = study(args)?;
-    let cells = study.vary.iter().map(|vary| vary.values.len() as u64);
-    let cells = cells.fold(study.scenes.len() as u64, u64::saturating_mul);
-    if args.aggregate.is_some() || cells > MANY {
-        return many::scenes(&sums(args)?, study, args.tolerance);
-    }
     let interrupt = Interrupt::listen();
-    let plan = Plan::new(study)?;
-    let outputs = Outputs::open(&args.out)?;
-    let progress = args.out.progress(plan.increments(), "increments");
-    let watch = Watch {
-        stop: &|| interrupt.came(),
-        done: &|increments| progress.inc(increments),
-    };
-    let kept = map::open(&plan, &keeping(args)?).map_err(|e| failed(e.into()))?;
-    if let Some(incomplete) = args.part.whole(&kept) {
-        return Ok(incomplete);
-    }
-    let map = map::run_kept(plan, args.tolerance, &kept, args.out.jobs(), &watch);
-    progress.finish_and_clear();
-    let map = map.map_err(failed)?;
-    if args.part.is_part() {
-        let done = |k: usize| map.cells[k].is_some();
-        return Ok(args.part.end(&kept, done, args.out.quiet));
-    }
-    outputs.write(
-        &map.csv(),
-        || verdict_figure::grid(&map)?.svg(),
-        || verdict_figure::grid(&map)?.png(),
-    )?;
-    if !args.out.quiet {
-        tell_map(&map);
-    }
-    let (all, done) = (map.cells.len(), map.cells.iter().flatten().count());
-    if done < all {
-        tell(&format!("interrupted; {done} of {all} runs were done"));
-    }
-    Ok(match done == all {
-        true => Exit::Good,
-        false => Exit::Interrupted,
+    let plan = Arc::new(Plan::new(study)?);
+    args.sweep.run(&map::sweep(&plan), &interrupt, |ended| {
+        let map = Map::judged(plan.clone(), args.tolerance, ended);
+        Ok(Report {
+            table: map.csv(),
+            lines: map_lines(&map),
+            warnings: Vec::new(),
+            picture: Box::new(move || verdict_figure::grid(&map)),
+        })
     })
-}
-
-/// What is wanted where only sums are kept.
-fn sums(args: &Args) -> Result<Wanted<'_>, Error> {
-    Ok(Wanted {
-        block: args.aggregate,
-        failing: args.failing.as_deref(),
-        keeping: keeping(args)?,
-        part: &args.part,
-        out: &args.out,
-    })
-}
-
-/// Where results are kept.
-fn keeping(args: &Args) -> Result<Keeping, Error> {
-    match &args.resume {
-        Some(path) => Ok(Keeping::Beside(path.clone())),
-        None => args.part.keeping(&args.out),
-    }
 }
 
 /// What is to be run.
@@ -245,11 +200,11 @@ fn strategies(args: &Args) -> Result<Vec<Vary>, Error> {
 }
 
 /// The map as grids of glyphs.
-fn tell_map(map: &Map) {
-    tell(&map.title);
+fn map_lines(map: &Map) -> Vec<String> {
+    let mut lines = vec![map.title.clone()];
     for panel in map.panels() {
         if !panel.name.is_empty() {
-            tell(&format!("\n{}", panel.name));
+            lines.push(format!("\n{}", panel.name));
         }
         let mut table = vec![vec![format!("{} \\ {}", panel.y, panel.x)]];
         table[0].extend(panel.columns.iter().cloned());
@@ -261,62 +216,15 @@ fn tell_map(map: &Map) {
             row.resize(panel.columns.len() + 1, String::new());
             table.push(row);
         }
-        for line in aligned(&table, panel.columns.len() + 1) {
-            tell(&line);
-        }
+        lines.extend(aligned(&table, panel.columns.len() + 1));
     }
-    tell(
+    lines.push(
         "\n✓C converged   ≠W wrong branch   ↺ cycle and its period   ↗D diverged   ∅N said to have no answer\n\
-         ✗ failed: m minor limit, M major limit, s singular, j jammed, n found nothing and could not try all",
+         ✗ failed: m minor limit, M major limit, s singular, j jammed, n found nothing and could not try all"
+            .to_owned(),
     );
-    for line in map.origin() {
-        tell(&line);
-    }
-}
-
-/// Tries all random problems with all variants.
-fn random_problems(args: &Args, population: Population) -> Result<Exit, Error> {
-    let interrupt = Interrupt::listen();
-    let outputs = Outputs::open(&args.out)?;
-    let progress = args.out.progress(population.count as u64, "problems");
-    let watch = Watch {
-        stop: &|| interrupt.came(),
-        done: &|problems| progress.inc(problems),
-    };
-    let variants = variants(args)?;
-    let kept = survey::open(&population, &variants, &keeping(args)?);
-    let kept = kept.map_err(|e| failed(e.into()))?;
-    if let Some(incomplete) = args.part.whole(&kept) {
-        return Ok(incomplete);
-    }
-    let survey = Survey::run_kept(population, variants, &kept, args.out.jobs(), &watch);
-    progress.finish_and_clear();
-    let survey = survey.map_err(failed)?;
-    if args.part.is_part() {
-        let done = |k: usize| survey.judged[k].is_some();
-        return Ok(args.part.end(&kept, done, args.out.quiet));
-    }
-    outputs.write(
-        &match args.totals {
-            true => survey.totals(),
-            false => survey.csv(),
-        },
-        || verdict_figure::bars(&survey)?.svg(),
-        || verdict_figure::bars(&survey)?.png(),
-    )?;
-    if !args.out.quiet {
-        tell_survey(&survey);
-    }
-    let done = survey.done().count();
-    let left = survey.population.count - done;
-    if left > 0 {
-        let all = survey.population.count;
-        tell(&format!("interrupted; {done} of {all} problems were done"));
-    }
-    Ok(match left {
-        0 => Exit::Good,
-        _ => Exit::Interrupted,
-    })
+    lines.extend(map.origin());
+    lines
 }
 
 /// What random problems are tried with: each combination of what is varied, named by its values; where nothing is, all
@@ -376,12 +284,10 @@ fn lags(strategy: Strategy) -> bool {
         && method(strategy).bound(BoundUpdate::Lagged) == BoundUpdate::Lagged
 }
 
-fn tell_survey(survey: &Survey) {
+fn survey_lines(survey: &Survey) -> Vec<String> {
     let all: Vec<&Judged> = survey.done().map(|(_, judged)| judged).collect();
     let count = |is: &dyn Fn(&Judged) -> bool| all.iter().filter(|judged| is(judged)).count();
-    for line in survey.origin() {
-        tell(&line);
-    }
+    let mut lines = survey.origin();
     let unseen = count(&|j| j.answers == 0 && j.solvable());
     let besides = match unseen {
         0 => String::new(),
@@ -389,7 +295,7 @@ fn tell_survey(survey: &Survey) {
             " (on {n} of these a strategy found one: of a continuum, which a census does not see)"
         ),
     };
-    tell(&format!(
+    lines.push(format!(
         "answers by census: one in {}, several in {}, none in {}{besides}",
         count(&|j| j.answers == 1),
         count(&|j| j.answers > 1),
@@ -422,13 +328,12 @@ fn tell_survey(survey: &Survey) {
         row.push((tally.unsolvable - tally.admitted - tally.invented).to_string());
         table.push(row);
     }
-    for line in aligned(&table, 1) {
-        tell(&line);
-    }
+    lines.extend(aligned(&table, 1));
     let tally = survey.tally(0, |_| true);
-    tell(&format!(
+    lines.push(format!(
         "left: per 1,000 of the {} problems that have an answer (none?: said to have none; wrong: ended in no Coulomb \
          state, off by more than {TOLERANCE:e}); right of the bar: numbers of the {} that have none",
         tally.solvable, tally.unsolvable
     ));
+    lines
 }

@@ -28,10 +28,8 @@ mod interrupt;
 mod lesson;
 mod list;
 mod man;
-mod many;
 mod map;
 mod outputs;
-mod parts;
 mod past;
 mod place;
 mod progress;
@@ -46,6 +44,7 @@ mod sink;
 mod solver;
 mod story;
 mod study;
+mod sweep;
 mod table;
 
 use crate::study::origin;

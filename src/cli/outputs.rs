@@ -6,6 +6,7 @@ use crate::outside::files::{Output, finish_all};
 use crate::outside::shown;
 use crate::study::drawn::PlotError;
 use crate::study::pen;
+use crate::study::sheet::Sheet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::num::NonZeroUsize;
@@ -115,15 +116,18 @@ impl Outputs {
     pub fn write(
         self,
         table: &str,
-        svg: impl FnOnce() -> Result<String, PlotError>,
-        png: impl FnOnce() -> Result<Vec<u8>, PlotError>,
+        picture: impl FnOnce() -> Result<Sheet, PlotError>,
     ) -> Result<(), Error> {
         let mut files = Vec::new();
-        if let Some(output) = self.svg {
-            files.push(written(output, svg().map_err(undrawn)?.as_bytes())?);
-        }
-        if let Some(output) = self.png {
-            files.push(written(output, &png().map_err(undrawn)?)?);
+        if self.svg.is_some() || self.png.is_some() {
+            let sheet = picture().map_err(undrawn)?;
+            if let Some(output) = self.svg {
+                let svg = sheet.svg().map_err(undrawn)?;
+                files.push(written(output, svg.as_bytes())?);
+            }
+            if let Some(output) = self.png {
+                files.push(written(output, &sheet.png().map_err(undrawn)?)?);
+            }
         }
         if let Some(mut sink) = self.csv {
             sink.send(table)?;
@@ -136,8 +140,8 @@ impl Outputs {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write_table(&mut self, table: &str) -> Result<(), Error> {
-        if let Some(mut sink) = self.csv.take() {
+    pub fn write_table(self, table: &str) -> Result<(), Error> {
+        if let Some(mut sink) = self.csv {
             sink.send(table)?;
             sink.finish()?;
         }

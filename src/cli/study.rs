@@ -1,14 +1,14 @@
 //! `stickslip study`: a scene with many settings, as a table and as a figure.
 
-use super::base::{Error, Exit, SetArgs, tell};
+use super::base::{Error, Exit, SetArgs};
 use super::benchmarks;
 use super::interrupt::Interrupt;
-use super::outputs::{OutputArgs, Outputs, aligned};
-use super::parts::{PartArgs, failed};
+use super::outputs::aligned;
+use super::sweep::{Report, SweepArgs};
 use crate::explain::number::six;
 use crate::study::benchmarks::Benchmarks;
 use crate::study::figure;
-use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, Watch, csv, plot, run};
+use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, csv, run};
 
 /// Monitors shown in the table of runs.
 const MONITORS: usize = 2;
@@ -43,50 +43,30 @@ pub struct Args {
     #[arg(long, value_name = "QUANTITY")]
     y: Option<String>,
     #[command(flatten)]
-    part: PartArgs,
-    #[command(flatten)]
-    out: OutputArgs,
+    sweep: SweepArgs,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(list) = Benchmarks::open(&args.study)? {
         refuse_changes(args)?;
-        return benchmarks::main(&list, &args.out);
+        return benchmarks::main(&list, &args.sweep.out);
     }
     let interrupt = Interrupt::listen();
     let plan = plan(args)?;
-    // Before the runs, so that nobody waits for a result that then has no place to go.
-    let outputs = Outputs::open(&args.out)?;
-    let progress = args.out.progress(plan.increments(), "increments");
-    let watch = Watch {
-        stop: &|| interrupt.came(),
-        done: &|increments| progress.inc(increments),
-    };
-    let keeping = args.part.keeping(&args.out)?;
-    let kept = run::open(&plan, &keeping).map_err(|e| failed(e.into()))?;
-    if let Some(incomplete) = args.part.whole(&kept) {
-        return Ok(incomplete);
-    }
-    let runs = run::run_kept(&plan, &kept, args.out.jobs(), &watch);
-    progress.finish_and_clear();
-    let runs = runs.map_err(failed)?;
-    if args.part.is_part() {
-        let done = |k: usize| runs[k].as_ref().is_some_and(Run::is_over);
-        return Ok(args.part.end(&kept, done, args.out.quiet));
-    }
-    let runs: Vec<Run> = runs.into_iter().flatten().collect();
-    let chart = figure::chart(&plan, &runs);
-    outputs.write(
-        &csv::table(&plan, &runs),
-        || plot::svg(&chart),
-        || plot::png(&chart),
-    )?;
-    if !args.out.quiet {
-        tell_table(&plan, &runs);
-    }
-    Ok(match tell_end(&plan, &runs) {
-        true => Exit::Good,
-        false => Exit::Interrupted,
+    args.sweep.run(&run::sweep(&plan), &interrupt, |runs| {
+        let pairs = plan.cases.iter().cloned().zip(runs);
+        let (cases, runs): (_, Vec<Run>) = pairs.filter_map(|(c, run)| Some((c, run?))).unzip();
+        let plan = Plan {
+            cases,
+            ..plan.clone()
+        };
+        let chart = figure::chart(&plan, &runs);
+        Ok(Report {
+            table: csv::table(&plan, &runs),
+            picture: Box::new(move || chart.sheet()),
+            lines: lines(&plan, &runs),
+            warnings: warnings(&plan, &runs),
+        })
     })
 }
 
@@ -97,7 +77,7 @@ fn refuse_changes(args: &Args) -> Result<(), Error> {
         ("--set", !args.set.set.is_empty()),
         ("--x", args.x.is_some()),
         ("--y", args.y.is_some()),
-        ("--log", args.part.any()),
+        ("--log", args.sweep.is_kept()),
     ];
     match given.iter().find(|(_, given)| *given) {
         None => Ok(()),
@@ -127,11 +107,11 @@ fn plan(args: &Args) -> Result<Plan, Error> {
     Ok(Plan::new(study)?)
 }
 
-/// Tells what each run came to.
-fn tell_table(plan: &Plan, runs: &[Run]) {
-    tell(&plan.title);
+/// What each run came to.
+fn lines(plan: &Plan, runs: &[Run]) -> Vec<String> {
+    let mut lines = vec![plan.title.clone()];
     if !plan.study.about.is_empty() {
-        tell(&plan.study.about);
+        lines.push(plan.study.about.clone());
     }
     let monitors = || plan.monitors.iter().take(MONITORS);
     let mut header = figure::short_names(&plan.columns);
@@ -154,9 +134,8 @@ fn tell_table(plan: &Plan, runs: &[Run]) {
         row.push(end(run));
         table.push(row);
     }
-    for line in aligned(&table, plan.columns.len()) {
-        tell(&line);
-    }
+    lines.extend(aligned(&table, plan.columns.len()));
+    lines
 }
 
 fn end(run: &Run) -> String {
@@ -174,32 +153,19 @@ fn end(run: &Run) -> String {
     }
 }
 
-/// Tells what is not as one would wish; true if no run was stopped.
-fn tell_end(plan: &Plan, runs: &[Run]) -> bool {
-    let count = |is: fn(&Run) -> bool| runs.iter().filter(|run| is(run)).count();
+/// How many runs did not end well.
+fn warnings(plan: &Plan, runs: &[Run]) -> Vec<String> {
     let (name, all) = (&plan.study.name, runs.len());
-    let failed = count(|run| run.failed().is_some());
-    if failed > 0 {
-        tell(&format!("{name}: {failed} of {all} runs failed"));
-    }
-    let doubtful = count(|run| run.unsettled() > 0);
-    if doubtful > 0 {
-        tell(&format!(
-            "{name}: {doubtful} of {all} runs have increments that were accepted unsettled"
-        ));
-    }
-    let jumped = count(|run| run.jumped() > 0);
-    if jumped > 0 {
-        tell(&format!(
-            "{name}: {jumped} of {all} runs jumped to another branch"
-        ));
-    }
-    let left = count(|run| matches!(run.end, CaseEnd::Interrupted | CaseEnd::NotRun));
-    if left > 0 {
-        tell(&format!(
-            "{name}: interrupted; {} of {all} runs were done",
-            all - left
-        ));
-    }
-    left == 0
+    let kinds: [(fn(&Run) -> bool, &str); 3] = [
+        (|run| run.failed().is_some(), "failed"),
+        (
+            |run| run.unsettled() > 0,
+            "have increments that were accepted unsettled",
+        ),
+        (|run| run.jumped() > 0, "jumped to another branch"),
+    ];
+    let counted = kinds.map(|(is, words)| (runs.iter().filter(|run| is(run)).count(), words));
+    let some = counted.iter().filter(|(count, _)| *count > 0);
+    some.map(|(count, words)| format!("{name}: {count} of {all} runs {words}"))
+        .collect()
 }

@@ -20,14 +20,14 @@
 //! has the errors of both in it; `drift` how near our own last value, so that a change is seen that the source would forgive.
 //! What is 0 by the source is measured by `scale`.
 
+use super::one::{Spare, Watch, one};
 use super::read::Word;
 use super::result::{CaseEnd, Row, Run};
-use super::run::{RunError, Spare, Watch, one, pool};
+use super::sweep::{RunError, side_by_side};
 use crate::format::error::{SceneError, did_you_mean};
 use crate::format::read::{text as file_text, value as from_ron};
 use crate::outside::carried::{Carried, carried};
 use crate::scene::{Scene, increments};
-use rayon::prelude::*;
 use serde::Deserialize;
 use std::fmt;
 use std::fmt::Write;
@@ -201,15 +201,11 @@ impl Benchmarks {
             of.push(place);
         }
         let spare = Spare::default();
-        let runs: Vec<Run> = pool(jobs, posed.len())?.install(|| {
-            let all = posed.par_iter().with_max_len(1);
-            all.map(|(_, scene)| {
-                let model = &scene.model;
-                let count = increments(&model.path, |leg| model.on_leg(leg)) as u64;
-                one(count, Arc::new(model.clone()), &spare, watch)
-            })
-            .collect()
-        });
+        let runs: Vec<Run> = side_by_side(jobs, posed.len(), |k| {
+            let model = &posed[k].1.model;
+            let count = increments(&model.path, |leg| model.on_leg(leg)) as u64;
+            Ok(one(count, Arc::new(model.clone()), &spare, watch))
+        })?;
         let pairs = self.list.iter().zip(of);
         Ok(pairs.map(|(b, place)| b.compare(&runs[place])).collect())
     }

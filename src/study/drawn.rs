@@ -1,52 +1,6 @@
-//! What is to be drawn, as plain data: charts of curves, and shapes on a sheet; and why it may not be.
+//! Shapes on a sheet as plain data, and why they may not be drawn.
 
 use crate::outside::shown;
-
-/// Curves over two axes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Chart {
-    /// What stands above it.
-    pub title: String,
-    /// What runs to the right.
-    pub x: Axis,
-    /// What runs upwards.
-    pub y: Axis,
-    /// Its curves, in the order of the legend.
-    pub curves: Vec<Curve>,
-    /// Lines below the chart that say what it was made from; long ones are broken.
-    pub footer: Vec<String>,
-}
-
-/// What a chart runs along.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Axis {
-    /// What it is called.
-    pub name: String,
-    /// It counts something: it starts at zero and has whole numbers only.
-    pub counts: bool,
-}
-
-/// One line with markers, and a line of the legend.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
-    /// What the legend calls it.
-    pub label: String,
-    /// Finite numbers.
-    pub points: Vec<(f64, f64)>,
-    /// What its last point is.
-    pub end: CurveEnd,
-}
-
-/// What a curve's last point is.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CurveEnd {
-    /// Where it should end.
-    Whole,
-    /// Where it failed, and why: a cross, and a line of the legend.
-    Failed(String),
-    /// Where it was cut off, and why: a line of the legend.
-    Stopped(String),
-}
 
 /// Red, green and blue.
 pub type Colour = (u8, u8, u8);
@@ -96,6 +50,18 @@ pub enum Shape {
         /// Its colour.
         colour: Colour,
     },
+}
+
+impl Shape {
+    /// Whether all of its points have a place.
+    pub fn is_finite(&self) -> bool {
+        let points = match self {
+            Shape::Text { at, .. } => std::slice::from_ref(at),
+            Shape::Line { points, .. } => points,
+            Shape::Fill { corners, .. } => corners,
+        };
+        points.iter().all(|(x, y)| x.is_finite() && y.is_finite())
+    }
 }
 
 /// Why something could not be drawn.

@@ -1,6 +1,6 @@
 //! The results of a study as curves: the form of the paper's figures.
 
-use super::drawn::{Axis, Chart, Curve, CurveEnd};
+use super::curves::{Axis, Chart, Curve, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};

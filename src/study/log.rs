@@ -94,6 +94,18 @@ pub enum LogError {
     },
 }
 
+impl LogError {
+    /// A line from its beginning.
+    pub fn broken(path: &Path, line: usize, message: impl Into<String>) -> LogError {
+        LogError::Broken {
+            path: path.to_owned(),
+            line,
+            column: 1,
+            message: message.into(),
+        }
+    }
+}
+
 /// Two results of one cell that are not the same.
 #[derive(Debug, thiserror::Error)]
 #[error(
@@ -120,13 +132,36 @@ const INPUT: &str = "input";
 /// Error for a result that no run can have.
 const UNSOUND: &str = "the result has a number that is not finite, which no run has; without the line, it is computed again";
 
-/// A kind of result.
-#[derive(Debug)]
-pub struct ResultKind<T> {
+/// A result that a file keeps.
+pub trait Outcome: Serialize + DeserializeOwned + Clone + Send + Sync {
     /// Maximum size in bytes of a result in a file.
-    pub most: usize,
+    const MAX_BYTES: usize;
+
     /// Whether a run can have this result: its numbers are finite wherever those of a run are.
-    pub is_sound: fn(&T) -> bool,
+    fn is_sound(&self) -> bool;
+
+    /// Whether the run ended by itself: only such results are kept.
+    fn is_over(&self) -> bool {
+        true
+    }
+
+    /// Number of runs in the result; a file's result with another number than its cell has is refused.
+    fn runs(&self) -> usize {
+        1
+    }
+
+    /// Combines two results of one cell; `None` if they contradict each other.
+    fn join(&self, other: &Self) -> Option<Self> {
+        same(self, other).then(|| self.clone())
+    }
+}
+
+/// Whether two results are the same to the last bit. Compares their text, because NaN is not equal to itself.
+pub fn same<T: Serialize>(one: &T, other: &T) -> bool {
+    #[cfg(mutants)]
+    let other = crate::mutants::pick("merge-keeps-the-first-result", other, one);
+    let text = |value: &T| ron::to_string(value).ok();
+    text(one) == text(other)
 }
 
 /// Where results are kept.
@@ -207,12 +242,7 @@ impl Lines<'_> {
             return Ok(None);
         }
         let mut bytes = self.bytes(self.most)?;
-        let broken = |message: &str| LogError::Broken {
-            path: self.path.to_owned(),
-            line: self.number + 1,
-            column: 1,
-            message: message.to_owned(),
-        };
+        let broken = |message: &str| LogError::broken(self.path, self.number + 1, message);
         let length = bytes.len();
         if bytes.pop_if(|last| *last == b'\n').is_none() {
             return match length < self.most {
@@ -268,7 +298,7 @@ enum Entry<T> {
 }
 
 /// A line; the column where that is no such line, and why.
-fn entry<T: DeserializeOwned>(line: &str) -> Result<Entry<T>, (usize, String)> {
+fn entry<T: Outcome>(line: &str) -> Result<Entry<T>, (usize, String)> {
     let (key, value) = line
         .split_once('\t')
         .ok_or((1, "it has no key".to_owned()))?;
@@ -295,11 +325,10 @@ fn head() -> String {
 
 /// All that a file has, and the bytes of its whole lines; nothing where it has no first line yet. A file that says that it is of
 /// something else than `ours` is refused before its results are read.
-fn content<T: DeserializeOwned>(
+fn content<T: Outcome>(
     file: &File,
     path: &Path,
-    kind: &ResultKind<T>,
-    ours: Option<&Input>,
+    ours: &Input,
 ) -> Result<(Content<T>, u64), LogError> {
     let failed = |source| LogError::File {
         path: path.to_owned(),
@@ -320,7 +349,7 @@ fn content<T: DeserializeOwned>(
     let mut lines = Lines {
         from: BufReader::new(file),
         path,
-        most: kind.most,
+        most: T::MAX_BYTES,
         number: 0,
         whole: 0,
         are_sealed: false,
@@ -331,7 +360,7 @@ fn content<T: DeserializeOwned>(
     };
     lines.head()?;
     while let Some(line) = lines.next()? {
-        let read = entry(&line).map_err(|(column, message)| LogError::Broken {
+        let read = entry::<T>(&line).map_err(|(column, message)| LogError::Broken {
             path: path.to_owned(),
             line: lines.number,
             column,
@@ -339,19 +368,14 @@ fn content<T: DeserializeOwned>(
         })?;
         match read {
             Entry::Input(input) => {
-                if let Some(why) = ours.and_then(|ours| ours.difference(&input)) {
+                if let Some(why) = ours.difference(&input) {
                     let path = path.to_owned();
                     return Err(LogError::Other { path, why });
                 }
                 content.inputs.push(input);
             }
-            Entry::Result(_, value) if !(kind.is_sound)(&value) => {
-                return Err(LogError::Broken {
-                    path: path.to_owned(),
-                    line: lines.number,
-                    column: 1,
-                    message: UNSOUND.to_owned(),
-                });
+            Entry::Result(_, value) if !value.is_sound() => {
+                return Err(LogError::broken(path, lines.number, UNSOUND));
             }
             Entry::Result(key, value) => {
                 let line = lines.number;
@@ -374,13 +398,9 @@ fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogEr
 ///
 /// # Errors
 /// If it cannot be read, or is of something else.
-pub fn read<T: DeserializeOwned>(
-    path: &Path,
-    kind: &ResultKind<T>,
-    ours: &Input,
-) -> Result<Content<T>, LogError> {
+pub fn read<T: Outcome>(path: &Path, ours: &Input) -> Result<Content<T>, LogError> {
     let file = opened(path, File::options().read(true))?;
-    Ok(content(&file, path, kind, Some(ours))?.0)
+    Ok(content(&file, path, ours)?.0)
 }
 
 impl Log {
@@ -388,11 +408,7 @@ impl Log {
     ///
     /// # Errors
     /// If it cannot be read or written, if it is something else, or if another run has it open.
-    pub fn open<T: DeserializeOwned>(
-        path: &Path,
-        kind: &ResultKind<T>,
-        ours: Option<&Input>,
-    ) -> Result<(Log, Content<T>), LogError> {
+    pub fn open<T: Outcome>(path: &Path, ours: &Input) -> Result<(Log, Content<T>), LogError> {
         let failed = |source| LogError::File {
             path: path.to_owned(),
             source,
@@ -405,7 +421,7 @@ impl Log {
         {
             return Err(LogError::Busy(path.to_owned()));
         }
-        let (found, whole) = content(&file, path, kind, ours)?;
+        let (found, whole) = content(&file, path, ours)?;
         file.set_len(whole).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
         if whole == 0 {
@@ -418,7 +434,7 @@ impl Log {
         Ok((log, found))
     }
 
-    /// The file.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -426,9 +442,12 @@ impl Log {
     /// Keeps a result, in one write.
     ///
     /// # Errors
-    /// If it cannot be written.
-    pub fn keep<T: Serialize>(&self, key: Key, value: &T) -> Result<(), LogError> {
-        self.write(&key.to_string(), value)
+    /// If it cannot be written, or if a file with it could not be read again.
+    pub fn keep<T: Outcome>(&self, key: Key, value: &T) -> Result<(), LogError> {
+        match value.is_sound() {
+            true => self.write(&key.to_string(), value),
+            false => Err(LogError::Unsound(self.path.clone())),
+        }
     }
 
     /// Says what the results are of.
@@ -455,14 +474,21 @@ impl Log {
 mod tests {
     use super::*;
 
-    const KIND: ResultKind<Vec<f64>> = ResultKind {
-        most: 1 << 10,
-        is_sound: |values| values.iter().all(|value| !value.is_nan()),
-    };
+    impl Outcome for Vec<f64> {
+        const MAX_BYTES: usize = 1 << 10;
+
+        fn is_sound(&self) -> bool {
+            self.iter().all(|value| !value.is_nan())
+        }
+    }
+
+    fn open(path: &Path) -> Result<(Log, Content<Vec<f64>>), LogError> {
+        Log::open(path, &Input::new("test", Vec::new()))
+    }
 
     /// The error in a file of results, and its line.
     fn refused(path: &Path) -> (usize, String) {
-        match Log::open(path, &KIND, None) {
+        match open(path) {
             Err(LogError::Broken { line, message, .. }) => (line, message),
             other => panic!("{other:?}"),
         }
@@ -472,7 +498,7 @@ mod tests {
     fn a_changed_digit_refuses_the_file_and_names_its_line() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
-        let (log, _) = Log::open(&path, &KIND, None).unwrap();
+        let (log, _) = open(&path).unwrap();
         for key in ["a", "b", "c"] {
             log.keep(Key::of([key]), &vec![0.125, 7.0]).unwrap();
         }
@@ -490,7 +516,7 @@ mod tests {
         // Without this line, the other results remain.
         let left: Vec<&str> = rest.lines().skip(1).collect();
         std::fs::write(&path, format!("{head}\n{}\n", left.join("\n"))).unwrap();
-        let (_, found) = Log::open(&path, &KIND, None).unwrap();
+        let (_, found) = open(&path).unwrap();
         assert_eq!(found.results.len(), 2);
     }
 
@@ -501,11 +527,11 @@ mod tests {
         let of = |key: &str| format!("{}\t[1.0]", Key::of([key]));
         let old = format!("{}\n{}\n{}\n", head(), of("a"), of("b"));
         std::fs::write(&path, &old).unwrap();
-        let (log, found) = Log::open(&path, &KIND, None).unwrap();
+        let (log, found) = open(&path).unwrap();
         assert_eq!(found.results.len(), 2);
         log.keep(Key::of(["c"]), &vec![2.0]).unwrap();
         drop(log);
-        let (_, found) = Log::open(&path, &KIND, None).unwrap();
+        let (_, found) = open(&path).unwrap();
         assert_eq!(found.results.len(), 3);
         let text = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, text + &of("d") + "\n").unwrap();
@@ -527,24 +553,21 @@ mod tests {
     fn results_are_there_again_and_a_cut_line_is_not() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
-        let (log, found) = Log::open(&path, &KIND, None).unwrap();
+        let (log, found) = open(&path).unwrap();
         assert!(found.results.is_empty());
         log.keep(Key::of(["a"]), &vec![0.1, f64::INFINITY]).unwrap();
         log.keep(Key::of(["b"]), &vec![1e-300]).unwrap();
-        assert!(matches!(
-            Log::open(&path, &KIND, None),
-            Err(LogError::Busy(_))
-        ));
+        assert!(matches!(open(&path), Err(LogError::Busy(_))));
         drop(log);
         let whole = std::fs::read(&path).unwrap();
         for cut in 0..whole.len() {
             std::fs::write(&path, &whole[..cut]).unwrap();
-            let (log, found) = Log::open(&path, &KIND, None).unwrap();
+            let (log, found) = open(&path).unwrap();
             let lines = whole[..cut].iter().filter(|&&b| b == b'\n').count();
             assert_eq!(found.results.len(), lines.saturating_sub(1), "cut at {cut}");
             log.keep(Key::of(["c"]), &vec![2.0]).unwrap();
             drop(log);
-            let (_, found) = Log::open(&path, &KIND, None).unwrap();
+            let (_, found) = open(&path).unwrap();
             let last = found.results.last().unwrap();
             assert_eq!((last.0, &last.1.value[..]), (Key::of(["c"]), &[2.0][..]));
         }
@@ -556,7 +579,7 @@ mod tests {
         let path = directory.path().join("a.csv");
         for text in ["a,b\n1,2\n", "a,b"] {
             std::fs::write(&path, text).unwrap();
-            let refused = Log::open(&path, &KIND, None);
+            let refused = open(&path);
             assert!(matches!(refused, Err(LogError::Foreign { .. })), "{text}");
             assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
         }

@@ -7,22 +7,19 @@
 //! that went to the end counts as converged, and the table says that it was not compared.
 
 use super::figure::{label, name, short_names};
-use super::log::{LogError, ResultKind};
-use super::merge::{Cells, Keeping, Kept, Reading, same};
+use super::log::Outcome;
 use super::monitor_kind::{MonitorKind, kind};
+use super::one::{Spare, Watch, one};
 use super::origin;
-use super::plan::{Case, Plan};
+use super::plan::{Plan, poses};
 use super::result::{CaseEnd, Run};
-use super::run::{RunError, Spare, Watch, one, pool};
+use super::sweep::Sweep;
 use super::sweep_input::Input;
 use super::verdict::RunVerdict;
 use crate::model::Model;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fmt::Write;
-use std::num::NonZeroUsize;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Ends of two runs that differ by more than this part of the largest value are on different branches, where nobody
@@ -81,7 +78,7 @@ pub struct Cell {
 #[derive(Debug, Clone)]
 pub struct Map {
     /// What was run.
-    pub plan: Plan,
+    pub plan: Arc<Plan>,
     /// What the map is called.
     pub title: String,
     /// Differences above it are wrong branches.
@@ -105,6 +102,16 @@ pub struct Panel {
     pub rows: Vec<String>,
     /// Numbers of cases, row by row.
     pub cells: Vec<Vec<usize>>,
+}
+
+impl Outcome for Ended {
+    const MAX_BYTES: usize = 1 << 20;
+
+    fn is_sound(&self) -> bool {
+        let failed = self.failed.is_none_or(|(_, _, load)| load.is_finite());
+        let mut monitors = self.monitors.iter();
+        failed && monitors.all(|seen| seen.end.is_finite() && seen.largest.is_finite())
+    }
 }
 
 impl Ended {
@@ -134,13 +141,6 @@ impl Ended {
             jumped: run.jumped() as u64,
             monitors: (0..run.monitors.len()).map(monitor).collect(),
         })
-    }
-
-    /// Whether its numbers are finite, as in every real run.
-    fn is_sound(&self) -> bool {
-        let failed = self.failed.is_none_or(|(_, _, load)| load.is_finite());
-        let mut monitors = self.monitors.iter();
-        failed && monitors.all(|seen| seen.end.is_finite() && seen.largest.is_finite())
     }
 
     /// Largest difference of a monitor's end to that of a reference, over the largest value of its kind in the
@@ -184,84 +184,29 @@ impl Cell {
     }
 }
 
-/// Most bytes of a result in a file.
-const MOST_LINE: usize = 1 << 20;
-
-/// What there is of the results of a plan's cases.
-///
-/// # Errors
-/// If a file will not do.
-pub fn open(plan: &Plan, keeping: &Keeping) -> Result<Kept<Ended>, LogError> {
-    let cells = Cells {
-        keys: plan.cases.iter().map(Case::key).collect(),
-        unit: "cells",
-        name: &|k| name(plan, k),
-    };
-    let reading = Reading {
-        kind: ResultKind {
-            most: MOST_LINE,
-            is_sound: Ended::is_sound,
-        },
-        join: same,
-    };
-    Kept::open(keeping, || Input::new("map", plan.input()), cells, &reading)
-}
-
-/// Runs the cases of a plan. With a file, what is kept there is not run again, and what is run is kept there.
-///
-/// # Errors
-/// If there are no threads to be had, or the file will not do. What fails in a run is its result.
-pub fn run(
-    plan: Plan,
-    tolerance: f64,
-    kept: Option<&Path>,
-    jobs: NonZeroUsize,
-    watch: &Watch,
-) -> Result<Map, RunError> {
-    let keeping = kept.map_or(Keeping::Nowhere, |path| Keeping::Beside(path.to_owned()));
-    let kept = open(&plan, &keeping)?;
-    run_kept(plan, tolerance, &kept, jobs, watch)
-}
-
-/// Runs those cases of a plan that are to be run here and whose results are not there.
-///
-/// # Errors
-/// As [`run`].
-pub fn run_kept(
-    plan: Plan,
-    tolerance: f64,
-    kept: &Kept<Ended>,
-    jobs: NonZeroUsize,
-    watch: &Watch,
-) -> Result<Map, RunError> {
-    let spare = Spare::default();
-    let ended = |case: &Case| -> Result<Option<Ended>, RunError> {
-        let key = case.key();
-        if let Some(found) = kept.get(key) {
-            (watch.done)(case.increments);
-            return Ok(Some(found.value.clone()));
-        }
-        if !kept.does(key) {
-            return Ok(None);
-        }
+/// The cases of a plan as cells of a sweep; those of one problem, which are compared with each other, fall to one shard.
+pub fn sweep(plan: &Plan) -> Sweep<'_, Ended> {
+    let compute = |k: usize, spare: &Spare, watch: &Watch| {
+        let case = &plan.cases[k];
         let model = Arc::new(case.model()?);
-        let ended = Ended::of(&one(case.increments, model.clone(), &spare, watch), &model);
-        if let Some(ended) = &ended {
-            kept.keep(key, ended)?;
-        }
-        Ok(ended)
+        let run = one(case.increments, model.clone(), spare, watch);
+        Ok(Ended::of(&run, &model))
     };
-    let pool = pool(jobs, plan.cases.len())?;
-    let all: Result<Vec<Option<Ended>>, RunError> = pool.install(|| {
-        // One by one: cases differ much in what they cost, and the first ones are to be done first.
-        plan.cases.par_iter().with_max_len(1).map(ended).collect()
-    });
-    Ok(Map::judged(plan, tolerance, all?))
+    Sweep {
+        input: Input::new("map", plan.input()),
+        cells: plan.cells(poses),
+        units: ["cells", "increments"],
+        is_timed: false,
+        runs: 1,
+        name: Box::new(|k| name(plan, k)),
+        compute: Box::new(compute),
+    }
 }
 
 impl Map {
     /// Compares ends.
-    pub fn judged(plan: Plan, tolerance: f64, ended: Vec<Option<Ended>>) -> Map {
+    pub fn judged(plan: impl Into<Arc<Plan>>, tolerance: f64, ended: Vec<Option<Ended>>) -> Map {
+        let plan = plan.into();
         let mut groups: HashMap<Vec<&str>, Vec<usize>> = HashMap::new();
         for (k, case) in plan.cases.iter().enumerate() {
             groups.entry(plan.posed(case)).or_default().push(k);

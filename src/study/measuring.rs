@@ -1,9 +1,10 @@
 //! A work-precision chart that is measured on a thread of its own, so that who wants it can go on.
 
 use super::chart_file::Chart;
+use super::chart_runs::{Planned, sweep};
 use super::precision::{self, Cost, Measure, Precision, PrecisionError};
-use super::{Plan, Vary, Watch};
-use crate::format::SceneError;
+use super::sweep::RunError;
+use super::{Vary, Watch};
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -13,9 +14,6 @@ use std::thread;
 /// Why there is no chart.
 #[derive(Debug, thiserror::Error)]
 pub enum NotMeasured {
-    /// A scene of the chart is unsound.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
     /// The chart could not be measured.
     #[error(transparent)]
     Failed(#[from] PrecisionError),
@@ -50,21 +48,29 @@ impl Measuring {
             result,
         };
         thread::spawn(move || {
-            let plan = || -> Result<_, SceneError> {
-                let mut chart = Chart::open(&name, &over)?;
-                chart.set.extend(set);
-                let plans = precision::plans(&chart)?;
-                Ok((chart, plans))
+            let watch = Watch {
+                stop: &|| stop.load(Ordering::Relaxed),
+                done: &|increments| {
+                    done.fetch_add(increments, Ordering::Relaxed);
+                },
             };
-            let measured = plan().map_err(NotMeasured::from);
-            let measured = measured.and_then(|(chart, plans)| {
-                let cases = plans.iter().flat_map(|plan| &plan.cases);
-                let increments = cases.map(|case| case.increments).sum();
+            let measure = Measure {
+                cost: Cost::default(),
+                target: None,
+                repeats: 1,
+            };
+            let planned = Chart::open(&name, &over).and_then(|mut chart| {
+                chart.set.extend(set);
+                Planned::new(chart)
+            });
+            let planned = planned.map_err(|e| PrecisionError::from(RunError::from(e)));
+            let measured = planned.and_then(|planned| {
+                let increments = sweep(std::slice::from_ref(&planned), 1).steps();
                 all.store(increments, Ordering::Relaxed);
-                measure(&chart, &plans, &stop, &done)
+                precision::run(&planned, measure, &watch)
             });
             // Nobody may want it any more.
-            let _ = told.send(measured);
+            let _ = told.send(measured.map_err(NotMeasured::from));
         });
         measuring
     }
@@ -88,26 +94,6 @@ impl Measuring {
             Err(TryRecvError::Disconnected) => Some(Err(NotMeasured::BrokeDown)),
         }
     }
-}
-
-fn measure(
-    chart: &Chart,
-    plans: &[Plan],
-    stop: &AtomicBool,
-    done: &AtomicU64,
-) -> Result<Precision, NotMeasured> {
-    let watch = Watch {
-        stop: &|| stop.load(Ordering::Relaxed),
-        done: &|increments| {
-            done.fetch_add(increments, Ordering::Relaxed);
-        },
-    };
-    let measure = Measure {
-        cost: Cost::default(),
-        target: None,
-        repeats: 1,
-    };
-    Ok(precision::run(chart, plans, measure, &watch)?)
 }
 
 impl Drop for Measuring {

@@ -2,10 +2,10 @@
 //!
 //! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
 //! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
-//! - [`run`](mod@run): the cases side by side, each on one thread; [`room`]: as many as the memory has room for;
+//! - [`run`](mod@run): the cases as a sweep; [`one`](mod@one): one run, on one thread; [`room`]: as many as the memory has room for;
 //!   [`result`]: what one of them came to;
 //!   [`monitor_kind`]: what its numbers are measured in.
-//! - [`csv`]: all results as one table; [`figure`]: as curves; [`drawn`]: curves and shapes as plain data; [`plot`] and
+//! - [`csv`]: all results as one table; [`figure`]: as [`curves`]; [`sheet`]: drawings as plain data, of [`drawn`] shapes;
 //!   [`pen`]: these as SVG and PNG, with the feature `plot`; [`placing`]: places for labels; [`log_axis`]: an axis in powers of ten.
 //!
 //! Values that are known from elsewhere: [`benchmarks`].
@@ -13,15 +13,13 @@
 //! Convergence maps:
 //!
 //! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, judged; [`survey`]: all of them.
-//! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures; [`sheet`]: pictures as plain data.
+//! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures.
 //! - [`verdict`]: what a run is worth; [`origin`]: where results come from.
 //!
-//! Results that outlive a kill, and sweeps on many machines:
+//! What all sweeps share:
 //!
+//! - [`sweep`]: cells that are computed side by side, stored, and put together.
 //! - [`log`]: a file of results; [`sweep_input`]: what these are of; [`shard`]: which cells a shard does.
-//! - [`merge`]: where results come from and go to: a file, one of many shards, or all of them together.
-//! - [`sums`]: sweeps of so many cells that only sums are kept; [`large_map`]: such a map of scenes;
-//!   [`sketch`]: quantiles in little room.
 //!
 //! Work-precision charts:
 //!
@@ -36,15 +34,15 @@ pub mod builtin;
 pub mod chart_file;
 pub mod chart_runs;
 pub mod csv;
+pub mod curves;
 pub mod drawn;
 pub mod figure;
-pub mod large_map;
 pub mod log;
 pub mod log_axis;
 pub mod map;
 pub mod measuring;
-pub mod merge;
 pub mod monitor_kind;
+pub mod one;
 pub mod origin;
 #[cfg(feature = "plot")]
 pub mod pen;
@@ -53,7 +51,6 @@ pub mod pen;
 pub mod pen;
 pub mod placing;
 pub mod plan;
-pub mod plot;
 pub mod precision;
 pub mod precision_figure;
 pub mod precision_table;
@@ -66,16 +63,16 @@ pub mod room;
 pub mod run;
 pub mod shard;
 pub mod sheet;
-pub mod sketch;
-pub mod sums;
 pub mod survey;
+pub mod sweep;
 pub mod sweep_input;
 pub mod trial;
 pub mod verdict;
 pub mod verdict_figure;
 
+pub use one::Watch;
 pub use plan::{Case, Plan};
 pub use read::{AxisQuantity, Study, Vary};
 pub use reason::Reason;
 pub use result::{CaseEnd, Row, Run};
-pub use run::{Watch, run};
+pub use run::run;

@@ -2,6 +2,7 @@
 
 use super::read::{AxisQuantity, Study, Vary};
 use super::shard::Key;
+use super::sweep::Cell;
 use super::sweep_input::digest;
 use crate::format::error::{SceneError, did_you_mean, some_of};
 use crate::format::paths::{self, Listed};
@@ -10,7 +11,7 @@ use crate::scene::base::{Base, Place};
 use crate::scene::{Scene, increments};
 use std::sync::Arc;
 
-/// More runs than this are not listed: only sums of them can be had.
+/// Most cells of a sweep.
 pub const MOST_CASES: u64 = 10_000_000;
 
 /// What is run.
@@ -86,9 +87,10 @@ impl Case {
         quick.map_or_else(|| Ok(self.open()?.model), Ok)
     }
 
-    /// The key of its result: of the scene's text, the meshes that it imports, and each path with its value.
-    pub fn key(&self) -> Key {
+    /// A key of the scene's text, the meshes that it imports, and each of some paths with its value.
+    fn key(&self, counts: impl Fn(&str) -> bool) -> Key {
         let settings = self.of.paths.iter().zip(&self.set);
+        let settings = settings.filter(|(path, _)| counts(path));
         settings.fold(self.of.key, |key, (path, value)| key.and(path).and(value))
     }
 
@@ -125,10 +127,12 @@ impl Plan {
     /// # Errors
     /// If a scene, a path or a value will not do, in any of the cases, or an axis is nothing that the scenes have.
     pub fn new(mut study: Study) -> Result<Plan, SceneError> {
-        check_values(&mut study, MOST_CASES)?;
+        check_values(&mut study)?;
+        let scene = (study.scenes.len() > 1).then(|| "scene".to_owned());
+        let paths = study.vary.iter().map(|vary| vary.path.clone());
         let mut plan = Plan {
             title: study.title.clone(),
-            columns: columns(&study),
+            columns: scene.into_iter().chain(paths).collect(),
             cases: Vec::new(),
             monitors: Vec::new(),
             x: AxisQuantity::Increment,
@@ -149,10 +153,20 @@ impl Plan {
         Ok(plan)
     }
 
+    /// The cases as cells of a sweep, whose shard depends on those paths that `count`.
+    pub(super) fn cells(&self, count: fn(&str) -> bool) -> Vec<Cell> {
+        let cell = |case: &Case| Cell {
+            key: case.key(|_| true),
+            shard: case.key(count).mixed(),
+            steps: case.increments,
+        };
+        self.cases.iter().map(cell).collect()
+    }
+
     /// The problem that a case poses: its values of all columns but those that say how it is computed.
-    pub fn posed<'a>(&self, case: &'a Case) -> Vec<&'a str> {
+    pub(super) fn posed<'a>(&self, case: &'a Case) -> Vec<&'a str> {
         let values = self.columns.iter().zip(&case.values);
-        let posed = values.filter(|(path, _)| !says_how(path));
+        let posed = values.filter(|(path, _)| poses(path));
         posed.map(|(_, value)| value.as_str()).collect()
     }
 
@@ -167,25 +181,60 @@ impl Plan {
             posed = Some(&case.of);
             parts.push(case.of.input());
         }
-        parts.extend(set_and_varied(&self.study));
+        let Study { set, vary, .. } = &self.study;
+        let varied = vary.iter();
+        let varied = varied.map(|vary| (format!("{} over", vary.path), vary.values.join(", ")));
+        parts.extend(set.iter().cloned().chain(varied));
         parts
-    }
-
-    /// Increments of all cases together.
-    pub fn increments(&self) -> u64 {
-        self.cases.iter().map(|case| case.increments).sum()
     }
 
     /// Adds the cases of one scene.
     fn lay_out(&mut self, name: &str) -> Result<(), SceneError> {
-        let layout = Layout::new(&self.study, name)?;
+        let study = &self.study;
+        let base = Base::new(Scene::open(name, &[])?);
+        let scene = base.scene();
+        let known = paths::list(&scene.spec);
         if self.title.is_empty() {
-            self.title.clone_from(&layout.posed.base.scene().spec.title);
+            self.title.clone_from(&scene.spec.title);
         }
-        for settings in product(&self.study.vary) {
-            let varied = settings.into_iter().map(|(_, value)| value).collect();
-            let (case, names) = layout.case(&self.study, varied)?;
-            for name in names.as_ref().unwrap_or(&layout.own) {
+        // Each path that is set, and by which number of all that is set and varied.
+        let patterns = study.set.iter().map(|(path, _)| path);
+        let patterns = patterns.chain(study.vary.iter().map(|vary| &vary.path));
+        let mut set: Vec<(String, usize)> = Vec::new();
+        for (k, pattern) in patterns.enumerate() {
+            set.extend(expanded(&known, pattern).into_iter().map(|path| (path, k)));
+        }
+        let monitors = scene.model.monitors.iter();
+        let own: Vec<String> = monitors.map(|m| m.name.clone()).collect();
+        let meshes = scene
+            .imports()
+            .then(|| digest(&format!("{:?}", scene.spec.nodes)));
+        let parts = std::iter::once(scene.text.as_str()).chain(meshes.as_deref());
+        let posed = Arc::new(Posed {
+            text: scene.text.as_str().into(),
+            key: Key::of(parts),
+            meshes,
+            places: set.iter().map(|(path, _)| base.find(path)).collect(),
+            paths: set.iter().map(|(path, _)| path.clone()).collect(),
+            base,
+        });
+        for settings in product(&study.vary) {
+            let varied = settings.into_iter().map(|(_, value)| value);
+            let mut given: Vec<String> = study.set.iter().map(|(_, v)| v.clone()).collect();
+            let fixed = given.len();
+            given.extend(varied);
+            let of_path = |(path, k): &(String, usize)| {
+                multiple(&known, path, &given[*k]).unwrap_or_else(|| given[*k].clone())
+            };
+            let scene = (study.scenes.len() > 1).then(|| name.to_owned());
+            let mut case = Case {
+                of: posed.clone(),
+                set: set.iter().map(of_path).collect(),
+                values: scene.into_iter().chain(given.split_off(fixed)).collect(),
+                increments: 0,
+            };
+            let names = case.check()?;
+            for name in names.as_ref().unwrap_or(&own) {
                 if !self.monitors.contains(name) {
                     self.monitors.push(name.clone());
                 }
@@ -217,82 +266,6 @@ impl Plan {
     }
 }
 
-/// A scene of a study, with what is set and varied in it.
-#[derive(Debug)]
-pub(super) struct Layout {
-    name: String,
-    posed: Arc<Posed>,
-    known: Vec<Listed>,
-    /// Each path that is set, and by which number of all that is set and varied.
-    set: Vec<(String, usize)>,
-    /// Names of the monitors of the scene as it stands.
-    own: Vec<String>,
-}
-
-impl Layout {
-    pub(super) fn new(study: &Study, name: &str) -> Result<Layout, SceneError> {
-        let base = Base::new(Scene::open(name, &[])?);
-        let scene = base.scene();
-        let known = paths::list(&scene.spec);
-        let patterns = study.set.iter().map(|(path, _)| path);
-        let patterns = patterns.chain(study.vary.iter().map(|vary| &vary.path));
-        let mut set: Vec<(String, usize)> = Vec::new();
-        for (k, pattern) in patterns.enumerate() {
-            set.extend(expanded(&known, pattern).into_iter().map(|path| (path, k)));
-        }
-        let monitors = scene.model.monitors.iter();
-        let own = monitors.map(|m| m.name.clone()).collect();
-        let places = set.iter().map(|(path, _)| base.find(path)).collect();
-        let meshes = scene
-            .imports()
-            .then(|| digest(&format!("{:?}", scene.spec.nodes)));
-        let parts = std::iter::once(scene.text.as_str()).chain(meshes.as_deref());
-        let posed = Arc::new(Posed {
-            text: scene.text.as_str().into(),
-            key: Key::of(parts),
-            meshes,
-            places,
-            paths: set.iter().map(|(path, _)| path.clone()).collect(),
-            base,
-        });
-        Ok(Layout {
-            name: name.to_owned(),
-            posed,
-            known,
-            set,
-            own,
-        })
-    }
-
-    /// The case with a value for each path that is varied, and names of its monitors where they are not those of the scene.
-    pub(super) fn case(
-        &self,
-        study: &Study,
-        varied: Vec<String>,
-    ) -> Result<(Case, Option<Vec<String>>), SceneError> {
-        let fixed = study.set.iter().map(|(_, value)| value);
-        let given: Vec<&String> = fixed.chain(&varied).collect();
-        let of_path = |(path, k): &(String, usize)| {
-            multiple(&self.known, path, given[*k]).unwrap_or_else(|| given[*k].clone())
-        };
-        let set = self.set.iter().map(of_path).collect();
-        let scene = (study.scenes.len() > 1).then(|| self.name.clone());
-        let mut case = Case {
-            values: scene.into_iter().chain(varied).collect(),
-            of: self.posed.clone(),
-            set,
-            increments: 0,
-        };
-        let names = case.check()?;
-        Ok((case, names))
-    }
-
-    /// All that the results of its cases depend on but for what is set and varied: what it is called, and its value.
-    pub(super) fn input(&self) -> (String, String) {
-        self.posed.input()
-    }
-}
-
 impl Posed {
     fn input(&self) -> (String, String) {
         let meshes = self.meshes.as_deref().unwrap_or_default();
@@ -301,26 +274,13 @@ impl Posed {
     }
 }
 
-/// Whether a path says how a problem is computed, and not which one it is.
-pub(super) fn says_how(path: &str) -> bool {
-    path.starts_with("settings.") || ["history.increment", "history.least"].contains(&path)
-}
-
-/// What is set and varied in a study, by name.
-pub(super) fn set_and_varied(study: &Study) -> impl Iterator<Item = (String, String)> {
-    let varied = study.vary.iter();
-    let varied = varied.map(|vary| (format!("{} over", vary.path), vary.values.join(", ")));
-    study.set.iter().cloned().chain(varied)
-}
-
-pub(super) fn columns(study: &Study) -> Vec<String> {
-    let scene = (study.scenes.len() > 1).then(|| "scene".to_owned());
-    let paths = study.vary.iter().map(|vary| vary.path.clone());
-    scene.into_iter().chain(paths).collect()
+/// Whether a path says which problem it is, and not how it is computed.
+pub(super) fn poses(path: &str) -> bool {
+    !path.starts_with("settings.") && !["history.increment", "history.least"].contains(&path)
 }
 
 /// Makes paths whole, and refuses what would run nothing, the same thing twice, or for ever.
-pub(super) fn check_values(study: &mut Study, most: u64) -> Result<(), SceneError> {
+fn check_values(study: &mut Study) -> Result<(), SceneError> {
     if let Some(first) = study.scenes.first() {
         let spec = Scene::open(first, &[])?.spec;
         let paths = study.vary.iter_mut().map(|vary| &mut vary.path);
@@ -343,9 +303,9 @@ pub(super) fn check_values(study: &mut Study, most: u64) -> Result<(), SceneErro
         }
         cases = cases.saturating_mul(values.len() as u64);
     }
-    if cases > most {
+    if cases > MOST_CASES {
         return wrong(format!(
-            "the product has {cases} runs; at most {most} can be had"
+            "the product has {cases} runs; at most {MOST_CASES} can be had at once (`help cluster`)"
         ));
     }
     Ok(())

@@ -8,23 +8,18 @@
 //! that went to the end, those that no other one beats in both are the **front**; errors at round-off ([`ROUND_OFF`]) are equal there.
 
 use super::chart_file::{Chart, Truth};
-use super::chart_runs::{Planned, Timed, open, timed};
+use super::chart_runs::{Planned, Timed, sweep};
 use super::csv::TableError;
 use super::figure::name;
-use super::merge::{Keeping, Kept};
 use super::monitor_kind::{MonitorKind, kind};
+use super::one::Watch;
 use super::origin;
-use super::plan::Plan;
 use super::reference::{self, Reference};
 use super::result::Run;
-use super::run::{RunError, Watch};
-use crate::format::SceneError;
+use super::sweep::RunError;
 use crate::model::Model;
 use std::collections::HashMap;
-use std::sync::Arc;
-
-/// All series of a chart as plans.
-pub use super::chart_runs::plans;
+use std::num::NonZeroUsize;
 
 /// Errors below this are round-off: a few thousand operations with the numbers' own.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
@@ -48,8 +43,6 @@ pub struct Precision {
     pub cost: Cost,
     /// The error that is wanted, if any.
     pub target: Option<f64>,
-    /// Runs that were planned; more than `points` where it was stopped.
-    pub planned: usize,
 }
 
 /// One run.
@@ -149,9 +142,6 @@ pub struct Measure {
 /// Why a chart could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PrecisionError {
-    /// The scene is unsound.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
     /// The table of the reference cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -180,76 +170,15 @@ struct Measured {
 /// Runs all of a chart, one run at a time.
 ///
 /// # Errors
-/// If a scene will not open, or the reference will not do.
+/// As [`Precision::new`], and if a scene will not open.
 pub fn run(
-    chart: &Chart,
-    plans: &[Plan],
-    measure: Measure,
-    watch: &Watch,
-) -> Result<Precision, PrecisionError> {
-    let planned = Planned::of(chart.clone(), plans.to_vec())?;
-    let charts = std::slice::from_ref(&planned);
-    let kept = open(charts, measure.repeats, &Keeping::Nowhere).map_err(RunError::from)?;
-    run_kept(&planned, measure, &kept, watch)
-}
-
-/// The same with runs that are there already.
-///
-/// # Errors
-/// As [`run`], and if a run cannot be kept.
-pub fn run_kept(
     planned: &Planned,
     measure: Measure,
-    kept: &Kept<Timed>,
     watch: &Watch,
 ) -> Result<Precision, PrecisionError> {
-    let (chart, plans) = (&planned.chart, &planned.plans);
-    let mut all: Vec<Measured> = Vec::new();
-    for (s, plan) in plans.iter().enumerate() {
-        for (k, case) in plan.cases.iter().enumerate() {
-            let settings = plan
-                .columns
-                .iter()
-                .cloned()
-                .zip(case.values.iter().cloned());
-            let settings = [chart.series[s].set.clone(), settings.collect()].concat();
-            let model = Arc::new(case.model()?);
-            if let Some(timed) = timed(case, &model, measure.repeats, kept, watch)? {
-                all.push(measured(timed, &model, s, name(plan, k), settings));
-            }
-        }
-    }
-    let wanted_runs = plans.iter().map(|plan| plan.cases.len()).sum();
-    let (reference, own) = truth(planned, &all, kept, watch)?;
-    let mut precision = Precision {
-        scene: chart.scene.clone(),
-        title: chart.title.clone(),
-        monitors: Vec::new(),
-        about: Vec::new(),
-        series: chart
-            .series
-            .iter()
-            .map(|series| series.name.clone())
-            .collect(),
-        points: Vec::new(),
-        cost: measure.cost,
-        target: measure.target,
-        planned: wanted_runs,
-    };
-    if let Some(own) = own {
-        all[own].point.reference = true;
-    }
-    let wanted = match chart.by.is_empty() {
-        true => &chart.monitors,
-        false => &chart.by,
-    };
-    measurable(&reference, &chart.by)?;
-    let loads = compare(&mut precision, &mut all, &reference, wanted)?;
-
-    precision.points = all.into_iter().map(|measured| measured.point).collect();
-    precision.about = origin(chart, &precision, loads, &reference);
-    mark_front(&mut precision.points, measure.cost);
-    Ok(precision)
+    let sweep = sweep(std::slice::from_ref(planned), measure.repeats);
+    let results = sweep.run(NonZeroUsize::MIN, watch)?;
+    Precision::new(planned, results, measure)
 }
 
 /// A run as a point of its series.
@@ -300,12 +229,10 @@ fn kinds(model: &Model) -> Vec<MonitorKind> {
 
 /// The reference of a chart; with the number of the run that it is, if it is one of them.
 fn truth(
-    planned: &Planned,
+    chart: &Chart,
     all: &[Measured],
-    kept: &Kept<Timed>,
-    watch: &Watch,
+    run: Option<Timed>,
 ) -> Result<(Reference, Option<usize>), PrecisionError> {
-    let chart = &planned.chart;
     let path = all.first().map(|m| m.path.clone()).unwrap_or_default();
     let wrong = PrecisionError::Reference;
     match &chart.truth {
@@ -320,9 +247,6 @@ fn truth(
             Ok((known.ok_or_else(none)??, None))
         }
         Truth::Run(settings) => {
-            let case = planned.truth.as_ref().and_then(|plan| plan.cases.first());
-            let case = case.ok_or_else(|| wrong("nothing was run".to_owned()))?;
-            let run = timed(case, &Arc::new(case.model()?), 1, kept, watch)?;
             let names: Vec<String> = settings
                 .iter()
                 .map(|(path, value)| format!("{path}={value}"))
@@ -471,6 +395,57 @@ pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
 }
 
 impl Precision {
+    /// A chart of its runs, in the order of [`sweep`]: those that were done.
+    ///
+    /// # Errors
+    /// If the reference will not do.
+    pub fn new(
+        planned: &Planned,
+        results: Vec<Option<Timed>>,
+        measure: Measure,
+    ) -> Result<Precision, PrecisionError> {
+        let (chart, plans) = (&planned.chart, &planned.plans);
+        let mut results = results.into_iter();
+        let mut all: Vec<Measured> = Vec::new();
+        for (s, plan) in plans.iter().enumerate() {
+            for (k, case) in plan.cases.iter().enumerate() {
+                let Some(timed) = results.next().flatten() else {
+                    continue;
+                };
+                let own = plan.columns.iter().cloned();
+                let own = own.zip(case.values.iter().cloned()).collect();
+                let settings = [chart.series[s].set.clone(), own].concat();
+                let model = case.model().map_err(RunError::from)?;
+                all.push(measured(timed, &model, s, name(plan, k), settings));
+            }
+        }
+        let (reference, own) = truth(chart, &all, results.next().flatten())?;
+        let series = chart.series.iter().map(|series| series.name.clone());
+        let mut precision = Precision {
+            scene: chart.scene.clone(),
+            title: chart.title.clone(),
+            monitors: Vec::new(),
+            about: Vec::new(),
+            series: series.collect(),
+            points: Vec::new(),
+            cost: measure.cost,
+            target: measure.target,
+        };
+        if let Some(own) = own {
+            all[own].point.reference = true;
+        }
+        let wanted = match chart.by.is_empty() {
+            true => &chart.monitors,
+            false => &chart.by,
+        };
+        measurable(&reference, &chart.by)?;
+        let loads = compare(&mut precision, &mut all, &reference, wanted)?;
+        precision.points = all.into_iter().map(|measured| measured.point).collect();
+        precision.about = origin(chart, &precision, loads, &reference);
+        mark_front(&mut precision.points, measure.cost);
+        Ok(precision)
+    }
+
     /// The cheapest run that is as near as is wanted.
     pub fn cheapest(&self) -> Option<&Point> {
         let target = self.target?;
@@ -590,9 +565,12 @@ mod tests {
     fn every_built_in_chart_is_sound() {
         for name in chart_file::names() {
             let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-            let plans = plans(&chart).unwrap_or_else(|e| panic!("{e}"));
-            assert!(plans.iter().all(|plan| !plan.cases.is_empty()), "{name}");
-            assert!(!chart.title.is_empty());
+            let planned = Planned::new(chart).unwrap_or_else(|e| panic!("{e}"));
+            assert!(
+                planned.plans.iter().all(|plan| !plan.cases.is_empty()),
+                "{name}"
+            );
+            assert!(!planned.chart.title.is_empty());
         }
     }
 }

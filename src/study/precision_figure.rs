@@ -7,9 +7,7 @@ use super::drawn::PlotError;
 use super::log_axis::{LogAxis, written};
 use super::placing::{Patch, Placing};
 use super::precision::{Point, Precision, ROUND_OFF};
-use super::sheet::{
-    Anchor, BLACK, COLOURS, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
-};
+use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 
 /// The plot, without its axes' words.
 const PLOT: (f64, f64) = (620.0, 420.0);
@@ -17,8 +15,6 @@ const PLOT: (f64, f64) = (620.0, 420.0);
 const RAIL: f64 = 44.0;
 /// Left of the plot.
 const LEFT: f64 = 84.0;
-/// The colour of crosses, and of nothing else.
-const CROSS: Colour = (192, 0, 0);
 /// Runs that failed and are named below the plot.
 const MOST_FAILED: usize = 40;
 /// Some charts, one below the other.
@@ -47,25 +43,22 @@ pub fn sheet(charts: &[Precision]) -> Result<Sheet, PlotError> {
 struct Frame {
     x: LogAxis,
     y: LogAxis,
-    /// Height of the plot's upper end.
-    top: f64,
+    axes: Axes,
 }
 
 impl Frame {
     fn at(&self, cost: f64, error: f64) -> (f64, f64) {
-        (
-            LEFT + PLOT.0 * self.x.part(cost),
-            self.top + PLOT.1 * (1.0 - self.y.part(error.max(ROUND_OFF))),
-        )
+        let error = error.max(ROUND_OFF);
+        self.axes.at(self.x.part(cost), self.y.part(error))
     }
 
     /// Where a run stands: in the plot, on the rail, or (the reference itself) on the ground.
     fn place(&self, chart: &Precision, point: &Point) -> (f64, f64) {
-        let (x, bottom) = (self.at(chart.cost.of(point), 1.0).0, self.top + PLOT.1);
+        let part = self.x.part(chart.cost.of(point));
         match (point.error, &point.failed) {
             (Some(error), _) => self.at(chart.cost.of(point), error),
-            (None, Some(_)) => (x, self.top - 0.5 * RAIL - 3.0),
-            (None, None) => (x, bottom),
+            (None, Some(_)) => (self.axes.at(part, 1.0).0, self.axes.top - 0.5 * RAIL - 3.0),
+            (None, None) => self.axes.at(part, 0.0),
         }
     }
 }
@@ -76,7 +69,11 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     let frame = Frame {
         x: LogAxis::of(chart.points.iter().map(|p| chart.cost.of(p))),
         y: LogAxis::of(errors.map(|e| e.max(ROUND_OFF)).chain(chart.target)),
-        top,
+        axes: Axes {
+            left: LEFT,
+            top,
+            size: PLOT,
+        },
     };
     rail(sheet);
     axes(sheet, chart, &frame);
@@ -146,35 +143,19 @@ fn rail(sheet: &mut Sheet) {
 }
 
 fn axes(sheet: &mut Sheet, chart: &Precision, frame: &Frame) {
-    let top = frame.top;
-    let (right, bottom) = (LEFT + PLOT.0, top + PLOT.1);
-    for value in frame.x.ticks(9) {
-        let place = LEFT + PLOT.0 * frame.x.part(value);
-        sheet.line(&[(place, top), (place, bottom)], 1.0, PALE);
-        let words = (place, bottom + 0.8 * LABEL);
-        sheet.text(words, &written(value), SMALL, BLACK, Anchor::Middle);
-    }
-    for value in frame.y.ticks(12) {
-        let place = bottom - PLOT.1 * frame.y.part(value);
-        sheet.line(&[(LEFT, place), (right, place)], 1.0, PALE);
-        let words = (LEFT - 6.0, place);
-        sheet.text(words, &written(value), SMALL, BLACK, Anchor::Right);
-    }
-    let corners = [
-        (LEFT, top),
-        (right, top),
-        (right, bottom),
-        (LEFT, bottom),
-        (LEFT, top),
-    ];
-    sheet.line(&corners, 1.0, BLACK);
-    let below = (0.5 * (LEFT + right), bottom + 2.4 * LABEL);
-    sheet.text(below, chart.cost.axis(), LABEL, BLACK, Anchor::Middle);
     let error = match chart.monitors.as_slice() {
         [] => "error".to_owned(),
         some => format!("error of {} (part of the largest)", some.join(", ")),
     };
-    sheet.upright((MARGIN, 0.5 * (top + bottom)), &error, LABEL);
+    let numbers = |axis: LogAxis, most| {
+        let ticks = axis.ticks(most).into_iter();
+        ticks.map(move |value| (axis.part(value), written(value)))
+    };
+    frame.axes.draw(
+        sheet,
+        (chart.cost.axis(), numbers(frame.x, 9)),
+        (&error, numbers(frame.y, 12)),
+    );
 }
 
 /// Steps through the runs that none beats.
@@ -204,13 +185,12 @@ fn front(sheet: &mut Sheet, chart: &Precision, at: &dyn Fn(f64, f64) -> (f64, f6
 }
 
 fn series(sheet: &mut Sheet, chart: &Precision, k: usize, frame: &Frame, taken: &mut Placing) {
-    let colour = COLOURS[k % COLOURS.len()];
     let own: Vec<&Point> = chart.points.iter().filter(|p| p.series == k).collect();
     let whole: Vec<(f64, f64)> = own
         .iter()
         .filter_map(|p| Some(frame.at(chart.cost.of(p), p.error?)))
         .collect();
-    stroke(sheet, &whole, k);
+    sheet.stroke(&whole, 1.5, k);
     for pair in whole.windows(2) {
         taken.take_line(pair[0], pair[1]);
     }
@@ -218,19 +198,9 @@ fn series(sheet: &mut Sheet, chart: &Precision, k: usize, frame: &Frame, taken: 
         let place = frame.place(chart, point);
         match point.failed.is_some() {
             true => sheet.cross(place, 5.0, CROSS),
-            false => sheet.marker(place, k, 4.0, colour),
+            false => sheet.series_marker(place, k),
         }
         taken.take(Patch::about(place, (14.0, 14.0)));
-    }
-}
-
-/// A series' line; every other one is dashed.
-fn stroke(sheet: &mut Sheet, points: &[(f64, f64)], k: usize) {
-    let colour = COLOURS[k % COLOURS.len()];
-    match (points.len() > 1, k % 2) {
-        (false, _) => {}
-        (true, 0) => sheet.line(points, 1.5, colour),
-        (true, _) => sheet.dashed(points, 1.5, colour),
     }
 }
 
@@ -285,14 +255,11 @@ fn values(name: &str) -> String {
 
 fn legend(sheet: &mut Sheet, chart: &Precision, top: f64) {
     let left = LEFT + PLOT.0 + MARGIN;
+    let line = |k: usize| top + 14.0 + ENTRY * k as f64;
     for (k, name) in chart.series.iter().enumerate() {
-        let y = top + 14.0 + 22.0 * k as f64;
-        let colour = COLOURS[k % COLOURS.len()];
-        stroke(sheet, &[(left, y), (left + 28.0, y)], k);
-        sheet.marker((left + 14.0, y), k, 4.0, colour);
-        sheet.text((left + 36.0, y), name, LABEL, BLACK, Anchor::Left);
+        sheet.entry((left, line(k)), k, name);
     }
-    let y = top + 14.0 + 22.0 * chart.series.len() as f64;
+    let y = line(chart.series.len());
     sheet.marker((left + 14.0, y), 0, 8.5, BLACK);
     sheet.marker((left + 14.0, y), 0, 7.0, (255, 255, 255));
     sheet.text(

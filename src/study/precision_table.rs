@@ -92,7 +92,6 @@ pub fn read(
                 points: Vec::new(),
                 cost,
                 target,
-                planned: 0,
             });
         }
         let Some(chart) = charts.last_mut() else {
@@ -123,7 +122,6 @@ pub fn read(
         });
     }
     for chart in &mut charts {
-        chart.planned = chart.points.len();
         mark_front(&mut chart.points, cost);
     }
     let last = charts

@@ -1,5 +1,6 @@
 //! What one run of a study came to.
 
+use super::log::Outcome;
 use super::read::AxisQuantity;
 use super::reason::Reason;
 use super::verdict::RunVerdict;
@@ -73,6 +74,21 @@ pub struct Failed {
     pub unsettled: u32,
 }
 
+impl Outcome for Run {
+    /// Some 10,000 increments with 100 monitors.
+    const MAX_BYTES: usize = 32 << 20;
+
+    fn is_sound(&self) -> bool {
+        let mut rows = std::iter::once(&self.start).chain(&self.rows);
+        let failed = self.failed().is_none_or(|failed| failed.load.is_finite());
+        failed && rows.all(|row| row.load.is_finite() && row.monitors.iter().all(|x| x.is_finite()))
+    }
+
+    fn is_over(&self) -> bool {
+        matches!(self.end, CaseEnd::Finished | CaseEnd::Failed(_))
+    }
+}
+
 impl Run {
     /// The value of a quantity in a row of this run; `None` if the scene has no such monitor.
     pub fn value(&self, row: &Row, quantity: &AxisQuantity) -> Option<f64> {
@@ -91,18 +107,6 @@ impl Run {
     /// The state that the run got to: its last accepted increment, or the start.
     pub fn last(&self) -> &Row {
         self.rows.last().unwrap_or(&self.start)
-    }
-
-    /// Whether its numbers are finite, as in every real run.
-    pub fn is_sound(&self) -> bool {
-        let mut rows = std::iter::once(&self.start).chain(&self.rows);
-        let failed = self.failed().is_none_or(|failed| failed.load.is_finite());
-        failed && rows.all(|row| row.load.is_finite() && row.monitors.iter().all(|x| x.is_finite()))
-    }
-
-    /// Whether it ended by itself, and not because somebody wanted it to.
-    pub fn is_over(&self) -> bool {
-        matches!(self.end, CaseEnd::Finished | CaseEnd::Failed(_))
     }
 
     /// Where it failed, if it did.

@@ -3,8 +3,7 @@
 //! Lengths are those of an SVG; x to the right, y downwards.
 
 use super::drawn::label;
-use super::pen::font::{broken, width_of};
-use super::pen::sheet;
+use super::pen::{self, width_of};
 use crate::outside::shown;
 
 pub use super::drawn::{Anchor, Colour, PlotError, Shape};
@@ -26,6 +25,9 @@ pub const COLOURS: [Colour; 7] = [
     (213, 94, 0),
 ];
 
+/// The colour of crosses, and of nothing else.
+pub const CROSS: Colour = (192, 0, 0);
+
 /// Sizes of letters.
 pub const TITLE: f64 = 22.0;
 /// Letters at axes and in legends.
@@ -34,6 +36,59 @@ pub const LABEL: f64 = 15.0;
 pub const SMALL: f64 = 13.0;
 /// Air around everything.
 pub const MARGIN: f64 = 16.0;
+/// Height of a line of a legend.
+pub const ENTRY: f64 = 22.0;
+/// Most characters of a line that is broken where it is too long.
+const MAX_LINE: usize = 2000;
+
+/// The frame of a plot: its left upper corner and its size.
+#[derive(Debug, Clone, Copy)]
+pub struct Axes {
+    /// Left end.
+    pub left: f64,
+    /// Upper end.
+    pub top: f64,
+    /// Width and height.
+    pub size: (f64, f64),
+}
+
+impl Axes {
+    /// The place at these parts of the axes, from 0 to 1.
+    pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
+        (
+            self.left + self.size.0 * x,
+            self.top + self.size.1 * (1.0 - y),
+        )
+    }
+
+    /// Draws grid, numbers and frame. Of each axis: its name, and where on it a number stands.
+    pub fn draw(
+        &self,
+        sheet: &mut Sheet,
+        x: (&str, impl Iterator<Item = (f64, String)>),
+        y: (&str, impl Iterator<Item = (f64, String)>),
+    ) {
+        for (part, number) in x.1 {
+            let (below, above) = (self.at(part, 0.0), self.at(part, 1.0));
+            sheet.line(&[above, below], 1.0, PALE);
+            let words = (below.0, below.1 + 0.8 * LABEL);
+            sheet.text(words, &number, SMALL, BLACK, Anchor::Middle);
+        }
+        for (part, number) in y.1 {
+            let (left, right) = (self.at(0.0, part), self.at(1.0, part));
+            sheet.line(&[left, right], 1.0, PALE);
+            let words = (left.0 - 6.0, left.1);
+            sheet.text(words, &number, SMALL, BLACK, Anchor::Right);
+        }
+        let corners = [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0), (0.0, 1.0)];
+        let corners = corners.map(|(x, y)| self.at(x, y));
+        sheet.line(&corners, 1.0, BLACK);
+        let (middle, bottom) = self.at(0.5, 0.0);
+        let below = (middle, bottom + 2.4 * LABEL);
+        sheet.text(below, x.0, LABEL, BLACK, Anchor::Middle);
+        sheet.upright((MARGIN, self.at(0.0, 0.5).1), y.0, LABEL);
+    }
+}
 
 /// A drawing; later shapes lie above earlier ones.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -148,6 +203,28 @@ impl Sheet {
         self.fill(&corners, colour);
     }
 
+    /// The line of series number k; every other one is dashed, so that two that agree are both seen.
+    pub fn stroke(&mut self, points: &[(f64, f64)], width: f64, k: usize) {
+        let colour = COLOURS[k % COLOURS.len()];
+        match k % 2 {
+            _ if points.len() < 2 => {}
+            0 => self.line(points, width, colour),
+            _ => self.dashed(points, width, colour),
+        }
+    }
+
+    /// The marker of series number k: 35 series before two look the same.
+    pub fn series_marker(&mut self, at: (f64, f64), k: usize) {
+        self.marker(at, k, 4.0, COLOURS[k % COLOURS.len()]);
+    }
+
+    /// A line of a legend, for series number k.
+    pub fn entry(&mut self, (left, y): (f64, f64), k: usize, label: &str) {
+        self.stroke(&[(left, y), (left + 28.0, y)], 2.0, k);
+        self.series_marker((left + 14.0, y), k);
+        self.text((left + 36.0, y), label, LABEL, BLACK, Anchor::Left);
+    }
+
     /// A marker with a border: dark outside, and so seen on any ground.
     pub fn ringed(&mut self, at: (f64, f64), kind: usize, r: f64, inside: Colour) {
         self.marker(at, kind, r + 1.6, BLACK);
@@ -214,7 +291,7 @@ impl Sheet {
     /// # Errors
     /// If it cannot be drawn.
     pub fn svg(&self) -> Result<String, PlotError> {
-        sheet::svg(&self.shapes, self.size())
+        pen::svg(&self.shapes, self.size())
     }
 
     /// The drawing as PNG, with two pixels for a unit of length.
@@ -222,12 +299,34 @@ impl Sheet {
     /// # Errors
     /// If it cannot be drawn.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        sheet::png(&self.shapes, self.size())
+        pen::png(&self.shapes, self.size())
     }
 
     fn size(&self) -> (f64, f64) {
         (self.width, self.height + MARGIN)
     }
+}
+
+/// Lines that are no wider than that, broken between words; words that are too long by themselves are cut.
+fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotError> {
+    let mut all = Vec::new();
+    for line in lines {
+        let mut present = String::new();
+        for word in shown::cut(line, MAX_LINE).split_whitespace() {
+            let word = label(word);
+            let longer = match present.is_empty() {
+                true => word.clone(),
+                false => format!("{present} {word}"),
+            };
+            if !present.is_empty() && 1.06 * width_of(&longer, size)? > width {
+                all.push(std::mem::replace(&mut present, word));
+            } else {
+                present = longer;
+            }
+        }
+        all.push(present);
+    }
+    Ok(all)
 }
 
 /// The widest of some texts; a reader's own font may be a little wider than ours.

@@ -1,20 +1,15 @@
 //! All random problems of a population with all variants: run, counted, and as a table.
 
-use super::log::{LogError, ResultKind};
-use super::merge::{Cells, Keeping, Kept, Reading, same};
+use super::one::{Spare, Watch};
 use super::origin;
 use super::random::Population;
-use super::run::{RunError, Watch, pool};
 use super::shard::Key;
-use super::sums::{Outcome, Sums as BlockSums};
+use super::sweep::{Cell, Sweep};
 use super::sweep_input::Input;
-use super::trial::{Judged, Prepared, Trial, Variant, prepared, try_variants};
+use super::trial::{Judged, Trial, Variant, prepared, try_variants};
 use super::verdict::RunVerdict;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::num::NonZeroUsize;
-use std::path::Path;
 
 /// What is tried, and what came of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,182 +45,51 @@ pub struct Tally {
     pub invented: usize,
 }
 
-/// Most bytes of a result in a file.
-const MOST_LINE: usize = 1 << 20;
-
-/// The key of a problem's result.
-fn key(population: &Population, variants: &[Variant], k: usize) -> Key {
-    let (name, number) = (population.name(), k.to_string());
+/// The problems of a population as cells of a sweep.
+pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'a, Judged> {
+    let name = population.name();
     let settings = variants.iter().flat_map(|v| &v.settings);
     let settings = settings.flat_map(|(path, value)| [path.as_str(), value]);
-    Key::of([name.as_str(), &number].into_iter().chain(settings))
-}
-
-/// What there is of the results of a population's problems.
-///
-/// # Errors
-/// If a file will not do.
-pub fn open(
-    population: &Population,
-    variants: &[Variant],
-    keeping: &Keeping,
-) -> Result<Kept<Judged>, LogError> {
-    let numbers = 0..population.count;
-    let cells = Cells {
-        keys: numbers.map(|k| key(population, variants, k)).collect(),
-        unit: "problems",
-        name: &|k| format!("problem {k} of {}", population.name()),
+    let settings: Vec<&str> = settings.collect();
+    let cell = |k: usize| {
+        let parts = [name.as_str(), &k.to_string()];
+        let key = Key::of(parts.into_iter().chain(settings.iter().copied()));
+        Cell {
+            key,
+            shard: key.mixed(),
+            steps: 1,
+        }
     };
-    let reading = Reading {
-        kind: ResultKind {
-            most: MOST_LINE,
-            is_sound: Judged::is_sound,
-        },
-        join: same,
-    };
-    let input = || Input::new("map --random", input(population, variants));
-    Kept::open(keeping, input, cells, &reading)
-}
-
-/// All that the results of problems depend on, by name; not how many there are.
-pub fn input(population: &Population, variants: &[Variant]) -> Vec<(String, String)> {
-    let settings = |variant: &Variant| {
+    // Not how many there are: the first problems of a larger population are the same.
+    let tried = variants.iter().map(|variant| {
         let pairs = variant.settings.iter();
         let pairs: Vec<String> = pairs
             .map(|(path, value)| format!("{path}={value}"))
             .collect();
-        pairs.join(" ")
-    };
-    let of = ("population".to_owned(), population.name());
-    let tried = variants
-        .iter()
-        .map(|v| ("strategy".to_owned(), settings(v)));
-    std::iter::once(of).chain(tried).collect()
-}
-
-/// What the sums of a population are counted under.
-pub const HEADS: [&str; 7] = [
-    "nodes", "form", "cohesion", "answers", "solvable", "strategy", "verdict",
-];
-
-/// Runs a problem with all variants and adds it to sums; false if it was stopped from outside.
-///
-/// # Errors
-/// If a variant will not do.
-pub fn count(
-    population: &Population,
-    variants: &[Prepared<'_>],
-    k: u64,
-    sums: &mut BlockSums,
-    stop: &(dyn Fn() -> bool + Sync),
-) -> Result<bool, RunError> {
-    let Some(judged) = try_variants(population, k as usize, variants, stop)? else {
-        return Ok(false);
-    };
-    let solvable = judged.solvable();
-    for (variant, trial) in variants.iter().zip(&judged.trials) {
-        let wanted = match solvable {
-            true => RunVerdict::Right,
-            false => RunVerdict::NoAnswer,
-        };
-        let labels = [
-            judged.nodes.to_string(),
-            judged.form.clone(),
-            judged.cohesive.to_string(),
-            judged.answers.to_string(),
-            solvable.to_string(),
-            variant.name().to_owned(),
-            trial.verdict.word().to_owned(),
-        ];
-        let outcome = Outcome {
-            labels: labels.to_vec(),
-            detail: trial.verdict.detail(),
-            majors: trial.majors,
-            minors: trial.minors,
-            error: Some(trial.violation),
-            failing: trial.verdict != wanted,
-        };
-        sums.count(k, outcome);
-    }
-    Ok(true)
-}
-
-/// How each variant fared, by the sums of a population.
-pub fn tallies(variants: &[Variant], sums: &BlockSums) -> Vec<Tally> {
-    let mut tallies = vec![Tally::default(); variants.len()];
-    for (labels, count) in sums.counts() {
-        let [.., solvable, strategy, verdict] = labels else {
-            continue;
-        };
-        let own = variants.iter().zip(&mut tallies);
-        for (_, tally) in own.filter(|(variant, _)| variant.name == *strategy) {
-            tally.add(solvable == "true", verdict, count.runs as usize);
+        ("strategy".to_owned(), pairs.join(" "))
+    });
+    let input = std::iter::once(("population".to_owned(), name.clone())).chain(tried);
+    let prepared = prepared(variants);
+    let compute = move |k: usize, _: &Spare, watch: &Watch| {
+        if (watch.stop)() {
+            return Ok(None);
         }
+        let judged = try_variants(population, k, &prepared, watch.stop)?;
+        (watch.done)(u64::from(judged.is_some()));
+        Ok(judged)
+    };
+    Sweep {
+        input: Input::new("map --random", input.collect()),
+        cells: (0..population.count).map(cell).collect(),
+        units: ["problems", "problems"],
+        is_timed: false,
+        runs: variants.len(),
+        name: Box::new(move |k| format!("problem {k} of {}", population.name())),
+        compute: Box::new(compute),
     }
-    tallies
 }
 
 impl Survey {
-    /// Runs what has to be run. With a file, what is kept there is not run again, and what is run is kept there.
-    ///
-    /// # Errors
-    /// If there are no threads to be had, a variant will not do, or the file will not.
-    pub fn run(
-        population: Population,
-        variants: Vec<Variant>,
-        kept: Option<&Path>,
-        jobs: NonZeroUsize,
-        watch: &Watch,
-    ) -> Result<Survey, RunError> {
-        let keeping = kept.map_or(Keeping::Nowhere, |path| Keeping::Beside(path.to_owned()));
-        let kept = open(&population, &variants, &keeping)?;
-        Survey::run_kept(population, variants, &kept, jobs, watch)
-    }
-
-    /// Runs what is to be run here and is not there.
-    ///
-    /// # Errors
-    /// As [`Survey::run`].
-    pub fn run_kept(
-        population: Population,
-        variants: Vec<Variant>,
-        kept: &Kept<Judged>,
-        jobs: NonZeroUsize,
-        watch: &Watch,
-    ) -> Result<Survey, RunError> {
-        let prepared = prepared(&variants);
-        let one = |k: usize| -> Result<Option<Judged>, RunError> {
-            let key = key(&population, &variants, k);
-            if let Some(found) = kept.get(key) {
-                if found.value.trials.len() != variants.len() {
-                    let (has, wants) = (found.value.trials.len(), variants.len());
-                    let message = format!("it is of {has} trials, and its problem has {wants}");
-                    return Err(kept.broken(key, &message).into());
-                }
-                (watch.done)(1);
-                return Ok(Some(found.value.clone()));
-            }
-            if !kept.does(key) || (watch.stop)() {
-                return Ok(None);
-            }
-            let judged = try_variants(&population, k, &prepared, watch.stop)?;
-            if let Some(judged) = &judged {
-                kept.keep(key, judged)?;
-            }
-            (watch.done)(u64::from(judged.is_some()));
-            Ok(judged)
-        };
-        let pool = pool(jobs, population.count)?;
-        let judged: Result<Vec<_>, RunError> =
-            pool.install(|| (0..population.count).into_par_iter().map(one).collect());
-        let judged = judged?;
-        Ok(Survey {
-            population,
-            variants,
-            judged,
-        })
-    }
-
     /// The problems that were done, with their numbers.
     pub fn done(&self) -> impl Iterator<Item = (usize, &Judged)> {
         let all = self.judged.iter().enumerate();
@@ -236,7 +100,7 @@ impl Survey {
     pub fn tally(&self, v: usize, meant: impl Fn(&Judged) -> bool) -> Tally {
         let mut tally = Tally::default();
         for (_, judged) in self.done().filter(|(_, judged)| meant(judged)) {
-            tally.add(judged.solvable(), judged.trials[v].verdict.word(), 1);
+            tally.add(judged.solvable(), judged.trials[v].verdict);
         }
         tally
     }
@@ -313,18 +177,15 @@ impl Survey {
 
     /// What it was made of, and by what.
     pub fn origin(&self) -> Vec<String> {
-        about(&self.population)
+        let Population { count, .. } = self.population;
+        vec![
+            format!(
+                "{count} random interface problems, {}",
+                self.population.name()
+            ),
+            format!("{} on {}", origin::program(), origin::machine()),
+        ]
     }
-}
-
-/// What a table of a population was made of, and by what.
-pub fn about(population: &Population) -> Vec<String> {
-    let Population { count, .. } = population;
-    let made = format!("{count} random interface problems, {}", population.name());
-    vec![
-        made,
-        format!("{} on {}", origin::program(), origin::machine()),
-    ]
 }
 
 /// Problems and runs that are counted together.
@@ -357,25 +218,22 @@ impl Sums {
 }
 
 impl Tally {
-    /// Counts some runs of a verdict, by its word.
-    pub fn add(&mut self, solvable: bool, verdict: &str, runs: usize) {
-        if !solvable {
-            self.unsolvable += runs;
-            match verdict {
-                "no-answer" => self.admitted += runs,
-                "wrong" => self.invented += runs,
-                _ => {}
-            }
-            return;
-        }
-        self.solvable += runs;
-        *match verdict {
-            "converged" => &mut self.solved,
-            "wrong" => &mut self.wrong,
-            "cycle" => &mut self.cycled,
-            "no-answer" => &mut self.denied,
-            _ => &mut self.failed,
-        } += runs;
+    fn add(&mut self, solvable: bool, verdict: RunVerdict) {
+        let counted = match (solvable, verdict) {
+            (false, _) => &mut self.unsolvable,
+            (true, _) => &mut self.solvable,
+        };
+        *counted += 1;
+        *match (solvable, verdict) {
+            (false, RunVerdict::NoAnswer) => &mut self.admitted,
+            (false, RunVerdict::Wrong) => &mut self.invented,
+            (false, _) => return,
+            (true, RunVerdict::Right) => &mut self.solved,
+            (true, RunVerdict::Wrong) => &mut self.wrong,
+            (true, RunVerdict::Cycle { .. }) => &mut self.cycled,
+            (true, RunVerdict::NoAnswer) => &mut self.denied,
+            (true, RunVerdict::Failed(_) | RunVerdict::Diverged) => &mut self.failed,
+        } += 1;
     }
 
     /// A number of problems that have an answer, per 1,000 of them.

@@ -49,6 +49,10 @@ impl Input {
 
     /// In what another one differs, as a sentence about it; `None` where its results are ours.
     pub fn difference(&self, theirs: &Input) -> Option<String> {
+        if theirs.what.ends_with(", as sums") {
+            let message = "it has the sums of `--aggregate`, which are no longer read; run its shards again with --csv (`help cluster`)";
+            return Some(message.to_owned());
+        }
         if self.what != theirs.what {
             return Some(format!(
                 "its results are those of {}, and not of {}",

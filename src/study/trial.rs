@@ -10,6 +10,7 @@
 //! |f_t| <= μ f_n + c where g = 0, else f_t = 0;   slip s = −u_t: f_t = sgn(s) (μ f_n + c) where s ≠ 0
 //! ```
 
+use super::log::Outcome;
 use super::random::{Drawn, Population};
 use super::reason::Reason;
 use super::verdict::RunVerdict;
@@ -69,9 +70,11 @@ pub struct Trial {
     pub violation: f64,
 }
 
-impl Judged {
-    /// Whether a run can have these numbers: a violation may be infinite without an end, but is within the tolerance if right.
-    pub(super) fn is_sound(&self) -> bool {
+impl Outcome for Judged {
+    const MAX_BYTES: usize = 1 << 20;
+
+    /// A violation may be infinite without an end, but is within the tolerance if right.
+    fn is_sound(&self) -> bool {
         let right = |trial: &Trial| trial.verdict == RunVerdict::Right;
         let mut trials = self.trials.iter();
         trials.all(|trial| match right(trial) {
@@ -80,6 +83,12 @@ impl Judged {
         })
     }
 
+    fn runs(&self) -> usize {
+        self.trials.len()
+    }
+}
+
+impl Judged {
     /// Whether the problem has an answer: by census, or since a run found one where the census has none (where assumptions
     /// have a whole line of solutions, which it does not look into).
     pub fn solvable(&self) -> bool {
@@ -93,13 +102,6 @@ pub struct Prepared<'a> {
     variant: &'a Variant,
     /// `None` where the settings are not for a method alone, or will not do.
     method: Option<Method>,
-}
-
-impl Prepared<'_> {
-    /// What the variant is called.
-    pub fn name(&self) -> &str {
-        &self.variant.name
-    }
 }
 
 /// Variants to try on many problems.

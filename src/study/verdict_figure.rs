@@ -5,7 +5,6 @@ use super::map::{Map, Panel};
 use super::reason::Reason;
 use super::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest};
 use super::survey::{Survey, Tally};
-use super::trial::Variant;
 use super::verdict::RunVerdict;
 
 /// Height of a row of bars or cells.
@@ -88,31 +87,15 @@ pub fn bars(survey: &Survey) -> Result<Sheet, PlotError> {
     let tallies: Vec<Tally> = (0..survey.variants.len())
         .map(|v| survey.tally(v, |_| true))
         .collect();
-    bars_of(
-        "Random interface problems by strategy",
-        &survey.variants,
-        &tallies,
-        &survey.origin(),
-    )
-}
-
-/// The same of what is counted already, and what the footer says.
-///
-/// # Errors
-/// If the font cannot be read.
-pub fn bars_of(
-    what: &str,
-    variants: &[Variant],
-    tallies: &[Tally],
-    footer: &[String],
-) -> Result<Sheet, PlotError> {
+    let variants = &survey.variants;
     let names = variants.iter().map(|v| v.name.as_str());
     let left = MARGIN + widest(names, LABEL)? + MARGIN;
     let numbers = left + BAR + MARGIN;
     let (some, none) = tallies
         .first()
         .map_or((0, 0), |t| (t.solvable, t.unsolvable));
-    let title = format!("{what}, per 1,000 of {some} with an answer");
+    let title =
+        format!("Random interface problems by strategy, per 1,000 of {some} with an answer");
     let mut sheet = Sheet::new(numbers + NONE.1 + MARGIN, &title)?;
     let y = sheet.height + 0.5 * ROW;
     let heads = ["✓", "≠", "↺", "✗", "∅"].iter().enumerate();
@@ -124,7 +107,7 @@ pub fn bars_of(
     sheet.text((numbers + NONE.0, y), &head, LABEL, BLACK, Anchor::Right);
     sheet.text((numbers + NONE.1, y), "≠", LABEL, BLACK, Anchor::Right);
     sheet.height += ROW;
-    for (variant, tally) in variants.iter().zip(tallies) {
+    for (variant, tally) in variants.iter().zip(&tallies) {
         let y = sheet.height;
         sheet.text(
             (left - MARGIN / 2.0, y + 0.5 * ROW),
@@ -163,7 +146,7 @@ pub fn bars_of(
     }
     sheet.height += 0.5 * ROW;
     legend(&mut sheet)?;
-    sheet.paragraph(footer, SMALL, GREY)?;
+    sheet.paragraph(&survey.origin(), SMALL, GREY)?;
     Ok(sheet)
 }
 

@@ -2,6 +2,7 @@
 
 use super::refusal::Unknown;
 use crate::study::chart_file::Chart;
+use crate::study::chart_runs::Planned;
 use crate::study::precision::{self, Cost, Measure, Point, Precision};
 use crate::study::{Vary, Watch};
 use std::sync::OnceLock;
@@ -34,7 +35,7 @@ impl Runs {
         let measured = self.measured.get_or_init(|| {
             let mut chart = Chart::open(&self.scene, &self.over).map_err(|e| e.to_string())?;
             chart.set.extend(self.set.iter().cloned());
-            let plans = precision::plans(&chart).map_err(|e| e.to_string())?;
+            let planned = Planned::new(chart).map_err(|e| e.to_string())?;
             let measure = Measure {
                 cost: Cost::Factorizations,
                 target: None,
@@ -44,7 +45,7 @@ impl Runs {
                 stop: &|| false,
                 done: &|_| {},
             };
-            precision::run(&chart, &plans, measure, &watch).map_err(|e| e.to_string())
+            precision::run(&planned, measure, &watch).map_err(|e| e.to_string())
         });
         let failed = |why: &String| Unknown::NoChart(why.clone());
         measured.as_ref().map_err(failed)

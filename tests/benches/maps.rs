@@ -13,9 +13,9 @@ use stickslip::scene::Scene;
 use stickslip::scene::base::{Base, Method};
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
-use stickslip::study::map;
+use stickslip::study::map::{self, Map};
 use stickslip::study::random::{NODES, Population};
-use stickslip::study::survey::Survey;
+use stickslip::study::survey;
 use stickslip::study::trial::Variant;
 use stickslip::study::{Plan, Study, Vary, Watch};
 
@@ -63,7 +63,9 @@ fn plain(scene: &str, vary: &[&str]) {
         .map(|case| Arc::new(case.model().unwrap_or_else(|e| panic!("{e}"))))
         .collect();
     let whole = |jobs| {
-        let map = map::run(plan(), map::TOLERANCE, None, threads(jobs), &watch());
+        let plan = plan();
+        let ended = map::sweep(&plan).run(threads(jobs), &watch());
+        let map = ended.map(|ended| Map::judged(plan, map::TOLERANCE, ended));
         assert!(map.is_ok_and(|map| map.cells.iter().all(Option::is_some)));
     };
     let name = format!("{scene}: {}", vary.join(", "));
@@ -97,9 +99,8 @@ fn random(count: usize) {
     }
     assert_eq!(models.len(), count * variants.len());
     let whole = |jobs| {
-        let population = population.clone();
-        let survey = Survey::run(population, variants.clone(), None, threads(jobs), &watch());
-        assert!(survey.is_ok_and(|survey| survey.done().count() == count));
+        let judged = survey::sweep(&population, &variants).run(threads(jobs), &watch());
+        assert!(judged.is_ok_and(|judged| judged.iter().flatten().count() == count));
     };
     let name = format!("random problems, {}", STRATEGIES.join(", "));
     row(&name, models.len(), &whole, &|| {

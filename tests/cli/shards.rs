@@ -27,9 +27,6 @@ const MAP: &str = "map osc-two3 --over friction=5..45/6 --over increment=0.5,0.2
 const FAILING: &str =
     "map osc-two3 osc-two6 --over settings.minors=40,50 --over increment=0.5,0.25";
 const RANDOM: &str = "map --random 60 --seed 3 --set strategy=table2 --set touch=ratio --over t_max=lagged,consistent";
-const SUMS: &str = "map --random 60 --seed 3 --aggregate 7 --set strategy=table2 --set touch=ratio --over t_max=lagged,consistent";
-const SCENE_SUMS: &str =
-    "map osc-two3 --over friction=5..45/6 --over increment=0.5,0.25,0.2 --aggregate 5";
 const STUDY: &str =
     "study 02-two-cantilevers-rough --vary increment=0.5,0.25 --vary friction=5,10,30";
 const CHART: &str = "chart 04-cantilever-rigid-circle --over refine=1,2 --set history.increment=0.5 --cost minors --repeats 1";
@@ -58,7 +55,7 @@ const AGAIN: [&str; 6] = ["--csv", "b.csv", "--svg", "b.svg", "--png", "b.png"];
 
 #[test]
 fn shards_put_together_are_the_whole_byte_for_byte_in_any_order_and_with_overlaps() {
-    for words in [MAP, FAILING, RANDOM, SUMS, SCENE_SUMS, STUDY] {
+    for words in [MAP, FAILING, RANDOM, STUDY] {
         let directory = tempfile::tempdir().unwrap();
         let here = directory.path();
         let whole = ran(here, words, &ALL);
@@ -106,37 +103,66 @@ fn a_chart_by_what_is_counted_is_the_same_from_shards_but_for_its_times() {
     assert!(bytes(here, "b.csv") == bytes(here, "c.csv"));
 }
 
+/// The rows of a table without its comments, sorted.
+fn sorted(csv: &str) -> Vec<&str> {
+    let mut rows: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
+    rows.sort_unstable();
+    rows
+}
+
 #[test]
-fn failing_cells_of_sums_are_all_told_and_those_of_the_cells_one_by_one() {
+fn rows_of_all_shards_are_those_of_the_whole() {
+    for words in [MAP, FAILING, RANDOM, STUDY] {
+        let directory = tempfile::tempdir().unwrap();
+        let here = directory.path();
+        let whole = well(&ran(here, words, &["--csv", "-"]));
+        let parts = ["1/3", "2/3", "3/3"].map(|shard| {
+            let csv = well(&ran(here, words, &["--shard", shard, "--csv", "-"]));
+            let rows: Vec<String> = sorted(&csv).iter().map(|row| row.to_string()).collect();
+            rows
+        });
+        let mut all = parts.concat();
+        all.sort_unstable();
+        // The header stands once in each.
+        all.dedup();
+        assert_eq!(all, sorted(&whole), "{words}");
+    }
+}
+
+#[test]
+fn options_and_logs_of_sums_are_refused_with_what_replaces_them() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    well(&ran(here, SUMS, &["--failing", "f.csv"]));
-    let single = crate::program::rows(&well(&ran(here, RANDOM, &["--csv", "-"])));
-    let wanted: Vec<(String, String)> = single
-        .iter()
-        .filter(|row| {
-            let solvable = single
-                .iter()
-                .any(|other| other["problem"] == row["problem"] && other["verdict"] == "converged");
-            let solvable = solvable || row["answers"] != "0";
-            row["verdict"] != if solvable { "converged" } else { "no-answer" }
-        })
-        .map(|row| (row["problem"].clone(), row["strategy"].clone()))
-        .collect();
-    let told = crate::program::rows(&String::from_utf8(bytes(here, "f.csv")).unwrap());
-    let told: Vec<_> = told
-        .iter()
-        .map(|row| (row["cell"].clone(), row["strategy"].clone()))
-        .collect();
-    assert!(!told.is_empty());
-    assert_eq!(told, wanted);
+    for option in [["--aggregate", "5"], ["--failing", "a.csv"]] {
+        let output = ran(here, MAP, &option);
+        assert_eq!(code(&output), 2);
+        let told = err(&output);
+        assert!(told.starts_with(option[0]), "{told}");
+        assert!(told.contains("--shard K/N --csv FILE"), "{told}");
+    }
+    well(&ran(here, MAP, &["--log", "a.log"]));
+    let text = String::from_utf8(bytes(here, "a.log")).unwrap();
+    let lines = text.lines().map(|line| {
+        let unsealed = line.rsplit_once('\t').map_or(line, |(line, _)| line);
+        unsealed.replace("what:\"map\"", "what:\"map, as sums\"") + "\n"
+    });
+    std::fs::write(here.join("b.log"), lines.collect::<String>()).unwrap();
+    for option in ["--log", "--merge", "--resume"] {
+        let output = ran(here, MAP, &[option, "b.log"]);
+        assert_eq!(code(&output), 2);
+        let told = err(&output);
+        assert!(
+            told.starts_with("b.log: it has the sums of `--aggregate`"),
+            "{told}"
+        );
+    }
 }
 
 #[test]
 fn missing_cells_are_named_with_the_command_that_does_them() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    for words in [MAP, RANDOM, SUMS, STUDY] {
+    for words in [MAP, RANDOM, STUDY] {
         let whole = well(&ran(here, words, &["--csv", "-"]));
         let logs = shards(here, words, 3);
         std::fs::remove_file(here.join(&logs[1])).unwrap();
@@ -177,7 +203,6 @@ fn logs_of_something_else_are_refused_with_the_reason() {
         ),
         (STUDY, "those of map, and not of study"),
         (RANDOM, "those of map, and not of map --random"),
-        (SCENE_SUMS, "those of map, and not of map, as sums"),
     ];
     for (words, why) in others {
         for part in [["--merge", "a.log"], ["--log", "a.log"]] {
@@ -239,8 +264,8 @@ fn a_part_is_no_table_and_a_shard_is_k_of_n() {
         (&["--shard", "0/3", "--log", "a"], "K/N"),
         (&["--shard", "4/3", "--log", "a"], "K/N"),
         (
-            &["--shard", "1/3", "--log", "a", "--csv", "-"],
-            "--merge makes both",
+            &["--shard", "1/3", "--log", "a", "--svg", "a.svg"],
+            "--merge draws it",
         ),
         (&["--log", "a", "--merge", "b"], "cannot be used"),
         (&["--resume", "a", "--merge", "b"], "cannot be used"),
@@ -263,7 +288,7 @@ proptest! {
     fn a_log_that_was_cut_anywhere_goes_on_to_the_same_whole(cut in 0.0_f64..1.0, torn in 0_usize..2) {
         let directory = tempfile::tempdir().unwrap();
         let here = directory.path();
-        let words = "map osc-two3 --over friction=5,20,45 --over increment=0.5,0.25";
+        let words = "map osc-two3 --over friction=5,10,20,40 --over increment=0.5,0.25";
         let whole = well(&ran(here, words, &["--csv", "-"]));
         let logs = shards(here, words, 2);
         let text = bytes(here, &logs[torn]);
@@ -294,7 +319,7 @@ fn sigterm_stops_a_shard_with_130_and_the_same_command_goes_on() {
     for words in [
         "map 02-two-cantilevers-rough --over increment=0.5,0.4,0.3,0.25,0.2,0.1,1e-4,1.1e-4,1.2e-4,1.3e-4,1.4e-4,1.5e-4 --jobs 1",
         "study 02-two-cantilevers-rough --vary increment=0.5,0.4,0.3,0.25,0.2,0.1,1e-4,1.1e-4,1.2e-4,1.3e-4,1.4e-4,1.5e-4 --jobs 1",
-        "map --random 100000 --aggregate 40 --strategies table2,ladder --jobs 1",
+        "map --random 100000 --strategies table2,ladder --jobs 1",
     ] {
         let directory = tempfile::tempdir().unwrap();
         let here = directory.path();

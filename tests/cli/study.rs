@@ -8,7 +8,7 @@ use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
 use stickslip::study::{
-    self, AxisQuantity, Plan, Reason, Run, Study, Vary, Watch, csv, figure, plot,
+    self, AxisQuantity, Plan, Reason, Run, Study, Vary, Watch, csv, curves, figure,
 };
 
 const BEAM: &str = "01-pinned-beam-rough-floor";
@@ -69,7 +69,8 @@ fn results_are_in_the_order_of_the_product_whatever_finishes_first() {
         "0.05 30", "0.05 35", "0.05 40", "0.5 30", "0.5 35", "0.5 40",
     ];
     assert_eq!(values, expected);
-    assert_eq!(plan.increments(), 3 * (50 + 5));
+    let increments = plan.cases.iter().map(|case| case.increments);
+    assert_eq!(increments.sum::<u64>(), 3 * (50 + 5));
     let runs = all_of(&plan, 4);
     let accepted: Vec<usize> = runs.iter().map(|run| run.rows.len()).collect();
     assert_eq!(accepted, [50, 50, 50, 5, 5, 5]);
@@ -246,7 +247,7 @@ fn a_figure_names_its_runs_marks_failures_and_says_what_it_was_made_from() {
         "from the start of the history"
     );
     assert_eq!(chart.curves[0].points.len(), 5);
-    let svg = plot::svg(&chart).unwrap();
+    let svg = chart.sheet().unwrap().svg().unwrap();
     for part in [
         "increment=0.01",
         "increment=0.05",
@@ -262,42 +263,46 @@ fn a_figure_names_its_runs_marks_failures_and_says_what_it_was_made_from() {
     }
     // Two strokes for each cross: one at the end of the curve, one in the legend.
     assert_eq!(svg.matches("#C00000").count(), 2 * 2 * 2);
-    assert_eq!(plot::svg(&chart).unwrap(), svg);
+    assert_eq!(chart.sheet().unwrap().svg().unwrap(), svg);
     let whole = Plan::new(Study::of_scene(ROUGH)).unwrap();
-    let svg = plot::svg(&figure::chart(&whole, &all_of(&whole, 1))).unwrap();
+    let svg = figure::chart(&whole, &all_of(&whole, 1))
+        .sheet()
+        .unwrap()
+        .svg()
+        .unwrap();
     assert_eq!(svg.matches("#C00000").count(), 0);
 }
 
 #[test]
 fn charts_with_little_or_nothing_or_much_in_them_are_drawn() {
-    let axis = |counts| plot::Axis {
+    let axis = |counts| curves::Axis {
         name: "a & <b>".into(),
         counts,
     };
-    let curve = |label: String, points: &[(f64, f64)]| plot::Curve {
+    let curve = |label: String, points: &[(f64, f64)]| curves::Curve {
         label,
         points: points.to_vec(),
-        end: plot::CurveEnd::Failed("why".into()),
+        end: curves::CurveEnd::Failed("why".into()),
     };
-    let mut chart = plot::Chart {
+    let mut chart = curves::Chart {
         title: "A title that is too long for one line ".repeat(9),
         x: axis(true),
         y: axis(false),
         curves: Vec::new(),
         footer: vec![String::new()],
     };
-    plot::png(&chart).unwrap();
+    chart.sheet().unwrap().png().unwrap();
     chart.curves.push(curve(String::new(), &[]));
     chart.curves.push(curve("one".into(), &[(3.0, -1e300)]));
-    plot::png(&chart).unwrap();
+    chart.sheet().unwrap().png().unwrap();
     for k in 0..60 {
         chart
             .curves
             .push(curve(format!("run {k}"), &[(0.0, 0.0), (1e-12, 1.0)]));
     }
-    let svg = plot::svg(&chart).unwrap();
+    let svg = chart.sheet().unwrap().svg().unwrap();
     assert!(svg.contains("and 14 more") && !svg.contains("a & <b>"));
-    plot::png(&chart).unwrap();
+    chart.sheet().unwrap().png().unwrap();
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::num::NonZeroUsize;
 use stickslip::study::plan::Plan;
 use stickslip::study::read::{Study, Vary};
-use stickslip::study::run::{self as runs, Watch};
+use stickslip::study::{Watch, run as runs};
 
 fn main() -> Result<(), Box<dyn Error>> {
     run(&mut std::io::stdout())
@@ -25,7 +25,7 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
         done: &|_| {},
     };
     let jobs = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    for (case, run) in plan.cases.iter().zip(runs::run(&plan, jobs, &watch)?) {
+    for (case, run) in plan.cases.iter().zip(runs(&plan, jobs, &watch)?) {
         let largest = run.rows.iter().max_by(|a, b| a.load.total_cmp(&b.load));
         let row = largest.ok_or("no increment was accepted")?;
         let angle = &case.values[0];

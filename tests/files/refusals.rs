@@ -116,30 +116,30 @@ fn results_that_do_not_fit_their_problem_are_refused_with_their_line() {
         refusal(&directory, &map)
     };
     let trials = |line: &str| line.find("trials:[").unwrap() + "trials:[".len();
-    let none = changed(3, &|line| format!("{}])", &line[..trials(line)]));
+    let none = changed(4, &|line| format!("{}])", &line[..trials(line)]));
     assert!(
-        none.starts_with("log:3:1: ") && none.contains("of 0 trials"),
+        none.starts_with("log:4:1: ") && none.contains("of 0 trials"),
         "{none}"
     );
-    let one = changed(4, &|line| {
+    let one = changed(5, &|line| {
         line[..=line.find("),(").unwrap()].to_owned() + "])"
     });
     assert!(
-        one.starts_with("log:4:1: ") && one.contains("of 1 trials"),
+        one.starts_with("log:5:1: ") && one.contains("of 1 trials"),
         "{one}"
     );
-    let wrong = changed(2, &|line| {
+    let wrong = changed(3, &|line| {
         line.replacen("Right", "Rihgt", 1)
             .replacen("Wrong", "Wrogn", 1)
     });
     assert!(
-        wrong.starts_with("log:2:") && !wrong.starts_with("log:2:1:"),
+        wrong.starts_with("log:3:") && !wrong.starts_with("log:3:1:"),
         "{wrong}"
     );
-    assert!(changed(5, &|line| line.replace('\t', " ")).starts_with("log:5:1: "));
+    assert!(changed(6, &|line| line.replace('\t', " ")).starts_with("log:6:1: "));
     assert!(changed(1, &|_| "stickslip 0.0.0 results, another".into()).starts_with("log:1:1: "));
-    let long = changed(2, &|line| line.replace("stiffness", &"x".repeat(2 << 20)));
-    assert!(long.starts_with("log:2:1: "), "{long}");
+    let long = changed(3, &|line| line.replace("stiffness", &"x".repeat(2 << 20)));
+    assert!(long.starts_with("log:3:1: "), "{long}");
     // As it was, and with an editor's mark, it is taken up.
     put(&directory, "log", &format!("\u{feff}{whole}"));
     well(&run(&directory, &map));

@@ -39,7 +39,9 @@ use stickslip::study::precision;
 use stickslip::study::precision_table;
 use stickslip::study::random::Population;
 use stickslip::study::reference::Reference;
-use stickslip::study::survey::Survey;
+use stickslip::study::shard::Shard;
+use stickslip::study::survey::{self, Survey};
+use stickslip::study::sweep::{Keeping, RunError, Store};
 use stickslip::study::trial::Variant;
 use stickslip::study::{Plan, Study, Watch, precision_figure};
 use stickslip::teach::Lesson;
@@ -399,13 +401,15 @@ fn map_logs() {
             done: &|_| {},
         };
         let one = std::num::NonZeroUsize::MIN;
-        Survey::run(
-            population,
-            vec![variant.clone(), variant],
-            Some(&file),
-            one,
-            &watch,
-        )
+        let variants = vec![variant.clone(), variant];
+        let keeping = Keeping::Log(Some(file.clone()), Shard::WHOLE);
+        let sweep = survey::sweep(&population, &variants);
+        let judged = sweep.run_with(&Store::open(&keeping, &sweep)?, one, &watch)?;
+        Ok::<_, RunError>(Survey {
+            population: population.clone(),
+            variants: variants.clone(),
+            judged,
+        })
     };
     survey().unwrap();
     let log = std::fs::read_to_string(&file).unwrap();

@@ -1,153 +1,225 @@
-//! Letters on a bitmap: evenly spaced, each where its outline says, to a part of a pixel.
-//!
-//! The library's own letters lose the blank at the left of each glyph, and so stand unevenly. All else is handed on to its
-//! bitmap.
+//! Shapes as PNG: every pixel is as dark as the part of it that a shape covers.
 
-use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
-use plotters::prelude::{BitMapBackend, DrawingBackend};
-use plotters::style::text_anchor::{HPos, VPos};
-use plotters_backend::{
-    BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind,
-};
+use super::font::{self, EM};
+use crate::study::drawn::{Anchor, Colour, PlotError, Shape};
+use ab_glyph::{Font, point};
+use ab_glyph_rasterizer::Rasterizer;
 
-/// A bitmap with letters of its own.
-pub struct Bitmap<'a> {
-    below: BitMapBackend<'a>,
-    font: FontRef<'static>,
+/// Pixels for each unit of length.
+const SCALE: f64 = 2.0;
+/// Most pixels of a bitmap; one takes three bytes.
+const MAX_PIXELS: f64 = 64e6;
+
+/// Red, green and blue of each pixel, row by row.
+struct Bitmap {
+    pixels: Vec<u8>,
+    size: (u32, u32),
 }
 
-/// Size of an em over the size of a font, as the library has it in an SVG.
-const EM: f64 = 1.0 / 1.24;
-
-impl<'a> Bitmap<'a> {
-    /// Pixels of red, green and blue, and how many; `None` if the font cannot be read.
-    pub fn new(pixels: &'a mut [u8], size: (u32, u32)) -> Option<Bitmap<'a>> {
-        Some(Bitmap {
-            below: BitMapBackend::with_buffer(pixels, size),
-            font: FontRef::try_from_slice(super::font::font()?).ok()?,
-        })
+/// The shapes on a white sheet of a size.
+///
+/// # Errors
+/// If the sheet is too large, or the font cannot be read.
+pub fn png(shapes: &[Shape], size: (f64, f64)) -> Result<Vec<u8>, PlotError> {
+    let (width, height) = ((size.0 * SCALE).ceil(), (size.1 * SCALE).ceil());
+    if width * height > MAX_PIXELS {
+        return Err(PlotError::new(format!(
+            "it would have {width} by {height} pixels, and a bitmap has {} million at most; draw less of it, or draw it as SVG",
+            MAX_PIXELS / 1e6
+        )));
     }
+    let size = (width as u32, height as u32);
+    let mut bitmap = Bitmap {
+        pixels: vec![255; 3 * size.0 as usize * size.1 as usize],
+        size,
+    };
+    for shape in shapes.iter().filter(|shape| shape.is_finite()) {
+        bitmap.draw(shape)?;
+    }
+    encode(&bitmap).map_err(PlotError::new)
 }
 
-/// Glyphs of a text from its left end on: where each begins, in pixels; and how wide all of it is.
-fn advance(font: &FontRef, scale: PxScale, text: &str) -> (Vec<(ab_glyph::GlyphId, f32)>, f32) {
-    let scaled = font.as_scaled(scale);
-    let (mut glyphs, mut x, mut before) = (Vec::new(), 0.0_f32, None);
-    for c in text.chars() {
-        let glyph = scaled.glyph_id(c);
-        if let Some(before) = before {
-            x += scaled.kern(before, glyph);
-        }
-        glyphs.push((glyph, x));
-        x += scaled.h_advance(glyph);
-        before = Some(glyph);
-    }
-    (glyphs, x)
+fn encode(bitmap: &Bitmap) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, bitmap.size.0, bitmap.size.1);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&bitmap.pixels)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
-impl DrawingBackend for Bitmap<'_> {
-    type ErrorType = <BitMapBackend<'static> as DrawingBackend>::ErrorType;
-
-    fn get_size(&self) -> (u32, u32) {
-        self.below.get_size()
-    }
-
-    fn ensure_prepared(&mut self) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
-        self.below.ensure_prepared()
-    }
-
-    fn present(&mut self) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
-        self.below.present()
-    }
-
-    fn draw_pixel(
-        &mut self,
-        point: BackendCoord,
-        color: BackendColor,
-    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
-        self.below.draw_pixel(point, color)
-    }
-
-    fn draw_line<S: BackendStyle>(
-        &mut self,
-        from: BackendCoord,
-        to: BackendCoord,
-        style: &S,
-    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
-        self.below.draw_line(from, to, style)
-    }
-
-    fn draw_rect<S: BackendStyle>(
-        &mut self,
-        upper_left: BackendCoord,
-        bottom_right: BackendCoord,
-        style: &S,
-        fill: bool,
-    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
-        self.below.draw_rect(upper_left, bottom_right, style, fill)
-    }
-
-    fn draw_text<S: BackendTextStyle>(
-        &mut self,
-        text: &str,
-        style: &S,
-        at: BackendCoord,
-    ) -> Result<(), DrawingErrorKind<Self::ErrorType>> {
-        let color = style.color();
-        let em = style.size() * EM;
-        let units = self.font.units_per_em().unwrap_or(2048.0);
-        let scale = PxScale::from(em as f32 * self.font.height_unscaled() / units);
-        let (glyphs, width) = advance(&self.font, scale, text);
-        let anchor = style.anchor();
-        let left = match anchor.h_pos {
-            HPos::Left => 0.0,
-            HPos::Center => -0.5 * width,
-            HPos::Right => -width,
-        };
-        // Letters without strokes below the line are what is centred.
-        let base = match anchor.v_pos {
-            VPos::Top => 0.8,
-            VPos::Center => 0.36,
-            VPos::Bottom => -0.2,
-        } * em as f32;
-        let (wide, high) = self.get_size();
-        let transform = style.transform();
-        for (glyph, x) in glyphs {
-            let glyph = glyph.with_scale_and_position(scale, point(left + x, base));
-            let Some(outline) = self.font.outline_glyph(glyph) else {
-                continue;
-            };
-            let corner = outline.px_bounds().min;
-            let mut drawn = Ok(());
-            outline.draw(|x, y, cover| {
-                let (x, y) = (corner.x as i32 + x as i32, corner.y as i32 + y as i32);
-                let (x, y) = transform.transform(x, y);
-                let (x, y) = (at.0 + x, at.1 + y);
-                let inside = (0..wide as i32).contains(&x) && (0..high as i32).contains(&y);
-                if inside && cover > 0.0 && drawn.is_ok() {
-                    let alpha = color.alpha * f64::from(cover.min(1.0));
-                    drawn = self
-                        .below
-                        .draw_pixel((x, y), BackendColor { alpha, ..color });
+impl Bitmap {
+    fn draw(&mut self, shape: &Shape) -> Result<(), PlotError> {
+        let scaled = |(x, y): &(f64, f64)| (x * SCALE, y * SCALE);
+        match shape {
+            Shape::Fill { corners, colour } => {
+                let corners = corners.iter().map(scaled).collect();
+                self.cover(&[corners], *colour);
+            }
+            Shape::Line {
+                points,
+                width,
+                colour,
+            } => {
+                let points: Vec<_> = points.iter().map(scaled).collect();
+                self.cover(&stroke(&points, width * SCALE), *colour);
+            }
+            Shape::Text {
+                at,
+                text,
+                size,
+                colour,
+                anchor,
+                upright,
+            } => {
+                let font = font::font()?;
+                let scale = font::scale(font, size * SCALE);
+                let (glyphs, width) = font::glyphs(font, scale, text);
+                let left = match anchor {
+                    Anchor::Left => 0.0,
+                    Anchor::Middle => -0.5 * width,
+                    Anchor::Right => -width,
+                };
+                // Letters without strokes below the line are what is centred.
+                let base = (0.36 * EM * size * SCALE) as f32;
+                let (x, y) = scaled(at);
+                let (column, row) = (x.round() as i64, y.round() as i64);
+                for (glyph, x) in glyphs {
+                    let glyph = glyph.with_scale_and_position(scale, point(left + x, base));
+                    let Some(outline) = font.outline_glyph(glyph) else {
+                        continue;
+                    };
+                    let corner = outline.px_bounds().min;
+                    outline.draw(|x, y, part| {
+                        let (x, y) = (
+                            corner.x as i64 + i64::from(x),
+                            corner.y as i64 + i64::from(y),
+                        );
+                        let (x, y) = if *upright { (y, -x) } else { (x, y) };
+                        self.mix((column + x, row + y), *colour, part);
+                    });
                 }
-            });
-            drawn?;
+            }
         }
         Ok(())
     }
+
+    /// Colours what polygons cover together.
+    fn cover(&mut self, polygons: &[Vec<(f64, f64)>], colour: Colour) {
+        let sheet = (f64::from(self.size.0), f64::from(self.size.1));
+        let polygons: Vec<_> = polygons.iter().map(|p| clipped(p, sheet)).collect();
+        let all = || polygons.iter().flatten();
+        let least = |of: fn(&(f64, f64)) -> f64| all().map(of).fold(f64::INFINITY, f64::min);
+        let most = |of: fn(&(f64, f64)) -> f64| all().map(of).fold(0.0, f64::max);
+        let (left, top) = (least(|p| p.0).floor(), least(|p| p.1).floor());
+        if !left.is_finite() {
+            return;
+        }
+        let size = |to: f64, from: f64| (to - from).ceil() as usize + 1;
+        let mut raster = Rasterizer::new(size(most(|p| p.0), left), size(most(|p| p.1), top));
+        for corners in &polygons {
+            let near = |k: usize| {
+                let (x, y) = corners[k % corners.len()];
+                point((x - left) as f32, (y - top) as f32)
+            };
+            // All turn the same way, so that what two of them cover does not cancel.
+            for k in 0..corners.len() {
+                match turn(corners) > 0.0 {
+                    true => raster.draw_line(near(k), near(k + 1)),
+                    false => raster.draw_line(near(k + 1), near(k)),
+                }
+            }
+        }
+        raster.for_each_pixel_2d(|x, y, part| {
+            let at = (left as i64 + i64::from(x), top as i64 + i64::from(y));
+            self.mix(at, colour, part);
+        });
+    }
+
+    /// Colours a part of a pixel.
+    fn mix(&mut self, (x, y): (i64, i64), (r, g, b): Colour, part: f32) {
+        let (width, height) = (i64::from(self.size.0), i64::from(self.size.1));
+        if part <= 0.0 || !(0..width).contains(&x) || !(0..height).contains(&y) {
+            return;
+        }
+        let start = 3 * (y * width + x) as usize;
+        let part = part.min(1.0);
+        for (own, new) in self.pixels[start..start + 3].iter_mut().zip([r, g, b]) {
+            let mixed = f32::from(*own) * (1.0 - part) + f32::from(new) * part;
+            *own = mixed.round() as u8;
+        }
+    }
+}
+
+/// Twice the area that corners run round: its sign says which way.
+fn turn(corners: &[(f64, f64)]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let pairs = corners.iter().zip(next);
+    pairs.map(|(a, b)| a.0 * b.1 - a.1 * b.0).sum()
+}
+
+/// Polygons that cover a line: a rectangle for each piece, and a disc at each bend.
+fn stroke(points: &[(f64, f64)], width: f64) -> Vec<Vec<(f64, f64)>> {
+    let half = 0.5 * width.max(1.0);
+    let piece = |pair: &[(f64, f64)]| {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
+        let length = (x1 - x0).hypot(y1 - y0).max(f64::MIN_POSITIVE);
+        let (x, y) = (half * (y0 - y1) / length, half * (x1 - x0) / length);
+        vec![
+            (x0 + x, y0 + y),
+            (x1 + x, y1 + y),
+            (x1 - x, y1 - y),
+            (x0 - x, y0 - y),
+        ]
+    };
+    let disc = |(x, y): &(f64, f64)| {
+        let angles = (0..8).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4);
+        angles
+            .map(|a| (x + half * a.cos(), y + half * a.sin()))
+            .collect()
+    };
+    let bends = points.get(1..points.len().saturating_sub(1));
+    let bends = bends.unwrap_or_default().iter().map(disc);
+    points.windows(2).map(piece).chain(bends).collect()
+}
+
+/// The part of a polygon that lies on a sheet (Sutherland and Hodgman).
+fn clipped(corners: &[(f64, f64)], (width, height): (f64, f64)) -> Vec<(f64, f64)> {
+    let edges: [&dyn Fn(&(f64, f64)) -> f64; 4] =
+        [&|p| p.0, &|p| width - p.0, &|p| p.1, &|p| height - p.1];
+    let mut left = corners.to_vec();
+    for inside in edges {
+        let mut next = Vec::new();
+        for (k, b) in left.iter().enumerate() {
+            let a = &left[(k + left.len() - 1) % left.len()];
+            let (from, to) = (inside(a), inside(b));
+            if (from < 0.0) != (to < 0.0) {
+                let part = from / (from - to);
+                next.push((a.0 + part * (b.0 - a.0), a.1 + part * (b.1 - a.1)));
+            }
+            if to >= 0.0 {
+                next.push(*b);
+            }
+        }
+        left = next;
+    }
+    // Round-off of the crossing points.
+    let within = |(x, y): (f64, f64)| (x.clamp(0.0, width), y.clamp(0.0, height));
+    left.into_iter().map(within).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plotters::style::IntoFont;
 
-    /// Columns of a row of pixels that hold ink, as runs.
-    fn strokes(pixels: &[u8], (width, height): (u32, u32)) -> Vec<(usize, usize)> {
-        let ink =
-            |x: usize| (0..height as usize).any(|y| pixels[3 * (y * width as usize + x)] < 128);
+    /// Whether each pixel of a row of columns holds ink, as runs.
+    fn strokes(bitmap: &Bitmap) -> Vec<(usize, usize)> {
+        let (width, height) = (bitmap.size.0 as usize, bitmap.size.1 as usize);
+        let ink = |x: usize| (0..height).any(|y| bitmap.pixels[3 * (y * width + x)] < 128);
         let mut runs: Vec<(usize, usize)> = Vec::new();
-        for x in (0..width as usize).filter(|x| ink(*x)) {
+        for x in (0..width).filter(|x| ink(*x)) {
             match runs.last_mut() {
                 Some(last) if last.1 + 1 == x => last.1 = x,
                 _ => runs.push((x, x)),
@@ -156,20 +228,37 @@ mod tests {
         runs
     }
 
+    fn drawn(size: (u32, u32), shape: &Shape) -> Bitmap {
+        let pixels = vec![255; 3 * (size.0 * size.1) as usize];
+        let mut bitmap = Bitmap { pixels, size };
+        bitmap.draw(shape).unwrap();
+        bitmap
+    }
+
     #[test]
     fn equal_letters_stand_at_equal_distances() {
-        let size = (400, 60);
-        let mut pixels = vec![255; 3 * 400 * 60];
-        let style = ("sans-serif", 26.0)
-            .into_font()
-            .color(&plotters::style::BLACK);
-        let bitmap = Bitmap::new(&mut pixels, size);
-        let drawn = bitmap.map(|mut b| b.draw_text("lilililililil", &style, (10, 10)).is_ok());
-        assert_eq!(drawn, Some(true));
-        let runs = strokes(&pixels, size);
+        let shape = Shape::Text {
+            at: (5.0, 15.0),
+            text: "lilililililil".to_owned(),
+            size: 13.0,
+            colour: (0, 0, 0),
+            anchor: Anchor::Left,
+            upright: false,
+        };
+        let runs = strokes(&drawn((400, 60), &shape));
         assert_eq!(runs.len(), 13);
         let steps: Vec<usize> = runs.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
         let (least, most) = (steps.iter().min().unwrap(), steps.iter().max().unwrap());
         assert!(most - least <= 1, "{steps:?}");
+    }
+
+    #[test]
+    fn a_line_is_as_wide_as_it_says_and_ends_at_the_sheet() {
+        let shape = Shape::Line {
+            points: vec![(10.0, -1e9), (10.0, 5.0), (10.0, 1e9)],
+            width: 2.0,
+            colour: (0, 0, 0),
+        };
+        assert_eq!(strokes(&drawn((40, 40), &shape)), [(18, 21)]);
     }
 }

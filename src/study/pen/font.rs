@@ -1,62 +1,50 @@
-//! The font: how wide texts are in it, and where lines break.
+//! DejaVu Sans, which is carried compressed (`build.rs`): how wide texts are, and where their glyphs stand.
 
-use crate::outside::shown;
-use crate::study::drawn::{PlotError, label};
-use plotters::style::{FontStyle, IntoFont, register_font};
+use crate::study::drawn::PlotError;
+use ab_glyph::{Font, FontRef, GlyphId, PxScale, ScaleFont};
 use std::sync::OnceLock;
 
-/// What the library calls it.
-pub(super) const FONT: &str = "sans-serif";
-/// Most characters of a line that is broken where it is too long.
-const MOST_LINE: usize = 2000;
+/// Size of an em over the size of a text.
+pub(super) const EM: f64 = 1.0 / 1.24;
 
-/// DejaVu Sans, which is carried compressed (`build.rs`).
-pub(super) fn font() -> Option<&'static [u8]> {
-    static FONT: OnceLock<Option<Vec<u8>>> = OnceLock::new();
+/// The font.
+pub(super) fn font() -> Result<&'static FontRef<'static>, PlotError> {
+    static BYTES: OnceLock<Option<Vec<u8>>> = OnceLock::new();
+    static FONT: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
     const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/font.deflate"));
-    let unpacked = || miniz_oxide::inflate::decompress_to_vec(PACKED).ok();
-    FONT.get_or_init(unpacked).as_deref()
+    let bytes = || BYTES.get_or_init(|| miniz_oxide::inflate::decompress_to_vec(PACKED).ok());
+    let font = FONT.get_or_init(|| FontRef::try_from_slice(bytes().as_deref()?).ok());
+    font.as_ref()
+        .ok_or_else(|| PlotError::new("its font cannot be read"))
 }
 
-/// Machines without fonts draw, too.
-pub(super) fn load_font() -> Result<(), PlotError> {
-    static LOADED: OnceLock<bool> = OnceLock::new();
-    let loaded = LOADED.get_or_init(|| {
-        font().is_some_and(|font| register_font(FONT, FontStyle::Normal, font).is_ok())
-    });
-    match loaded {
-        true => Ok(()),
-        false => Err(PlotError::new("its font cannot be read")),
+/// Glyphs of a text, each with the place where it begins, in pixels from the left end; and how wide all of it is.
+pub(super) fn glyphs(font: &FontRef, scale: PxScale, text: &str) -> (Vec<(GlyphId, f32)>, f32) {
+    let scaled = font.as_scaled(scale);
+    let (mut glyphs, mut x, mut before) = (Vec::new(), 0.0_f32, None);
+    for c in text.chars() {
+        let glyph = scaled.glyph_id(c);
+        if let Some(before) = before {
+            x += scaled.kern(before, glyph);
+        }
+        glyphs.push((glyph, x));
+        x += scaled.h_advance(glyph);
+        before = Some(glyph);
     }
+    (glyphs, x)
+}
+
+/// The scale of texts of a size, in pixels.
+pub(super) fn scale(font: &FontRef, size: f64) -> PxScale {
+    let units = font.units_per_em().unwrap_or(2048.0);
+    PxScale::from((size * EM) as f32 * font.height_unscaled() / units)
 }
 
 /// The width of a text.
+///
+/// # Errors
+/// If the font cannot be read.
 pub fn width_of(text: &str, size: f64) -> Result<f64, PlotError> {
-    load_font()?;
-    let measured = (FONT, size).into_font().box_size(text);
-    measured
-        .map(|(width, _)| f64::from(width))
-        .map_err(PlotError::new)
-}
-
-/// Lines that are no wider than that, broken between words; words that are too long by themselves are cut.
-pub fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotError> {
-    let mut all = Vec::new();
-    for line in lines {
-        let mut present = String::new();
-        for word in shown::cut(line, MOST_LINE).split_whitespace() {
-            let word = label(word);
-            let longer = match present.is_empty() {
-                true => word.clone(),
-                false => format!("{present} {word}"),
-            };
-            if !present.is_empty() && 1.06 * width_of(&longer, size)? > width {
-                all.push(std::mem::replace(&mut present, word));
-            } else {
-                present = longer;
-            }
-        }
-        all.push(present);
-    }
-    Ok(all)
+    let font = font()?;
+    Ok(f64::from(glyphs(font, scale(font, size), text).1))
 }

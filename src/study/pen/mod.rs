@@ -1,22 +1,20 @@
-//! Who draws: SVG and PNG with the same bits on any machine, since the font comes along.
-//!
-//! - [`chart`]: curves over two axes; [`sheet`]: shapes.
-//! - [`font`]: how wide texts are; [`bitmap`]: its letters on a bitmap; `pixels`: the bitmap as PNG.
+//! Shapes as SVG and PNG, with the same bits on every machine, because the program carries the font.
 //!
 //! A build without the feature `plot` has `penless.rs` instead.
 
-pub mod bitmap;
-pub mod chart;
-pub mod font;
-mod pixels;
-pub mod sheet;
+mod bitmap;
+mod font;
+mod svg;
 
 use super::drawn::PlotError;
+pub use bitmap::png;
+pub use font::width_of;
+pub use svg::svg;
 
-/// That this build draws.
+/// Whether this build draws.
 ///
 /// # Errors
-/// Never; a build without the feature `plot` says here that it does not.
+/// That it does not; never with the feature `plot`.
 pub fn ready() -> Result<(), PlotError> {
     Ok(())
 }

@@ -1,0 +1,250 @@
+//! What all sweeps share: `--shard`, `--log`, `--merge`, running, and writing what came of it.
+
+use super::base::{Error, Exit, quoted, tell};
+use super::interrupt::Interrupt;
+use super::outputs::{OutputArgs, Outputs};
+use crate::study::Watch;
+use crate::study::drawn::PlotError;
+use crate::study::log::{LogError, Outcome};
+use crate::study::origin;
+use crate::study::shard::{NoShard, Shard, ranges};
+use crate::study::sheet::Sheet;
+use crate::study::sweep::{Keeping, Missing, RunError, Store, Sweep};
+use std::path::PathBuf;
+
+/// Which part of a sweep is run, where its results are, and what is written.
+#[derive(Debug, clap::Args)]
+pub struct SweepArgs {
+    /// Runs only the cells of shard K of N: writes their rows (--csv), or stores them (--log); page cluster
+    #[arg(long, value_name = "K/N", value_parser = shard)]
+    shard: Option<Shard>,
+    /// Keeps each result of this sweep in this file as it comes, and goes on with what is there
+    #[arg(long, value_name = "FILE", alias = "resume")]
+    log: Option<PathBuf>,
+    /// Runs nothing, and puts the logs of all shards together, in any order
+    #[arg(long, value_name = "LOG", num_args = 1.., conflicts_with_all = ["log", "shard"])]
+    merge: Vec<PathBuf>,
+    #[command(flatten)]
+    pub out: OutputArgs,
+}
+
+fn shard(text: &str) -> Result<Shard, NoShard> {
+    text.parse()
+}
+
+/// What came of a sweep.
+pub struct Report<'a> {
+    pub table: String,
+    /// Drawn only if a picture is wanted.
+    pub picture: Box<dyn FnOnce() -> Result<Sheet, PlotError> + 'a>,
+    /// Summary for the user, left out with `--quiet`.
+    pub lines: Vec<String>,
+    pub warnings: Vec<String>,
+}
+
+impl Report<'_> {
+    /// Writes all files, and prints the rest.
+    pub fn write(self, outputs: Outputs, quiet: bool) -> Result<(), Error> {
+        outputs.write(&self.table, self.picture)?;
+        let lines = self.lines.iter().filter(|_| !quiet);
+        lines.chain(&self.warnings).for_each(|line| tell(line));
+        Ok(())
+    }
+}
+
+impl SweepArgs {
+    /// Whether an option of shards and logs is given.
+    pub fn is_kept(&self) -> bool {
+        self.log.is_some() || !self.merge.is_empty()
+    }
+
+    /// The shard that is run, if it is not the whole.
+    pub fn part(&self) -> Option<Shard> {
+        self.shard.filter(|shard| shard.of().get() > 1)
+    }
+
+    fn keeping(&self) -> Result<Keeping, Error> {
+        let shard = self.shard.unwrap_or(Shard::WHOLE);
+        let wrong = |why: &str| Err(Error::Usage(format!("--shard {shard} {why}")));
+        if self.part().is_some() && self.out.draws() {
+            return wrong(
+                "runs a part of the cells, which is no picture; --merge draws it from all logs",
+            );
+        }
+        if self.shard.is_some() && self.log.is_none() && !self.out.writes() {
+            return wrong(
+                "needs a file for its results: --csv FILE for rows, --log FILE for --merge",
+            );
+        }
+        Ok(match self.merge.is_empty() {
+            true => Keeping::Log(self.log.clone(), shard),
+            false => Keeping::Merge(self.merge.clone()),
+        })
+    }
+
+    /// Runs a sweep, or puts it together, and writes the report that is made of its results.
+    pub fn run<'a, T: Outcome>(
+        &self,
+        sweep: &Sweep<'_, T>,
+        interrupt: &Interrupt,
+        report: impl FnOnce(Vec<Option<T>>) -> Result<Report<'a>, Error>,
+    ) -> Result<Exit, Error> {
+        let keeping = self.keeping()?;
+        // Before the runs, so that nobody waits for a result that then has no place to go.
+        let outputs = Outputs::open(&self.out)?;
+        let store = Store::open(&keeping, sweep).map_err(|e| failed(e.into()))?;
+        let (cells, [unit, step]) = (&sweep.cells, sweep.units);
+        if let Some(missing) = store.missing(cells) {
+            tell_missing(&missing, cells.len(), unit);
+            return Ok(Exit::Incomplete);
+        }
+        tell_machines(&store);
+        let progress = self.out.progress(sweep.steps(), step);
+        let watch = Watch {
+            stop: &|| interrupt.came(),
+            done: &|steps| progress.inc(steps),
+        };
+        let results = sweep.run_with(&store, self.out.jobs(), &watch);
+        progress.finish_and_clear();
+        let mut results = results.map_err(failed)?;
+        if let Some(shard) = self.part() {
+            for (cell, result) in cells.iter().zip(&mut results) {
+                result.take_if(|_| !store.does(cell));
+            }
+            let own = || cells.iter().filter(|cell| store.does(cell));
+            let (all, there) = (own().count(), own().filter(|cell| store.has(cell)).count());
+            let done = count_done(&results);
+            if done < all {
+                tell(&format!(
+                    "interrupted; {done} of {all} {unit} of shard {shard} are done; the same command goes on"
+                ));
+                return Ok(Exit::Interrupted);
+            }
+            if self.out.writes() {
+                outputs.write_table(&report(results)?.table)?;
+            }
+            if !self.out.quiet {
+                tell(&format!(
+                    "shard {shard}: {all} {unit}, {there} of which were there"
+                ));
+            }
+            return Ok(Exit::Good);
+        }
+        let (all, done) = (results.len(), count_done(&results));
+        let report = match report(results) {
+            Err(_) if interrupt.came() => {
+                tell("interrupted before there was anything to compare");
+                return Ok(Exit::Interrupted);
+            }
+            report => report?,
+        };
+        report.write(outputs, self.out.quiet)?;
+        if done < all {
+            tell(&format!("interrupted; {done} of {all} {unit} were done"));
+            return Ok(Exit::Interrupted);
+        }
+        Ok(Exit::Good)
+    }
+}
+
+fn count_done<T: Outcome>(results: &[Option<T>]) -> usize {
+    let done = results.iter().flatten();
+    done.filter(|result| result.is_over()).count()
+}
+
+/// The bits of results depend on the machine, which tables and pictures name: other kinds of machines are named here.
+fn tell_machines<T: Outcome>(store: &Store<T>) {
+    let here = origin::processor();
+    let others: Vec<&str> = store.machines().filter(|other| *other != here).collect();
+    if !others.is_empty() {
+        tell(&format!(
+            "computed on {}, put together on {here}, which tables and pictures name; last bits may be other ones there",
+            others.join("; ")
+        ));
+    }
+}
+
+/// An error of a sweep; what another try may get past is told from what it will not.
+pub fn failed(error: RunError) -> Error {
+    match error {
+        RunError::Log(LogError::Busy(_) | LogError::File { .. }) | RunError::Threads(_) => {
+            Error::Again(error.to_string())
+        }
+        _ => Error::Usage(error.to_string()),
+    }
+}
+
+/// Ranges of numbers, and commands, that a message has at most.
+const MOST: usize = 8;
+
+fn tell_missing(missing: &Missing, all: usize, unit: &str) {
+    let count = missing.cells.len();
+    tell(&format!(
+        "{count} of {all} {unit} are missing (numbers from 0, in the order of the table): {}",
+        ranges(&missing.cells, MOST)
+    ));
+    let given: Vec<String> = std::env::args().skip(1).collect();
+    let sweep = words(&given);
+    tell("This does them; merge again then, with its logs too:");
+    for (shard, file) in missing.shards.iter().take(MOST) {
+        let (number, of) = (shard.number(), shard.of());
+        let file = file.as_ref().map(|file| file.display().to_string());
+        let file = file.unwrap_or_else(|| format!("shard-{number}-of-{of}.log"));
+        let part = match of.get() {
+            1 => String::new(),
+            _ => format!(" --shard {shard}"),
+        };
+        tell(&format!(
+            "  stickslip {sweep}{part} --log {}",
+            quoted(&file)
+        ));
+    }
+    if missing.shards.len() > MOST {
+        let numbers = missing.shards.iter().skip(MOST);
+        let numbers: Vec<usize> = numbers.map(|(s, _)| s.number() as usize).collect();
+        tell(&format!(
+            "  likewise shards {}",
+            ranges(&numbers, usize::MAX)
+        ));
+    }
+}
+
+/// The words of a command line that say what is swept: without where results come from and go to.
+fn words(given: &[String]) -> String {
+    const WITH_VALUE: [&str; 7] = [
+        "--csv", "--svg", "--png", "--jobs", "--log", "--resume", "--shard",
+    ];
+    const ALONE: [&str; 3] = ["--force", "--quiet", "-q"];
+    let (mut words, mut left_out) = (Vec::new(), 0);
+    for word in given {
+        let option = word.split('=').next().unwrap_or_default();
+        if word.starts_with('-') && word != "-" {
+            left_out = 0;
+        }
+        if left_out > 0 {
+            left_out -= 1;
+        } else if option == "--merge" {
+            left_out = if word == option { usize::MAX } else { 0 };
+        } else if WITH_VALUE.contains(&option) {
+            left_out = usize::from(word == option);
+        } else if !ALONE.contains(&word.as_str()) {
+            words.push(quoted(word));
+        }
+    }
+    words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sweep_is_typed_again_without_what_it_makes() {
+        let given = "map a.ron --over x=1,2 --merge b.log c.log --csv - -q --over y=1 --jobs=3 --set z=it's";
+        let given: Vec<String> = given.split(' ').map(str::to_owned).collect();
+        assert_eq!(
+            words(&given),
+            "map a.ron --over x=1,2 --over y=1 --set 'z=it'\\''s'"
+        );
+    }
+}

@@ -1,0 +1,190 @@
+//! Curves over two axes, and their drawing.
+//!
+//! A drawing is wider the longer its legend, and higher the more of it there is, so that nothing is cut off.
+
+use super::drawn::PlotError;
+use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
+use crate::explain::number::six;
+
+/// The plot, without its axes' words, and its left end.
+const PLOT: (f64, f64) = (620.0, 440.0);
+const LEFT: f64 = 96.0;
+/// Curves named in the legend; a taller one is of no use.
+const MOST_ENTRIES: usize = 48;
+/// Markers on a curve, about.
+const MARKERS: usize = 12;
+
+/// Curves over two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// Above it.
+    pub title: String,
+    /// To the right.
+    pub x: Axis,
+    /// Upwards.
+    pub y: Axis,
+    /// Its curves, in the order of the legend.
+    pub curves: Vec<Curve>,
+    /// Lines below the chart that say what it was made from; long ones are broken.
+    pub footer: Vec<String>,
+}
+
+/// What a chart runs along.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Axis {
+    /// What it is called.
+    pub name: String,
+    /// It counts something: it starts at zero and has whole numbers only.
+    pub counts: bool,
+}
+
+/// One line with markers, and a line of the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// What the legend calls it.
+    pub label: String,
+    /// Finite numbers.
+    pub points: Vec<(f64, f64)>,
+    /// What its last point is.
+    pub end: CurveEnd,
+}
+
+/// What a curve's last point is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CurveEnd {
+    /// Where it should end.
+    Whole,
+    /// Where it failed, and why: a cross, and a line of the legend.
+    Failed(String),
+    /// Where it was cut off, and why: a line of the legend.
+    Stopped(String),
+}
+
+impl CurveEnd {
+    fn why(&self) -> Option<&str> {
+        match self {
+            CurveEnd::Whole => None,
+            CurveEnd::Failed(why) | CurveEnd::Stopped(why) => Some(why),
+        }
+    }
+}
+
+impl Chart {
+    /// The chart as a drawing.
+    ///
+    /// # Errors
+    /// If the font cannot be read.
+    pub fn sheet(&self) -> Result<Sheet, PlotError> {
+        let is_told = |c: &Curve| !c.label.is_empty() || c.end != CurveEnd::Whole;
+        let named = match self.curves.iter().any(is_told) {
+            true => &self.curves[..self.curves.len().min(MOST_ENTRIES)],
+            false => &[],
+        };
+        let labels = widest(named.iter().map(|c| c.label.as_str()), LABEL)?;
+        let words = widest(named.iter().filter_map(|c| c.end.why()), SMALL)?;
+        let legend = match named {
+            [] => 0.0,
+            _ => 36.0 + MARGIN + labels.max(words),
+        };
+        let mut sheet = Sheet::new(LEFT + PLOT.0 + 2.0 * MARGIN + legend, &self.title)?;
+        let top = sheet.height;
+        let place = self.curves(&mut sheet, top);
+        // Above all lines, so that none hides a failure.
+        for curve in &self.curves {
+            if let (CurveEnd::Failed(_), Some(end)) = (&curve.end, curve.points.last()) {
+                sheet.cross(place(end), 7.0, CROSS);
+            }
+        }
+        let bottom = self.legend(&mut sheet, named, top);
+        sheet.height = bottom.max(top + PLOT.1 + 4.2 * LABEL);
+        sheet.paragraph(&self.footer, SMALL, GREY)?;
+        Ok(sheet)
+    }
+
+    /// Draws axes and curves; says where a point stands.
+    fn curves(&self, sheet: &mut Sheet, top: f64) -> impl Fn(&(f64, f64)) -> (f64, f64) + use<> {
+        let all = || self.curves.iter().flat_map(|c| &c.points);
+        let x = bounds(&self.x, all().map(|p| p.0));
+        let y = bounds(&self.y, all().map(|p| p.1));
+        let part = |v: f64, (low, high): (f64, f64)| (v - low) / (high - low);
+        let axes = Axes {
+            left: LEFT,
+            top,
+            size: PLOT,
+        };
+        axes.draw(
+            sheet,
+            (
+                &self.x.name,
+                ticks(&self.x, x).map(|v| (part(v, x), six(v))),
+            ),
+            (
+                &self.y.name,
+                ticks(&self.y, y).map(|v| (part(v, y), six(v))),
+            ),
+        );
+        let place = move |p: &(f64, f64)| axes.at(part(p.0, x), part(p.1, y));
+        for (k, curve) in self.curves.iter().enumerate() {
+            let points: Vec<(f64, f64)> = curve.points.iter().map(&place).collect();
+            sheet.stroke(&points, 2.0, k);
+            // Curves take turns, so that the markers of two that agree are both seen.
+            let every = points.len().div_ceil(MARKERS).max(1);
+            let first = every * k / self.curves.len();
+            for at in points.into_iter().skip(first).step_by(every) {
+                sheet.series_marker(at, k);
+            }
+        }
+        place
+    }
+
+    /// Draws the legend, and returns its lower end.
+    fn legend(&self, sheet: &mut Sheet, named: &[Curve], top: f64) -> f64 {
+        let left = LEFT + PLOT.0 + MARGIN;
+        let mut y = top + 0.5 * ENTRY;
+        for (k, curve) in named.iter().enumerate() {
+            sheet.entry((left, y), k, &curve.label);
+            y += ENTRY;
+            let Some(why) = curve.end.why() else { continue };
+            y -= 0.1 * ENTRY;
+            if matches!(curve.end, CurveEnd::Failed(_)) {
+                sheet.cross((left + 14.0, y), 5.0, CROSS);
+            }
+            sheet.text((left + 36.0, y), why, SMALL, GREY, Anchor::Left);
+            y += ENTRY;
+        }
+        let hidden = self.curves.len() - named.len();
+        if hidden > 0 && !named.is_empty() {
+            let more = format!("and {hidden} more");
+            sheet.text((left + 36.0, y), &more, LABEL, BLACK, Anchor::Left);
+        }
+        y + MARGIN
+    }
+}
+
+/// The range of an axis, with some air.
+fn bounds(axis: &Axis, values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let zero = axis.counts.then_some(0.0);
+    let all = values.chain(zero).fold(None, |all: Option<(f64, f64)>, v| {
+        Some(all.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
+    });
+    let (low, high) = all.unwrap_or((0.0, 1.0));
+    let air = match high - low {
+        0.0 => 0.5 * low.abs().max(1.0),
+        range => 0.04 * range,
+    };
+    (if axis.counts { 0.0 } else { low - air }, high + air)
+}
+
+/// Nine round numbers at most within the range of an axis.
+fn ticks(axis: &Axis, (low, high): (f64, f64)) -> impl Iterator<Item = f64> + use<> {
+    const MOST: f64 = 9.0;
+    let least = (high - low) / MOST;
+    let decade = 10_f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
+    let step = steps.into_iter().find(|step| *step >= least);
+    let step = step.unwrap_or(least);
+    let step = if axis.counts { step.max(1.0) } else { step };
+    let first = (low / step).ceil();
+    let count = ((high / step).floor() - first).clamp(0.0, MOST) as u32;
+    (0..=count).map(move |k| (first + f64::from(k)) * step)
+}
