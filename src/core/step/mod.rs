@@ -9,7 +9,7 @@
 //! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come;
 //!   `turn`: corners of the path, where contacts change their modes.
 //! - `damped`: damped motion past a limit point; [`motion`]: what it carries along.
-//! - [`major_history`]: cycles of major iterations; [`round`]: what makes a cycle of any sequence.
+//! - [`major_history`]: cycles of major iterations.
 //! - [`solver`]: the seam above the stepper, for whatever else can be stepped; `outside`: states of such a solver;
 //!   [`places`]: the tree of those that it has had.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between, which is an [`intervention`].
@@ -32,7 +32,6 @@ pub mod motion;
 mod outside;
 pub mod pace;
 pub mod places;
-pub mod round;
 mod search;
 pub mod solver;
 pub mod state;
