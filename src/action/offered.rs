@@ -83,8 +83,8 @@ impl Need {
                 "the scene is the solver's own, and no file of ours; `export --frozen` writes its interface problem, where it offers that"
                     .into(),
             ),
-            Need::Journal if offers.past => Err("a kept exchange is read-only, and is its own journal".into()),
-            Need::Journal | Need::Attached => Ok(()),
+            Need::Journal => offers.past.map_or(Ok(()), |record| Err(format!("{record}: it is its own journal"))),
+            Need::Attached => Ok(()),
         }
     }
 

@@ -52,6 +52,7 @@ fn model() -> Model {
         monitors: vec![],
         budget: 1e9,
         length: 1.0,
+        finished: None,
     }
 }
 

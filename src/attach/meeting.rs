@@ -86,7 +86,7 @@ fn offers(hello: &Hello) -> Result<Offers, Fault> {
     Ok(Offers {
         name: shown::line(&hello.name).into_owned(),
         version: shown::line(&hello.version).into_owned(),
-        past: false,
+        past: None,
         force: abilities.force,
         hold: abilities.hold,
         increment: has(INCREMENT),

@@ -6,10 +6,12 @@
 //!   requests; `posed`: its frozen interface problem; `judged`: the laws, on the numbers that it tells.
 //! - [`attached`]: the solver, with the tree of the states that it has had; [`past`]: one that was kept in a file,
 //!   [`story`]: what that tells, as text.
+//! - [`calculix`]: finished CalculiX runs; [`recording`]: everything finished, by the name of its file.
 //! - [`serve`]: our own solver on the other side; `wire`: its states and events as messages.
 //! - [`check`]: whether a solver does what it says it does.
 
 pub mod attached;
+pub mod calculix;
 pub mod check;
 pub mod fault;
 mod judged;
@@ -19,6 +21,7 @@ pub mod meeting;
 mod orders;
 pub mod past;
 mod posed;
+pub mod recording;
 pub mod serve;
 pub mod story;
 mod told;

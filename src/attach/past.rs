@@ -86,6 +86,8 @@ impl NoPast {
     }
 }
 
+/// What a kept exchange is.
+pub const READ_ONLY: &str = "kept exchange, read-only";
 /// Most bytes of a kept exchange.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -154,7 +156,7 @@ pub fn open(name: &str, text: &str) -> Result<Opened, NoPast> {
         offers: Offers {
             name: met.hello.name,
             version: met.hello.version,
-            past: true,
+            past: Some(READ_ONLY),
             goes_back: GoesBack::ToAny,
             ..Offers::default()
         },

@@ -14,7 +14,7 @@ use crate::linear::norms::Norms;
 use crate::model::{Friction, Mode, Model, Strategy};
 use crate::outside::shown;
 use crate::scene::attached::mode;
-use crate::step::event::{Event, Failure, Outcome, Position};
+use crate::step::event::{Event, Failure, Outcome, Position, Words};
 use crate::step::state::State;
 use crate::strategy::method;
 use serde::Deserialize;
@@ -100,7 +100,10 @@ impl Frame<'_> {
             drag: told.drag.unwrap_or(0.0),
             nodes,
             before: norms(&told.residual),
-            words: Arc::new(words),
+            words: Arc::new(Words {
+                contacts: words,
+                ..Words::default()
+            }),
             outcome,
         };
         let mut state = self.next(from, told, &event);

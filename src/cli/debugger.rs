@@ -3,8 +3,7 @@
 use super::base::{Error, Exit, SetArgs};
 use super::front;
 use super::groups;
-use super::past;
-use crate::attach::past::Opened;
+use crate::attach::recording::Recording;
 use crate::record::journal::Keep;
 use crate::session::Session;
 use std::io::IsTerminal;
@@ -13,7 +12,7 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A scene file, or the name of a built-in scene; without one, the debugger offers the built-in ones. The .cel of a
-    /// CalculiX run that is over opens that run, to be looked at, and so does the exchange that `attach --exchange` kept
+    /// finished CalculiX run opens that run, read-only, and so does the exchange that `attach --exchange` kept
     scene: Option<String>,
     #[command(flatten)]
     set: SetArgs,
@@ -38,31 +37,10 @@ pub fn main(args: Args) -> Result<Exit, Error> {
         return Err(Error::Usage(told));
     }
     front::ready()?;
-    if let Some(past) = args
-        .scene
-        .as_deref()
-        .map(past::named)
-        .transpose()?
-        .flatten()
+    if let Some(name) = args.scene.as_deref()
+        && let Some(recording) = Recording::open(name).map_err(Error::Usage)?
     {
-        let asked = [
-            (!args.set.set.is_empty(), "--set"),
-            (args.journal.is_some(), "--journal"),
-        ];
-        if let Some((_, asked)) = asked.into_iter().find(|(is, _)| *is) {
-            return Err(Error::Usage(past::read_only(asked)));
-        }
-        if !has_terminal() {
-            let name = past.name;
-            return Err(Error::Usage(format!(
-                "to look at a run needs a terminal, and standard input or output is none; `stickslip show {name}` prints it as text"
-            )));
-        }
-        front::look(past)?;
-        return Ok(Exit::Good);
-    }
-    if let Some(opened) = args.scene.as_deref().map(past::kept).transpose()?.flatten() {
-        return look_at(opened, &args);
+        return view(recording, name, &args);
     }
     if !has_terminal() {
         let scene = args.scene.as_deref().unwrap_or("SCENE");
@@ -79,26 +57,23 @@ pub fn main(args: Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// Looks at an exchange that was kept.
-fn look_at(opened: Opened, args: &Args) -> Result<Exit, Error> {
+/// Shows a finished run.
+fn view(recording: Recording, name: &str, args: &Args) -> Result<Exit, Error> {
+    let kind = recording.kind();
     let asked = [
         (!args.set.set.is_empty(), "--set"),
         (args.journal.is_some(), "--journal"),
     ];
     if let Some((_, asked)) = asked.into_iter().find(|(is, _)| *is) {
-        return Err(Error::Usage(format!(
-            "{asked} does not go with it; a kept exchange is read-only"
-        )));
+        return Err(Error::Usage(format!("{asked} cannot be used: {kind}")));
     }
     if !has_terminal() {
-        let name = args.scene.as_deref().unwrap_or("FILE");
         return Err(Error::Usage(format!(
-            "to look at a kept exchange needs a terminal, and standard input or output is none; `stickslip story {name}` prints it as text"
+            "the debugger needs a terminal, and standard input or output is none; `stickslip story {name}` prints it as text"
         )));
     }
-    let told =
-        "a kept exchange: all that the solver did, to be gone through; nothing can follow on it";
-    front::resume(Session::kept(opened), told)?;
+    let words = recording.greeting();
+    front::resume(Session::recorded(recording), words)?;
     Ok(Exit::Good)
 }
 

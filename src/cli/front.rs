@@ -1,7 +1,6 @@
 //! The debugger in the terminal, as subcommands begin it. A build without the feature `tui` has `frontless.rs` instead.
 
 use super::base::Error;
-use crate::explain::past::run::Past;
 use crate::record::journal::{Keep, Record};
 use crate::session::Session;
 use crate::teach::Lesson;
@@ -15,11 +14,6 @@ pub fn ready() -> Result<(), Error> {
 /// The debugger on a scene; without one, it offers the built-in ones.
 pub fn debug(scene: Option<String>, set: &[(String, String)], keep: &Keep) -> Result<(), Error> {
     tui::run(scene, set, keep).map_err(told)
-}
-
-/// A run that is over, to be looked at.
-pub fn look(past: Past) -> Result<(), Error> {
-    tui::past::run(past).map_err(told)
 }
 
 /// The debugger on a session that was replayed.

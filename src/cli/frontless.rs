@@ -1,7 +1,6 @@
 //! What stands for `front` in a build without the feature `tui`: all of it says that this build has no debugger.
 
 use super::base::Error;
-use crate::explain::past::run::Past;
 use crate::record::journal::{Keep, Record};
 use crate::session::Session;
 use crate::teach::Lesson;
@@ -14,11 +13,6 @@ pub fn ready() -> Result<(), Error> {
 
 /// Would be the debugger on a scene.
 pub fn debug(_: Option<String>, _: &[(String, String)], _: &Keep) -> Result<(), Error> {
-    ready()
-}
-
-/// Would show a run that is over.
-pub fn look(_: Past) -> Result<(), Error> {
     ready()
 }
 

@@ -30,7 +30,6 @@ mod list;
 mod man;
 mod map;
 mod outputs;
-mod past;
 mod place;
 mod progress;
 mod record;
@@ -97,7 +96,7 @@ enum Command {
     Diff(diff::Args),
     /// Goes on with a session of the debugger where it was, from its journal
     Resume(resume::Args),
-    /// Tells a session's journal as text, or a CalculiX run that is over
+    /// Tells a session's journal as text, or a finished CalculiX run
     Story(story::Args),
     /// Judges every accepted increment by positions and forces alone: the worst violation of each law
     Audit(audit::Args),
@@ -119,7 +118,7 @@ enum Command {
     Serve(serve::Args),
     /// Guided lessons: lists them, begins one, checks one
     Lesson(lesson::Args),
-    /// Prints the file of a built-in scene, study or lesson, to start from, or a CalculiX run that is over
+    /// Prints the file of a built-in scene, study or lesson, to start from, or a finished CalculiX run
     Show(show::Args),
     /// Prints the script by which a shell completes command lines
     Completions(completions::Args),

@@ -1,10 +1,8 @@
-//! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from; or what a CalculiX run that is
-//! over did, as text.
+//! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from; or what a finished CalculiX run
+//! did, as text.
 
 use super::base::{Error, Exit, say, tell};
-use super::past;
-use crate::attach::story::story;
-use crate::explain::past::summary;
+use crate::attach::recording::Recording;
 use crate::format::error::did_you_mean;
 use crate::outside::carried::Carried;
 use crate::outside::files;
@@ -15,7 +13,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Name of a built-in scene, study or lesson; or the .cel of a CalculiX run that is over, or a kept exchange
+    /// Name of a built-in scene, study or lesson; or the .cel of a finished CalculiX run, or a kept exchange
     name: String,
     /// The work-precision chart of that scene
     #[arg(long)]
@@ -29,14 +27,15 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let text = match past::named(&args.name)? {
-        Some(_) if args.chart => return Err(Error::Usage(past::read_only("--chart"))),
-        Some(past) => summary::text(&past),
-        None if args.chart => find(&args.name, true).map_err(Error::Usage)?.to_owned(),
-        None => match past::kept(&args.name)? {
-            Some(mut opened) => story(&args.name, &mut opened),
-            None => find(&args.name, false).map_err(Error::Usage)?.to_owned(),
-        },
+    let text = match Recording::open(&args.name).map_err(Error::Usage)? {
+        Some(recording) if args.chart => {
+            let message = format!("--chart cannot be used: {}", recording.kind());
+            return Err(Error::Usage(message));
+        }
+        Some(mut recording) => recording.text(&args.name),
+        None => find(&args.name, args.chart)
+            .map_err(Error::Usage)?
+            .to_owned(),
     };
     match &args.output {
         Some(path) if path.as_os_str() != "-" => {

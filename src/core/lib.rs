@@ -72,6 +72,7 @@
 //!     settings: Settings::default(),
 //!     monitors: Vec::new(),
 //!     budget: f64::INFINITY,
+//!     finished: None,
 //!     length: 1.0,
 //! };
 //!

@@ -13,7 +13,6 @@
 //! - [`touch`]: how far the forces depend on where touching nodes are held.
 //! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
 //! - [`attached`]: the same of a solver of another's, from the problem that it offers; [`pushes_told`]: who pushed whom there.
-//! - [`past`]: a run of another program that is over: what cycled in it, and who chattered.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
 pub mod accuracy;
@@ -37,7 +36,6 @@ pub mod names;
 pub mod number;
 pub mod outline;
 pub mod page;
-pub mod past;
 pub mod proven;
 pub mod pushes_told;
 pub mod reach;

@@ -21,6 +21,15 @@ pub fn mode(mode: Mode) -> &'static str {
     }
 }
 
+/// The status of a contact that has a mode next: a finished run does not distinguish stick from slip.
+pub fn status(model: &Model, of: Mode) -> &'static str {
+    match (&model.finished, of) {
+        (None, _) => mode(of),
+        (Some(_), Mode::Free) => "open",
+        (Some(_), _) => "closed",
+    }
+}
+
 /// Modes in the order of Table 2's rows and columns.
 pub const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
 
@@ -92,6 +101,18 @@ pub fn rule(rule: Rule) -> &'static str {
         Rule::Sweeps => "sweeps",
         Rule::Found => "found",
         Rule::Theirs => "theirs",
+    }
+}
+
+/// Where an iteration of a scene was; a finished run has its own names.
+pub fn position_in(model: &Model, at: Position) -> String {
+    let increment = model.increment_name(at.increment);
+    match model.finished {
+        Some(_) => format!(
+            "increment {increment}, attempt {}, iteration {}",
+            at.attempt, at.minor
+        ),
+        None => position(at),
     }
 }
 

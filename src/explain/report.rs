@@ -5,7 +5,7 @@ use crate::contact::table2::{Decision, Rule, Tested};
 use crate::explain::accuracy;
 use crate::explain::judged;
 use crate::explain::jumped;
-use crate::explain::names::{mode, position, slave};
+use crate::explain::names::{mode, position_in, slave};
 use crate::explain::number::{four, six};
 use crate::explain::strain;
 use crate::interface::census;
@@ -126,7 +126,10 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
 
 /// What a minor iteration led to.
 pub fn outcome(model: &Model, event: &Event) -> String {
-    let at = position(event.position);
+    let at = position_in(model, event.position);
+    if !event.words.iteration.is_empty() {
+        return format!("{at}: {}", event.words.iteration);
+    }
     match &event.outcome {
         Outcome::Minor if together(event, Rule::Found) => {
             format!("{at}: a consistent state is found; it is checked next")

@@ -130,8 +130,8 @@ impl FileKind {
             FileKind::Table => "a table of results",
             FileKind::Results => "a file of kept results",
             FileKind::Cast => "a session to be played in a terminal",
-            FileKind::Contacts => "the .cel of a CalculiX run that is over",
-            FileKind::Progress => "a table of a CalculiX run that is over",
+            FileKind::Contacts => "the .cel of a finished CalculiX run",
+            FileKind::Progress => "a table of a finished CalculiX run",
         }
     }
 
@@ -247,7 +247,7 @@ mod tests {
         let table = "SUMMARY OF JOB INFORMATION\n";
         assert_eq!(
             mistaken("job.sta", table, FileKind::Scene).unwrap(),
-            "this is a table of a CalculiX run that is over; `stickslip job.cel` reads it"
+            "this is a table of a finished CalculiX run; `stickslip job.cel` reads it"
         );
     }
 }

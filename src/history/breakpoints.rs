@@ -151,7 +151,7 @@ impl Condition {
             Some(node) => names::slave(model, *node),
             None => "any node",
         };
-        let mode = |mode: &Option<Mode>| mode.map_or("any mode", names::mode);
+        let mode = |mode: &Option<Mode>| mode.map_or("any mode", |mode| names::status(model, mode));
         match self {
             Condition::Mode { node, from, to } => match (from, to) {
                 (None, None) => format!("{} changes mode", name(node)),

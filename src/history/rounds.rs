@@ -5,6 +5,7 @@
 
 use super::strip::Strip;
 use crate::explain::names;
+use crate::interface::cycle;
 use crate::model::{Mode, Model};
 use std::collections::VecDeque;
 
@@ -85,24 +86,28 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     if tail.is_empty() {
         return None;
     }
-    for period in 2..=LONGEST.min(tail.len() / 2) {
-        let repeats = (0..=period).all(|back| same(back, back + period));
-        let moves = (1..period).any(|back| !same(0, back));
-        if repeats && moves {
-            let rounds =
-                (0..).take_while(|&back| back + period <= tail.len() && same(back, back + period));
-            let first = rounds.count() + period - 1;
-            let pattern = |slave: usize| -> Vec<Mode> {
-                (0..period).rev().map(|back| modes(back, slave)).collect()
-            };
-            let members = (0..nodes).map(|slave| (slave, pattern(slave)));
-            let changing = |(_, modes): &(usize, Vec<Mode>)| modes.iter().any(|m| *m != modes[0]);
-            return Some(Rounds::Cycle {
-                period,
-                since: tail[first.saturating_sub(1).min(tail.len() - 1)].0,
-                members: members.filter(changing).collect(),
-            });
-        }
+    // Modes alone prove nothing, so that the turn before must be the same.
+    let repeats = |then: usize| {
+        let period = tail.len() - then;
+        (2..=LONGEST.min(tail.len() / 2)).contains(&period)
+            && (0..=period).all(|back| same(back, back + period))
+            && (1..period).any(|back| !same(0, back))
+    };
+    if let Some(turn) = cycle::closed(tail.len(), 2, repeats, |_| true) {
+        let period = turn.len();
+        let rounds =
+            (0..).take_while(|&back| back + period <= tail.len() && same(back, back + period));
+        let first = rounds.count() + period - 1;
+        let pattern = |slave: usize| -> Vec<Mode> {
+            (0..period).rev().map(|back| modes(back, slave)).collect()
+        };
+        let members = (0..nodes).map(|slave| (slave, pattern(slave)));
+        let changing = |(_, modes): &(usize, Vec<Mode>)| modes.iter().any(|m| *m != modes[0]);
+        return Some(Rounds::Cycle {
+            period,
+            since: tail[first.saturating_sub(1).min(tail.len() - 1)].0,
+            members: members.filter(changing).collect(),
+        });
     }
     let over = BACK.min(tail.len());
     let count = |slave: usize| {
@@ -132,7 +137,10 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                 false => String::new(),
             };
             let member = |(slave, modes): &(usize, Vec<Mode>)| {
-                let modes: Vec<&str> = modes.iter().map(|mode| names::mode(*mode)).collect();
+                let modes: Vec<&str> = modes
+                    .iter()
+                    .map(|mode| names::status(model, *mode))
+                    .collect();
                 format!("{} {}", names::slave(model, *slave), modes.join(" → "))
             };
             let told: Vec<String> = members.iter().take(NAMED).map(member).collect();

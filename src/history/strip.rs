@@ -115,7 +115,7 @@ pub struct Strip {
     pub kind: PointKind,
     /// Relative residual about which the minor iteration was linearised.
     pub residual: f64,
-    /// Norms before it, where this is the first minor iteration of an increment's attempt.
+    /// Norms before it, where this is the first minor iteration of an increment's attempt, or any of a finished run.
     pub first: Option<Box<Norms>>,
     /// Norms after it, where a major iteration ended here and did not fail.
     pub after: Option<Box<Norms>>,
@@ -129,6 +129,8 @@ pub struct Strip {
     /// Interface element that each slave node is on for the next iteration, numbered over all surfaces; shared with the
     /// strip before where nothing moved.
     elements: Arc<[u32]>,
+    /// Letters of a solver that does not distinguish stick from slip, by slave node; else empty.
+    letters: Box<[u8]>,
 }
 
 /// No element.
@@ -172,7 +174,7 @@ impl Strip {
             kind: event.map_or(PointKind::Start, |event| PointKind::of(&event.outcome)),
             residual: event.map_or(0.0, |event| event.before.relative),
             first: event
-                .filter(|event| begins(event))
+                .filter(|event| begins(event) || model.finished.is_some())
                 .map(|event| Box::new(event.before)),
             after: event.and_then(after),
             seconds,
@@ -181,6 +183,7 @@ impl Strip {
                 .map(|s| record(s).map_or(f32::INFINITY, |found| found.decision.margin() as f32))
                 .collect(),
             elements: elements(model, state, before),
+            letters: event.map_or_else(Box::default, |event| event.words.letters.clone().into()),
         }
     }
 
@@ -200,6 +203,7 @@ impl Strip {
             marks: state.nodes.iter().map(mark).collect(),
             margins: before.margins.clone(),
             elements: elements(model, state, Some(before)),
+            letters: Box::default(),
         }
     }
 
@@ -254,6 +258,11 @@ impl Strip {
         Some(self.elements[slave]).filter(|element| *element != NOWHERE)
     }
 
+    /// Letter of a slave node, where the solver gives one in place of a mode.
+    pub fn letter(&self, slave: usize) -> Option<u8> {
+        self.letters.get(slave).copied()
+    }
+
     /// Whether two strips tell the same, but for the time that it took.
     pub fn tells_the_same(&self, other: &Strip) -> bool {
         let numbers = |strip: &Strip| {
@@ -264,6 +273,7 @@ impl Strip {
         (self.position, self.kind) == (other.position, other.kind)
             && self.marks == other.marks
             && self.elements == other.elements
+            && self.letters == other.letters
             && numbers(self) == numbers(other)
     }
 }

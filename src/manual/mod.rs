@@ -51,7 +51,7 @@ pages! {
     settings "settings" "pages/settings.md" "The choices of the method, and its limits";
     strategies "strategies" "pages/strategies.md" "How the next modes are chosen; the ladder; jumps";
     decks "decks" "pages/decks.md" "Decks of CalculiX and Abaqus: what is read, and as what";
-    past_runs "past-runs" "pages/past-runs.md" "A CalculiX run that is over: what cycled, and who chatters";
+    past_runs "past-runs" "pages/past-runs.md" "A finished CalculiX run: its cycles, and the contacts that chatter";
     attaching "attaching" "pages/attaching.md" "Another program's solver, stepped in this debugger";
     protocol "protocol" "pages/protocol.md" "What an attached solver and the debugger say to each other";
     adapters "adapters" "pages/adapters.md" "Attaching a solver with Python: an example, and three that are there";

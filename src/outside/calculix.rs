@@ -1,4 +1,4 @@
-//! A CalculiX run that is over, from its .cel and what lies beside it.
+//! A finished CalculiX run, from its .cel and what lies beside it.
 
 use crate::outside::input::{self, Unreadable};
 use std::fs::OpenOptions;

@@ -41,6 +41,24 @@ pub fn cut(text: &str, most: usize) -> String {
     }
 }
 
+/// The first of some items, with a separator between them; the others are counted.
+pub fn first_of<T: std::fmt::Display>(
+    items: impl IntoIterator<Item = T>,
+    most: usize,
+    separator: &str,
+) -> String {
+    let mut items = items.into_iter();
+    let first: Vec<String> = items
+        .by_ref()
+        .take(most)
+        .map(|item| item.to_string())
+        .collect();
+    match items.count() {
+        0 => first.join(separator),
+        more => format!("{} and {more} more", first.join(separator)),
+    }
+}
+
 /// A text filled up with blanks at its end to so many columns of a terminal, in which a Chinese character takes two.
 pub fn padded(text: &str, columns: usize) -> String {
     let missing = columns.saturating_sub(text.width());

@@ -1,12 +1,36 @@
-//! A session on an exchange that was kept in a file: all ways that the solver went are in its tree, as branches, and nothing can
-//! follow on them.
+//! Sessions on finished runs, to which nothing can be added: all iterations are in the tree, and all ways that an attached solver
+//! went are branches.
 
 use super::machine::Session;
+use crate::attach::calculix::{self, Recorded};
 use crate::attach::past::{Line, Opened};
+use crate::attach::recording::Recording;
 use crate::attach::story::in_common;
 use crate::history::branches;
+use crate::history::strip::{PointKind, Strip};
 
 impl Session {
+    /// The session on a finished run.
+    pub fn recorded(recording: Recording) -> Session {
+        match recording {
+            Recording::Exchange(opened) => Session::kept(opened),
+            Recording::Calculix(opened) => Session::finished(opened),
+        }
+    }
+
+    /// The session on a CalculiX run, at the end of the first attempt that did not converge, or at the start.
+    fn finished(opened: calculix::Opened) -> Session {
+        let solver = Recorded::new(&opened);
+        let iterations = opened.run.files.iterations.len();
+        let mut session = Session::attached(opened.scene, Box::new(solver), opened.log);
+        session.take_steps(vec![None; iterations]);
+        session.wait();
+        let given_up = |strip: &Strip| strip.kind.is_failure() || strip.kind == PointKind::Cut;
+        let first = session.strips().iter().position(given_up);
+        session.rest_at(first.unwrap_or(0));
+        session
+    }
+
     /// The session at the start of the first way, with all others as branches that leave the nearest one before.
     pub fn kept(opened: Opened) -> Session {
         let mut session = Session::attached(opened.scene, Box::new(opened.past), opened.log);

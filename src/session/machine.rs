@@ -15,6 +15,7 @@ use super::diary::Diary;
 use super::refusal::Refusal;
 use super::worker::{Message, Worker};
 use crate::attach::Log;
+use crate::attach::calculix::words::NO_MODES;
 use crate::explain::report;
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoint;
@@ -297,7 +298,7 @@ impl Session {
             .collect()
     }
 
-    /// The branch, if there are several, and the watches with their values, in a line; empty where there is neither.
+    /// In a line: what a finished run lacks, the branch, if there are several, and the watches with their values.
     pub fn aside(&self) -> String {
         let several = self.tree.branches().len() > 1;
         let branch =
@@ -306,8 +307,11 @@ impl Session {
             Some(value) => format!("{name} = {value:.6e}"),
             None => format!("{name} = none"),
         });
-        branch
+        let finished = self.model().finished.as_ref();
+        finished
+            .map(|_| NO_MODES.to_owned())
             .into_iter()
+            .chain(branch)
             .chain(watches)
             .collect::<Vec<_>>()
             .join("   ")
@@ -459,7 +463,7 @@ impl Session {
             }
             Message::Lost(lost) => {
                 self.task = None;
-                if self.offers.past {
+                if self.offers.past.is_some() {
                     return Some(Reply(lost.to_string()));
                 }
                 self.stands.at = None;
@@ -526,12 +530,13 @@ impl Session {
     }
 
     /// Residual norms of the shown increment attempt up to the cursor: before its first major iteration (0), and
-    /// after each.
+    /// after each; of a finished run those of each iteration.
     pub fn residual_history(&self) -> Vec<(u32, Norms)> {
         let Some(event) = &self.frame().event else {
             return Vec::new();
         };
         let shown = event.position;
+        let finished = self.model().finished.is_some();
         let mut history: Vec<(u32, Norms)> = Vec::new();
         for strip in self.strips()[..=self.cursor].iter().rev() {
             let at = strip.position;
@@ -540,8 +545,11 @@ impl Session {
             {
                 break;
             }
-            history.extend(strip.after.as_deref().map(|after| (at.major, *after)));
-            history.extend(strip.first.as_deref().map(|first| (0, *first)));
+            if !finished {
+                history.extend(strip.after.as_deref().map(|after| (at.major, *after)));
+            }
+            let number = if finished { at.minor } else { 0 };
+            history.extend(strip.first.as_deref().map(|first| (number, *first)));
         }
         history.reverse();
         history.dedup_by_key(|entry| entry.0);

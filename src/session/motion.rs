@@ -4,7 +4,7 @@ use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
 use super::worker::Job;
 use crate::history::breakpoints::{self, Breakpoint};
-use crate::history::strip::Strip;
+use crate::history::strip::{PointKind, Strip};
 use crate::record::command::Unit;
 use crate::step::event::Event;
 use crate::step::solver::GoesBack;
@@ -19,7 +19,7 @@ impl Session {
         let strips = self.strips();
         while left > 0 && hits.is_empty() && at + 1 < strips.len() {
             at += 1;
-            left -= u32::from(unit.ends(strips[at].kind));
+            left -= u32::from(self.ends(unit, &strips[at]));
             if strips[at].kind.is_failure() {
                 left = 0;
             }
@@ -32,6 +32,12 @@ impl Session {
         self.cursor = at;
         self.solve(unit, left, self.breakpoints.clone());
         Reply(self.way() + "running; Ctrl-C interrupts")
+    }
+
+    /// Whether a motion by this unit ends at a point; through a finished run, at each attempt that was given up.
+    fn ends(&self, unit: Unit, strip: &Strip) -> bool {
+        let given_up = unit == Unit::Run && strip.kind == PointKind::Cut;
+        unit.ends(strip.kind) || (given_up && self.model().finished.is_some())
     }
 
     /// Starts new minor iterations from the cursor, which is at the tip.
@@ -64,7 +70,7 @@ impl Session {
             };
             let stops = |k: &usize| match unit {
                 Unit::Minor => true,
-                Unit::Run => strips[*k].kind.is_failure() || !here(*k).is_empty(),
+                Unit::Run => self.ends(unit, &strips[*k]) || !here(*k).is_empty(),
                 _ => unit.ends(strips[*k].kind),
             };
             at = (0..at).rev().find(stops).unwrap_or(0);
@@ -126,7 +132,7 @@ impl Session {
         self.log()?;
         let place = self.frames()[target].state.outside.as_ref()?.place;
         let lost = self.stands.lost.is_some();
-        if self.offers.past || self.stands.at == Some(place) {
+        if self.offers.past.is_some() || self.stands.at == Some(place) {
             return None;
         }
         let way = &self.strips()[..=target];

@@ -280,13 +280,15 @@ impl App {
     }
 
     /// The user's part in the arrangement of the screen.
-    pub fn choice(&self, slaves: usize, lesson: u16) -> Choice {
+    pub fn choice(&self, view: Option<&View>, lesson: u16) -> Choice {
+        let model = view.map(|view| view.model);
         Choice {
             focus: self.focus,
             page: self.page,
             chart: self.chart,
             zoomed: self.zoomed,
-            slaves,
+            slaves: model.map_or(0, |model| model.contacts.len()),
+            has_shape: model.is_none_or(|model| model.finished.is_none()),
             lesson,
         }
     }
@@ -527,7 +529,14 @@ impl App {
             Ui::Predict(whose) => self.predict(whose, view),
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
-            Ui::Log => self.overlay = Overlay::Solver(solver::Reader::new(solver::Page::Log)),
+            Ui::Log => {
+                let finished = view.is_some_and(|view| view.model.finished.is_some());
+                let page = match finished {
+                    true => solver::Page::Run,
+                    false => solver::Page::Log,
+                };
+                self.overlay = Overlay::Solver(solver::Reader::new(page));
+            }
             Ui::Parameters => {
                 self.overlay = Overlay::Solver(solver::Reader::new(solver::Page::Parameters));
             }

@@ -5,7 +5,6 @@ use crate::tui::chartframe::ChartFrame;
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Modifier;
 
 /// Width of the labels at the axis, the axis included.
 pub const LABELS: u16 = 7;
@@ -25,8 +24,6 @@ pub struct Point {
     pub other: f64,
     /// What that must get under, if it has a limit of its own.
     pub other_limit: Option<f64>,
-    /// Whether it is looked at.
-    pub here: bool,
 }
 
 impl Point {
@@ -89,15 +86,12 @@ pub fn fits(area: Rect) -> bool {
     area.height >= 4 && area.width > LABELS + 4
 }
 
-/// Draws the iterations, or as many as there is room for: those around the one that is looked at, else the last.
+/// Draws the last iterations, as many as there is room for.
 pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     let frame = ChartFrame::within(area, LABELS);
     let field = frame.field;
     let room = (field.width as usize / 2).max(1);
-    let last = points.len().saturating_sub(room);
-    let here = points.iter().position(|point| point.here);
-    let from = here.map_or(last, |here| here.saturating_sub(room / 2).min(last));
-    let shown = &points[from..points.len().min(from + room)];
+    let shown = &points[points.len().saturating_sub(room)..];
     let scale = Scale::new(shown, field.height);
     let spread = (field.width as usize / shown.len().max(6)).clamp(2, SPREAD);
     let column = |index: usize| index * spread + spread / 2;
@@ -135,13 +129,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
         let text = point.number.to_string();
         let middle = field.x as usize + column(index);
         let start = middle.saturating_sub(text.len() / 2);
-        let wanted = index == 0 || spread > 3 || point.number.is_multiple_of(5) || point.here;
+        let wanted = index == 0 || spread > 3 || point.number.is_multiple_of(5);
         if wanted && start + text.len() <= area.right() as usize {
-            let style = match point.here {
-                true => theme.strong.add_modifier(Modifier::REVERSED),
-                false => theme.faint,
-            };
-            frame.below(buffer, start as u16, &text, style);
+            frame.below(buffer, start as u16, &text, theme.faint);
         }
     }
 }
@@ -194,7 +184,6 @@ mod tests {
             limit: 1e-10,
             other: main,
             other_limit: None,
-            here: false,
         }
     }
 

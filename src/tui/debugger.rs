@@ -1,6 +1,7 @@
 //! The debugger without its terminal: an app, a session, and what waits for the solver. Keys in, screens out.
 
 use crate::action::{self, ChartOf};
+use crate::attach::calculix::words::GREETING;
 use crate::explain::report;
 use crate::outside::shown;
 use crate::record::command::Command;
@@ -403,7 +404,10 @@ impl Debugger {
             .session
             .as_ref()
             .filter(|session| !session.is_running());
-        let failed = |session: &Session| matches!(session.frame().state.status, Status::Failed(_));
+        let failed = |session: &Session| {
+            let failed = matches!(session.frame().state.status, Status::Failed(_));
+            failed && session.model().finished.is_none()
+        };
         if !idle.is_some_and(failed) {
             return String::new();
         }
@@ -485,7 +489,7 @@ impl Debugger {
     fn open(&mut self, mut session: Session) {
         let resumed = session.journal().is_some();
         // A journal that was opened goes on itself.
-        if self.keeps && !resumed && !session.offers().past {
+        if self.keeps && !resumed && session.offers().past.is_none() {
             session.keep_at_default_place();
         }
         (self.measuring, self.app.measuring) = (None, None);
@@ -592,6 +596,10 @@ impl Debugger {
 
 /// What is said when a scene opens: what is doubtful about its start, or else which key goes on.
 fn greet(app: &mut App, session: &Session) {
+    if session.model().finished.is_some() {
+        (app.page, app.chart) = (Pane::Timeline, Pane::Timeline);
+        return app.say(GREETING);
+    }
     match session.doubts() {
         [] => app.say("s is one minor iteration; ? lists the keys"),
         [doubt] => app.complain(doubt),

@@ -71,6 +71,8 @@ pub struct Choice {
     pub zoomed: bool,
     /// Number of slave nodes, hence of the table's rows.
     pub slaves: usize,
+    /// Whether the scene has a shape to draw; else the timeline takes its place.
+    pub has_shape: bool,
     /// Rows that a lesson wants at the screen's width; 0 without a lesson.
     pub lesson: u16,
 }
@@ -135,6 +137,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         _ if choice.zoomed && choice.lesson == 0 => vec![(choice.focus, body)],
         _ if choice.zoomed => zoomed_with_lesson(body, choice),
         _ if choice.lesson > 0 => with_lesson(body, choice),
+        _ if !choice.has_shape && area.width >= 110 && body.height >= 30 => shapeless(body, choice),
         _ if area.width >= 160 && body.height >= 40 => large(body, choice),
         _ if area.width >= 110 && body.height >= 30 => medium(body, choice),
         _ => small(body, choice),
@@ -232,6 +235,30 @@ fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     vec![(choice.focus, upper), (Pane::Lesson, lower)]
 }
 
+/// Table over timeline, and decision and chart next to each other below.
+fn shapeless(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    let nodes = table(choice, body.height / 3);
+    let timeline = table(choice, body.height - nodes - DECISION) + TIMELINE_FRAME - TABLE_FRAME;
+    let rows = [
+        Constraint::Length(nodes),
+        Constraint::Length(timeline),
+        Constraint::Min(0),
+    ];
+    let [nodes, timeline, lower] = Layout::vertical(rows).areas(body);
+    let columns = [2, 3].map(Constraint::Fill);
+    let [decision, chart] = Layout::horizontal(columns).areas(lower);
+    let other = match choice.chart {
+        Pane::Timeline => Pane::Residual,
+        chart => chart,
+    };
+    vec![
+        (Pane::Nodes, nodes),
+        (Pane::Timeline, timeline),
+        (Pane::Decision, decision),
+        (other, chart),
+    ]
+}
+
 fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let most = body.height - TALL_DECISION - 7;
     let rows = [Constraint::Length(table(choice, most)), Constraint::Min(0)];
@@ -301,6 +328,7 @@ mod tests {
             chart: Pane::Residual,
             zoomed: false,
             slaves,
+            has_shape: true,
             lesson: 0,
         };
         places(Rect::new(0, 0, width, height), &choice)

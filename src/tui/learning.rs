@@ -1,6 +1,7 @@
 //! Lessons and free mode: what may be done, what is hidden, and what is answered.
 
 use crate::action::{Action, Whose};
+use crate::attach::calculix::words::{NO_MODES, READ_ONLY};
 use crate::teach::refusal::NotNow;
 use crate::teach::{Guess, Tutor};
 use crate::tui::app::App;
@@ -52,6 +53,9 @@ impl App {
         let Some(view) = view else {
             return self.complain("open a scene first");
         };
+        if view.model.finished.is_some() {
+            return self.complain(format!("{READ_ONLY}: {NO_MODES}"));
+        }
         if self
             .lesson
             .as_ref()

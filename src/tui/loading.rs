@@ -1,7 +1,7 @@
 //! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
 //! while.
 
-use crate::attach::past;
+use crate::attach::recording::Recording;
 use crate::format::SceneError;
 use crate::record::journal::{self, Journal, JournalError, Record};
 use crate::scene::Scene;
@@ -21,9 +21,9 @@ pub enum NotLoaded {
     /// The journal is not one, is in use, or leads elsewhere.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The kept exchange is damaged.
+    /// The finished run is damaged.
     #[error("{0}")]
-    Kept(String),
+    Recording(String),
     /// The thread that read has ended without an answer.
     #[error("reading it broke down")]
     BrokeDown,
@@ -53,12 +53,14 @@ impl Loading {
                 let session = resumed(Path::new(&name));
                 return Loaded::Scene(session.map(Box::new).map_err(NotLoaded::from));
             }
-            if let Some(kept) = past::file(&name) {
-                let session = kept.map(Session::kept).map(Box::new);
-                return Loaded::Scene(session.map_err(|why| NotLoaded::Kept(why.of(&name))));
-            }
-            let scene = Scene::open(&name, &[]).map_err(NotLoaded::from);
-            Loaded::Scene(scene.map(|scene| Box::new(Session::new(scene))))
+            let session = match Recording::open(&name) {
+                Ok(Some(recording)) => Ok(Session::recorded(recording)),
+                Ok(None) => Scene::open(&name, &[])
+                    .map(Session::new)
+                    .map_err(NotLoaded::from),
+                Err(why) => Err(NotLoaded::Recording(why)),
+            };
+            Loaded::Scene(session.map(Box::new))
         })
     }
 

@@ -29,7 +29,6 @@ mod mouse;
 mod order;
 pub mod paint;
 pub mod panes;
-pub mod past;
 mod prompts;
 mod reading;
 pub mod run;

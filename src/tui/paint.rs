@@ -4,6 +4,7 @@ use crate::outside::shown;
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::style::Style;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Clear, Widget};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
@@ -73,6 +74,14 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
         }
     }
     lines
+}
+
+/// A wrapped text as lines of this width, each with a blank on either side.
+pub fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+    let lines = wrap(text, width.saturating_sub(2)).into_iter();
+    lines
+        .map(|line| Line::styled(format!(" {line}"), style))
+        .collect()
 }
 
 /// A word in pieces that are no wider than a line.

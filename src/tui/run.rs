@@ -1,11 +1,13 @@
 //! The event loop, and how one gets into it: with a scene, a session that goes on, a lesson, or nothing yet.
 
 use crate::action::config::Config;
+use crate::attach::recording::Recording;
 use crate::format::SceneError;
 use crate::record::journal::{JournalError, Keep};
 use crate::scene::Scene;
 use crate::session::Session;
 use crate::teach::Lesson;
+use crate::tui::app::App;
 use crate::tui::debugger::{Debugger, Outside, offers};
 use crate::tui::terminal::{self, Signals, Terminal};
 use crate::tui::theme::Theme;
@@ -24,6 +26,9 @@ pub enum Error {
     /// The scene could not be loaded.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A finished run is damaged.
+    #[error("{0}")]
+    Recording(String),
     /// The journal cannot be written.
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -113,7 +118,7 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
 }
 
 /// Ends as the signal wants that asked for it, or as the terminal that went away; else says what failed.
-pub(super) fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
+fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
     if let Some(signal) = signals.end() {
         terminal::obey(signal)?;
     }
@@ -129,7 +134,10 @@ pub(super) fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Erro
 /// # Errors
 /// If the scene cannot be loaded.
 pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
-    let session = load(scene, &[])?;
+    let session = match Recording::open(scene).map_err(Error::Recording)? {
+        Some(recording) => Session::recorded(recording),
+        None => load(scene, &[])?,
+    };
     let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
     debugger.app.area = Rect::new(0, 0, width, height);
     debugger.type_keys(keys);
@@ -137,8 +145,8 @@ pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String
 }
 
 /// How long to wait for a key: while the solver is at work the screen follows it.
-pub(super) const IDLE: Duration = Duration::from_millis(100);
-pub(super) const BUSY: Duration = Duration::from_millis(40);
+const IDLE: Duration = Duration::from_millis(100);
+const BUSY: Duration = Duration::from_millis(40);
 /// With a timeout of zero, crossterm's reader does not look at its input. Below 1 ms it does not sleep.
 const LEAST_WAIT: Duration = Duration::from_micros(200);
 
@@ -149,9 +157,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         changed |= debugger.advance();
         while let Some(outside) = debugger.outside.pop_front() {
             changed = true;
-            if obey(outside, terminal, signals, &mut |text| {
-                debugger.app.complain(text)
-            })? {
+            if obey(outside, terminal, signals, &mut debugger.app)? {
                 return Ok(());
             }
         }
@@ -173,9 +179,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         while let Some(event) = input {
             changed = true;
             if let Some(outside) = debugger.event(&event)
-                && obey(outside, terminal, signals, &mut |text| {
-                    debugger.app.complain(text)
-                })?
+                && obey(outside, terminal, signals, &mut debugger.app)?
             {
                 return Ok(());
             }
@@ -199,26 +203,26 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
 }
 
 /// The next event within `wait`, if any. Input that is already there is always found.
-pub(super) fn next_event(wait: Duration) -> io::Result<Option<Event>> {
+fn next_event(wait: Duration) -> io::Result<Option<Event>> {
     match event::poll(wait.max(LEAST_WAIT))? {
         true => event::read().map(Some),
         false => Ok(None),
     }
 }
 
-/// Executes requests that need the event loop; returns true to quit. `complain` shows an error.
-pub(super) fn obey(
+/// Executes requests that need the event loop; returns true to quit.
+fn obey(
     outside: Outside,
     terminal: &mut Terminal,
     signals: &Signals,
-    complain: &mut dyn FnMut(&str),
+    app: &mut App,
 ) -> io::Result<bool> {
     match outside {
         Outside::Quit => return Ok(true),
         Outside::Suspend => {
             terminal.suspend()?;
             if !continued(signals) {
-                complain(
+                app.complain(
                     "no shell with job control started this program, so it cannot be suspended",
                 );
             }
@@ -231,7 +235,7 @@ pub(super) fn obey(
 }
 
 /// Stops the process after a SIGTSTP from another process.
-pub(super) fn stop(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
+fn stop(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     terminal.stop()?;
     continued(signals);
     Ok(())

@@ -80,13 +80,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
 
 /// Where everything stands on a screen of this size.
 pub fn places(app: &App, view: Option<&View>, area: Rect) -> Places {
-    let slaves = view.map_or(0, |view| view.model.contacts.len());
     let rows = view.map_or(0, |_| lesson::rows(app, area.width));
-    layout::places(area, &app.choice(slaves, rows))
+    layout::places(area, &app.choice(view, rows))
 }
 
 /// Takes from the cells what a terminal would obey, and what was not shown as something else before.
-pub(super) fn harmless(buffer: &mut Buffer, area: Rect) {
+fn harmless(buffer: &mut Buffer, area: Rect) {
     for at in area.intersection(buffer.area).positions() {
         let cell = &mut buffer[at];
         if cell.symbol().contains(shown::is_order) {
@@ -144,14 +143,9 @@ pub fn picture(session: &Session, width: u16, height: u16) -> String {
 
 /// Any screen as plain text.
 pub fn text(app: &App, view: Option<&View>, width: u16, height: u16) -> String {
-    plain(width, height, |buffer, area| draw(buffer, area, app, view))
-}
-
-/// What something draws on a screen of this size, as plain text, one line a row, no blanks at the ends.
-pub(super) fn plain(width: u16, height: u16, draw: impl FnOnce(&mut Buffer, Rect)) -> String {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
-    draw(&mut buffer, area);
+    draw(&mut buffer, area, app, view);
     let rows = area.rows().map(|row| {
         let row: String = row
             .columns()

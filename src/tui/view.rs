@@ -136,7 +136,7 @@ impl<'a> View<'a> {
         let (event, next) = (self.frame().event.as_deref()?, self.frame().state.next);
         let again =
             event.position.increment == next.increment && event.position.attempt != next.attempt;
-        (!again).then_some(event)
+        (!again || self.model.finished.is_some()).then_some(event)
     }
 
     /// What the user changed in the shown frame, if it is due to that.
@@ -153,6 +153,12 @@ impl<'a> View<'a> {
     /// What that minor iteration found at a slave node.
     pub fn record(&self, slave: usize) -> Option<&'a ContactRecord> {
         self.event()?.nodes.get(slave)
+    }
+
+    /// The solver's own words for a contact in the shown iteration.
+    pub fn words(&self, slave: usize) -> Option<&'a str> {
+        let words = self.event()?.words.contacts.get(slave)?;
+        Some(words.as_str()).filter(|words| !words.trim().is_empty())
     }
 
     /// Which of the shown numbers are round-off; none at the start.

@@ -55,7 +55,6 @@ fn made(marker: &str) -> Option<String> {
     match kind {
         "screen" => Some(screen(what)),
         "lesson" => Some(lesson(what)),
-        "past" => Some(past(what)),
         "python" => Some(python(what)),
         "keys" => list(stickslip::action::markdown()),
         "commands" => list(stickslip::cli::commands()),
@@ -142,14 +141,6 @@ fn lesson(what: &str) -> String {
     debugger.teach(Lesson::open(name).unwrap());
     debugger.type_keys(keys);
     fenced(&debugger.text(width, height))
-}
-
-/// The same of a CalculiX run that is over.
-fn past(what: &str) -> String {
-    let (width, height, name, keys) = parts(what);
-    let run = stickslip::outside::calculix::read(Path::new(name)).unwrap();
-    let run = stickslip::explain::past::run::Past::new(name, run);
-    fenced(&stickslip::tui::past::picture(run, keys, width, height))
 }
 
 /// A program of this repository as it stands.

@@ -644,13 +644,10 @@ fn a_kept_exchange_is_gone_through_with_all_its_ways_and_nothing_follows_on_it()
     debugger.type_keys("S m");
     holds(
         &debugger,
-        "a kept exchange is read-only: forced modes would need the solver Toy itself",
+        "kept exchange, read-only: forced modes would need the solver Toy itself",
     );
     debugger.type_keys(": j o u r n a l Space x Enter");
-    holds(
-        &debugger,
-        "a kept exchange is read-only, and is its own journal",
-    );
+    holds(&debugger, "kept exchange, read-only: it is its own journal");
 }
 
 #[test]

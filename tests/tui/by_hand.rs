@@ -91,6 +91,7 @@ pub fn model(slaves: usize) -> Model {
         arc: Default::default(),
         settings: Settings::default(),
         budget: 1e9,
+        finished: None,
         monitors: vec![],
         length: 4.0,
     }

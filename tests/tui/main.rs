@@ -29,7 +29,7 @@ mod walks;
 mod sessions;
 // Journals that cannot be written, what is no file, what would harm the terminal.
 mod session_files;
-// A CalculiX run that is over, looked at.
+// A finished CalculiX run, looked at.
 mod past;
 // A journal as a film shows the session's screens.
 mod film;

@@ -1,6 +1,7 @@
 //! What went into the minor iterations of a major one, and the cycle that they close.
 
 use crate::contact::state::ContactState;
+use crate::interface::cycle;
 use crate::model::Mode;
 use serde::{Deserialize, Serialize};
 
@@ -110,14 +111,14 @@ impl MinorHistory {
         ratio: f64,
     ) -> Option<Cycle> {
         let width = nodes.len().max(1);
-        let same = |then: &[Input]| {
-            then.iter()
-                .zip(nodes)
-                .all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
+        let same = |then: usize| {
+            let then = &self.entries[then * width..(then + 1) * width];
+            let mut pairs = then.iter().zip(nodes);
+            pairs.all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
         };
-        let found = self.entries.chunks_exact(width).rposition(same)?;
-        let round = || self.entries[found * width..].chunks_exact(width);
-        let period = round().len() as u32;
+        let found = cycle::closed(self.len(width), 1, same, |_| true)?;
+        let round = || self.entries[found.start * width..].chunks_exact(width);
+        let period = found.len() as u32;
         let takes_part = |s: &usize| {
             let mut inputs = round().map(|inputs| inputs[*s]);
             let first = inputs.next();

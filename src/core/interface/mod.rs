@@ -3,7 +3,7 @@
 //! - [`problem`]: the problem, and its answer to one assumption of what every node does; [`response`]: how its forces
 //!   answer motions; [`kinematics`]: how a node stands over its surface.
 //! - [`minor`]: one minor iteration at one node; [`method`]: what a strategy decides in it; [`minor_history`]: what went
-//!   into the minor iterations so far, and cycles of them.
+//!   into the minor iterations so far, and cycles of them; [`cycle`]: what closes a cycle of any iterations.
 //! - [`census`], [`lemke`], [`copositive`] and [`sweep`]: what finds a consistent state, all nodes together; [`tableau`]: how
 //!   the two of pivoting pivot; [`vertex`]: from forces that are not unique to some that are; [`branches`] and [`feasible`]:
 //!   what cannot be consistent, which a census of many nodes leaves out.
@@ -14,6 +14,7 @@
 pub mod branches;
 pub mod census;
 pub mod copositive;
+pub mod cycle;
 pub mod definite;
 pub mod family;
 pub mod feasible;

@@ -139,6 +139,7 @@ impl Constant {
             settings: Settings { touch, ..settings },
             monitors: Vec::new(),
             budget: f64::INFINITY,
+            finished: None,
             length: self.length,
         }
     }

@@ -78,6 +78,20 @@ pub struct Model {
     pub budget: f64,
     /// Diagonal of the bounding box of all bodies' nodes: the scene's unit of length for tolerances.
     pub length: f64,
+    /// How a finished run of another program counts. `None` for everything that can be stepped.
+    pub finished: Option<FinishedRun>,
+}
+
+/// A finished run of another program, with one level of iterations, whose files do not distinguish stick from slip: a
+/// contact is closed ([`Mode::Fixed`]) or open.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FinishedRun {
+    /// Names of the increments, by number from 1.
+    pub increments: Vec<String>,
+    /// The first turn of each cycle, as iterations of the whole run, from 0.
+    pub cycles: Vec<std::ops::Range<usize>>,
+    /// Limit of the displacement correction (relative).
+    pub correction_limit: f64,
 }
 
 /// A node in the reference configuration.
@@ -215,7 +229,18 @@ impl Model {
             monitors: Vec::new(),
             budget: f64::INFINITY,
             length,
+            finished: None,
         }
+    }
+
+    /// Name of an increment: its number, or what a finished run calls it.
+    pub fn increment_name(&self, number: u32) -> String {
+        let names = self
+            .finished
+            .as_ref()
+            .map_or(&[][..], |run| &run.increments);
+        let named = names.get((number as usize).wrapping_sub(1));
+        named.map_or_else(|| number.to_string(), String::clone)
     }
 
     /// Size of the increments on a leg of the path, as the scene has them.

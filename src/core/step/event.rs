@@ -48,11 +48,21 @@ pub struct Event {
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, about which the minor iterations are linearised.
     pub before: Norms,
-    /// Why each contact takes its next mode, in the words of an attached solver; empty where it has none, and for a solver of
-    /// our own.
-    pub words: Arc<Vec<String>>,
+    /// An attached solver's own words; empty for a solver of our own.
+    pub words: Arc<Words>,
     /// What follows from it.
     pub outcome: Outcome,
+}
+
+/// What a solver of another program reports in its own words. An empty list has no entry for any contact.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Words {
+    /// The iteration as a whole, in place of its changes of modes; may be empty.
+    pub iteration: String,
+    /// Each contact: why it takes its next mode, or its status.
+    pub contacts: Vec<String>,
+    /// Status of each contact as an ASCII letter for the timeline, where it is not a mode.
+    pub letters: Vec<u8>,
 }
 
 impl Event {

@@ -3,8 +3,8 @@
 
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
+use crate::interface::cycle;
 use crate::model::Mode;
-use crate::step::round;
 use serde::{Deserialize, Serialize};
 
 /// Numbers of two major iterations that differ by less than this, relatively, are the same.
@@ -121,7 +121,7 @@ impl MajorHistory {
             pairs.all(|(a, b)| a.within(b, scales, limit))
         };
         let same = |then: usize| all_within(then, REPEATED);
-        let round = round::closed(here, same, |then| !all_within(then, DIFFERENT))?;
+        let round = cycle::closed(here, 2, same, |then| !all_within(then, DIFFERENT))?;
         let stops = |s: usize| round.clone().map(move |k| of(k)[s]);
         let takes_part =
             |s: &usize| stops(*s).any(|entry| !entry.within(&of(here)[*s], scales, DIFFERENT));

@@ -7,7 +7,7 @@
 //!   becomes of a state that the judge refuses.
 //! - [`recovery`]: how an increment that failed is tried again, one file for each way.
 //! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come.
-//! - [`major_history`]: cycles of major iterations; [`round`]: what makes a cycle of any sequence.
+//! - [`major_history`]: cycles of major iterations.
 //! - [`solver`]: the seam above the stepper, for whatever else can be stepped; `outside`: states of such a solver;
 //!   [`places`]: the tree of those that it has had.
 //! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between, which is an [`intervention`].
@@ -26,7 +26,6 @@ mod outside;
 pub mod pace;
 pub mod places;
 pub mod recovery;
-pub mod round;
 mod search;
 pub mod solver;
 pub mod state;

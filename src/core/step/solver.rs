@@ -197,8 +197,8 @@ pub struct Offers {
     pub name: String,
     /// Its version, as it tells it; may be empty.
     pub version: String,
-    /// It is no more: only what it did can be looked at.
-    pub past: bool,
+    /// What is read-only, where only the record of a run is left; `None` for a solver that can be stepped.
+    pub past: Option<&'static str>,
     /// Modes can be forced for one iteration.
     pub force: bool,
     /// Modes can be held until released.
@@ -225,7 +225,7 @@ impl Offers {
         Offers {
             name: String::new(),
             version: String::new(),
-            past: false,
+            past: None,
             force: true,
             hold: true,
             increment: true,
@@ -282,10 +282,8 @@ impl Offers {
     pub fn lacks(&self, what: &str) -> String {
         let name = &self.name;
         match self.past {
-            true => {
-                format!("a kept exchange is read-only: {what} would need the solver {name} itself")
-            }
-            false => format!("the solver {name} does not offer {what}"),
+            Some(record) => format!("{record}: {what} would need the solver {name} itself"),
+            None => format!("the solver {name} does not offer {what}"),
         }
     }
 }

@@ -193,6 +193,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
         monitors: Vec::new(),
         budget: 1e9,
         length: 1.0,
+        finished: None,
     };
     Stepper::new(Arc::new(model))
 }

@@ -132,6 +132,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         monitors,
         budget: crate::scene::memory::free(),
         length,
+        finished: None,
     };
     match Estimate::of(&model).too_large(model.settings.solver) {
         Some(message) => Err(Fault::new(at!["settings", "memory"], message.to_string())),

@@ -40,6 +40,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         format!("Decision  {}", view.slave(slave))
     };
     let inner = paint::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
+    if view.model.finished.is_some() {
+        let words = view
+            .words(slave)
+            .unwrap_or("Nothing is shown at the start.");
+        let lines = paint::wrapped(words, inner.width.into(), theme.text);
+        return paint::lines(buffer, inner, &lines);
+    }
     let record = view.record(slave);
     let decision = record.map(|record| record.decision);
     let hidden = app.hides(view, slave);
@@ -69,10 +76,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     } else {
         theme.text
     };
-    let words: Vec<Line> = paint::wrap(&words, (inner.width as usize).saturating_sub(2))
-        .into_iter()
-        .map(|line| Line::styled(format!(" {line}"), style))
-        .collect();
+    let words = paint::wrapped(&words, inner.width.into(), style);
     let needed = GRID + tests.len() + words.len();
     let spare = (inner.height as usize).saturating_sub(needed);
     let air = |enough: bool| enough.then(Line::default);
@@ -598,11 +602,7 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
 /// What an attached solver says of its decision, and what the rules that it names want instead.
 fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     let decision = &record.decision;
-    let said = view
-        .event()?
-        .words
-        .get(slave)
-        .filter(|words| !words.trim().is_empty());
+    let said = view.words(slave);
     let differs = view.differs(slave);
     if view.guest.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
         return None;

@@ -3,12 +3,11 @@
 use crate::action::{ACTIONS, Entry, Group};
 use crate::tui::app::{App, Overlay, Tone};
 use crate::tui::layout::{Pane, Places};
-use crate::tui::paint;
+use crate::tui::paint::{self, wrapped};
 use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
@@ -86,13 +85,6 @@ fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
             lines
         }
     }
-}
-
-fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
-    paint::wrap(text, width.saturating_sub(2))
-        .into_iter()
-        .map(|line| Line::styled(format!(" {line}"), style))
-        .collect()
 }
 
 fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
@@ -228,12 +220,12 @@ fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> L
 }
 
 /// Whether the footer never leaves an action out.
-pub fn is_always(entry: &Entry) -> bool {
+fn is_always(entry: &Entry) -> bool {
     ALWAYS.contains(&entry.name)
 }
 
 /// As many hints as fit, in their order, each a key and a label; those that are needed are counted first.
-pub fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<'static> {
+fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<'static> {
     let width = |key: &str, label: &str| key.width() + label.width() + 3;
     let needed = hints.iter().filter(|(needed, ..)| *needed);
     let mut left = needed.fold(room, |left, (_, key, label)| {

@@ -142,7 +142,11 @@ const NAMES: usize = 23;
 /// The whole page. On a narrow screen the help goes on in further lines. What the solver that is open does not offer is grey, with
 /// the reason.
 pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> Vec<Line<'static>> {
-    let mut lines = Vec::new();
+    let finished = context.model.filter(|model| model.finished.is_some());
+    let mut lines = match finished {
+        Some(model) => paint::wrapped(&model.about, width, theme.warning),
+        None => Vec::new(),
+    };
     for group in Group::ALL {
         lines.push(Line::styled(format!(" {}", group.title()), theme.heading));
         for entry in ACTIONS.iter().filter(|entry| entry.group == group) {

@@ -133,7 +133,10 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let rows = (inner.height as usize).saturating_sub(1);
     let round_off = view.round_off();
     let top = first_row(at, rows, order.len());
-    let mut lines = vec![headings(&columns, app)];
+    let mut lines = vec![match view.model.finished {
+        None => headings(&columns, app),
+        Some(_) => Line::styled(format!("{:MARKS$}contact", ""), app.theme.heading),
+    }];
     lines.extend(
         order
             .iter()
@@ -249,6 +252,11 @@ fn row<'a>(
         Span::styled(fitted(view.slave(slave), columns.name), name_style),
         Span::raw(" "),
     ];
+    if view.model.finished.is_some() {
+        let words = view.words(slave).unwrap_or_default();
+        spans.push(Span::styled(words, theme.mode(view.mode_before(slave))));
+        return Line::from(spans);
+    }
     spans.extend(modes(slave, changed, columns, app, view));
     spans.push(Span::raw(" "));
     if let Some(record) = record {

@@ -19,13 +19,11 @@ const ROOM_FOR_JUDGE: u16 = 7;
 /// Draws the residual.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let inner = paint::frame(
-        buffer,
-        area,
-        "Residual by major iteration",
-        app.focus == Pane::Residual,
-        theme,
-    );
+    let title = match view.model.finished {
+        None => "Residual by major iteration",
+        Some(_) => "Residual by iteration of this attempt",
+    };
+    let inner = paint::frame(buffer, area, title, app.focus == Pane::Residual, theme);
     let Some((_, last)) = view.residuals.last() else {
         paint::lines(
             buffer,
@@ -34,13 +32,30 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         );
         return;
     };
+    let words = |value: f64| short(value, view);
+    let percent = |part: f64| match part.is_nan() {
+        true => number::UNTOLD.to_owned(),
+        false => format!("{} %", number::plain(100.0 * part)),
+    };
+    let (main, (other, value), limit) = match &view.model.finished {
+        None => (
+            words(last.relative),
+            ("interface", words(last.interface)),
+            words(last.limit),
+        ),
+        Some(run) => (
+            percent(last.relative),
+            ("correction", percent(last.correction)),
+            format!("{}, {}", percent(last.limit), percent(run.correction_limit)),
+        ),
+    };
     let caption = Line::from(vec![
         Span::styled(" ● relative ", theme.faint),
-        Span::styled(short(last.relative, view), theme.strong),
-        Span::styled("  ○ interface ", theme.faint),
-        Span::raw(short(last.interface, view)),
+        Span::styled(main, theme.strong),
+        Span::styled(format!("  ○ {other} "), theme.faint),
+        Span::raw(value),
         Span::styled("  ┄ limit ", theme.faint),
-        Span::raw(short(last.limit, view)),
+        Span::raw(limit),
     ]);
     let mut above = vec![caption];
     let shows_judge = inner.height >= ROOM_FOR_JUDGE && !app.hides_verdict();
@@ -59,7 +74,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .residuals
             .iter()
             .filter(|(_, norms)| !view.is_untold(norms.relative));
-        let points: Vec<Point> = told.map(point).collect();
+        let points: Vec<Point> = told.map(|one| point(one, view)).collect();
         convergence::draw(buffer, plot, &points, theme);
     }
 }
@@ -72,15 +87,15 @@ fn short(value: f64, view: &View) -> String {
     }
 }
 
-/// A major iteration with its norms.
-fn point((major, norms): &(u32, Norms)) -> Point {
+/// An iteration with its norms.
+fn point((number, norms): &(u32, Norms), view: &View) -> Point {
+    let finished = view.model.finished.as_ref();
     Point {
-        number: *major,
+        number: *number,
         main: norms.relative,
         limit: norms.limit,
-        other: norms.interface,
-        other_limit: None,
-        here: false,
+        other: finished.map_or(norms.interface, |_| norms.correction),
+        other_limit: finished.map(|run| run.correction_limit),
     }
 }
 

@@ -48,6 +48,11 @@ const SPACING: f64 = 16.0;
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let inner = paint::frame(buffer, area, "Shape", app.focus == Pane::Shape, theme);
+    if view.model.finished.is_some() {
+        let none = "The files of this run contain no coordinates.";
+        let lines = paint::wrapped(none, inner.width.into(), theme.faint);
+        return paint::lines(buffer, inner, &lines);
+    }
     if let (Some(longest), 2..) = (picture(buffer, inner, app, view), inner.height) {
         let moves = found(view).is_some_and(|found| !found.arrows.is_empty());
         caption(buffer, inner, longest, moves, app, view);

@@ -28,6 +28,8 @@ const HOW: usize = 8;
 pub enum Page {
     /// What the solver says.
     Log,
+    /// A finished run as text.
+    Run,
     /// What can be set.
     Parameters,
 }
@@ -68,7 +70,7 @@ impl Reader {
         match (self.top, self.page) {
             (Some(top), _) => top.min(last),
             (None, Page::Log) => last,
-            (None, Page::Parameters) => 0,
+            (None, _) => 0,
         }
     }
 
@@ -104,7 +106,7 @@ impl Reader {
             _ => return true,
         };
         // Who is at the end again follows it.
-        self.top = (to < last || self.page == Page::Parameters).then_some(to.min(last));
+        self.top = (to < last || self.page != Page::Log).then_some(to.min(last));
         true
     }
 }
@@ -121,6 +123,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, view: Option<&View
     let title = reader.search.title().unwrap_or_else(|| {
         let what = match reader.page {
             Page::Log => format!("What {name} says"),
+            Page::Run => "The run as text".into(),
             Page::Parameters => format!("What can be set in {name}"),
         };
         match rows.len() > height {
@@ -161,8 +164,23 @@ fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
     };
     match page {
         Page::Log => said(guest.log.lines()),
+        Page::Run => printed(guest.log.lines().1, width),
         Page::Parameters => parameters(&guest.offers.parameters, width, view),
     }
+}
+
+/// A finished run as text; sentences are wrapped, tables are not.
+fn printed(lines: Vec<crate::attach::log::Said>, width: usize) -> Vec<Row> {
+    let printed = lines.into_iter().filter(|said| said.how == How::Printed);
+    let wrapped = printed.flat_map(|said| match said.text.contains("  ") {
+        true => vec![said.text],
+        false => paint::wrap(&said.text, width.saturating_sub(2)),
+    });
+    let row = |text| Row {
+        text,
+        style: |theme| theme.text,
+    };
+    wrapped.map(row).collect()
 }
 
 /// What was said, a row a line, the newest last.

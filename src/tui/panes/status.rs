@@ -56,7 +56,7 @@ fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
     let name = format!("{} {}", offers.name, offers.version);
     let (state, style) = match (guest.lost, offers.past, offers.goes_back) {
         (true, ..) => ("✗ lost; the next step starts it anew", theme.bad),
-        (_, true, _) => ("kept exchange, read-only", theme.warning),
+        (_, Some(record), _) => (record, theme.warning),
         (.., GoesBack::ToAny) => ("attached; back to any state", theme.faint),
         (.., GoesBack::ToIncrements) => (
             "attached; back to increments, from there again",
@@ -153,19 +153,24 @@ fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
         Some(event) => event.load_factor,
         None => view.frame().state.load_factor,
     };
+    let model = view.model;
+    let (two_levels, minor, drive) = match model.finished {
+        None => (true, "minor", "load"),
+        Some(_) => (false, "iteration", "time"),
+    };
     let counts = [
-        ("increment", at.increment, true),
-        ("attempt", at.attempt, attempt),
-        ("major", at.major, true),
-        ("minor", at.minor, true),
+        ("increment", model.increment_name(at.increment), true),
+        ("attempt", at.attempt.to_string(), attempt || !two_levels),
+        ("major", at.major.to_string(), two_levels),
+        (minor, at.minor.to_string(), true),
+        (drive, number::plain(load), !load.is_nan()),
     ];
     let mut spans = vec![Span::raw(" ")];
     for (name, count, _) in counts.into_iter().filter(|(_, _, shown)| *shown) {
-        spans.push(Span::styled(format!("{name} "), app.theme.faint));
-        spans.push(Span::styled(format!("{count}{apart}"), app.theme.heading));
+        let before = if spans.len() == 1 { "" } else { apart };
+        spans.push(Span::styled(format!("{before}{name} "), app.theme.faint));
+        spans.push(Span::styled(count, app.theme.heading));
     }
-    spans.push(Span::styled("load ", app.theme.faint));
-    spans.push(Span::styled(number::plain(load), app.theme.heading));
     let (shown, last) = (view.cursor, view.frames.len() - 1);
     if shown < last {
         spans.push(Span::styled(
@@ -270,7 +275,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
     };
     let told = report::outcome(model, event);
     // The line above says where this is.
-    let place = format!("{}: ", names::position(event.position));
+    let place = format!("{}: ", names::position_in(model, event.position));
     (
         format!("{glyph} {}", told.strip_prefix(&place).unwrap_or(&told)),
         style,

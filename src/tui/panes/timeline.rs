@@ -3,6 +3,7 @@
 //! Majors and increments are ruled off, a cycle is bracketed, forced modes are small letters. Only the columns around
 //! the cursor are looked at, so that the length of the history costs nothing.
 
+use crate::explain::names;
 use crate::history::strip::{PointKind, Strip};
 use crate::model::Mode;
 use crate::step::event::{Failure, Outcome};
@@ -19,6 +20,9 @@ use unicode_width::UnicodeWidthStr;
 
 /// Rows that are no nodes: increments, majors, the cursor's mark, what each iteration led to, brackets.
 pub const FRAME: u16 = 5;
+/// The letters of a finished run.
+const LETTERS: &str =
+    " C closed  · open  M on another face  1-9 tenths of a face  small: held fixed ";
 /// Width of the nodes' names.
 const NAME: Range<usize> = 9..14;
 
@@ -34,6 +38,10 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         title += &format!("  node {} of {count}", selected + 1);
     }
     let inner = paint::frame(buffer, area, &title, app.focus == Pane::Timeline, theme);
+    if view.model.finished.is_some() && area.height > 2 {
+        let legend = paint::cut(LETTERS, inner.width.into());
+        buffer.set_string(inner.x, area.bottom() - 1, legend, theme.faint);
+    }
     if strips.is_empty() || inner.height <= FRAME {
         return;
     }
@@ -43,10 +51,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let nodes = inner.y + 3;
     let below = nodes + shown.len() as u16;
 
-    for (y, text) in [(0, "increment"), (1, "major")] {
+    let finished = view.model.finished.is_some();
+    let second = if finished { "attempt" } else { "major" };
+    for (y, text) in [(0, "increment"), (1, second)] {
         buffer.set_string(inner.x + 1, inner.y + y, text, theme.faint);
     }
-    headings(buffer, inner, &columns, strips, theme.heading);
+    headings(buffer, inner, &columns, view, theme.heading);
     for (row, slave) in shown.clone().enumerate() {
         let (mark, style) = match slave == selected {
             true => ("▸", theme.selected),
@@ -67,7 +77,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         if here {
             buffer.set_string(column.x, nodes - 1, "▼", theme.focus);
         }
-        if let Some(rule) = rule(strips, column.at)
+        if let Some(rule) = rule(view, column.at)
             && column.x > left
         {
             for y in inner.y + 1..below {
@@ -75,7 +85,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             }
         }
         for (row, slave) in shown.clone().enumerate() {
-            let (letter, style) = cell(strip, slave, app);
+            let (letter, style) = cell(strip, slave, finished, app);
             buffer.set_string(column.x, nodes + row as u16, letter, reversed(style));
         }
         // No such solver tells of cycles, whose brackets stand there.
@@ -88,6 +98,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     for column in &columns {
         bracket(buffer, inner, below + 1, column, &columns, app, view);
     }
+    finished_cycles(buffer, inner, below + 1, &columns, app, view);
 }
 
 /// Where the first column stands, and the iterations that are visible.
@@ -96,7 +107,7 @@ fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
     let name = names.max().unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
     let left = inner.x + name as u16;
     let room = usize::from(inner.right().saturating_sub(left));
-    let ruled = |at: usize| rule(view.strips, at).is_some();
+    let ruled = |at: usize| rule(view, at).is_some();
     let shown = columns::around(view.strips.len(), view.cursor, left, room, ruled);
     (left, shown)
 }
@@ -132,6 +143,7 @@ fn title(view: &View) -> String {
     let at = strip.position;
     let what = match strip.kind {
         PointKind::Start => "start".into(),
+        _ if view.model.finished.is_some() => names::position_in(view.model, at),
         PointKind::Intervention => "an intervention".into(),
         kind => format!(
             "increment {}, major {}, minor {}{}",
@@ -149,36 +161,54 @@ fn title(view: &View) -> String {
 }
 
 /// What stands between an iteration and the one before it: a double rule between increments, a single one between
-/// majors.
-fn rule(strips: &[Strip], at: usize) -> Option<&'static str> {
-    let before = strips.get(at.checked_sub(1)?)?;
-    let (then, now) = (before.position, strips[at].position);
+/// majors, or between attempts of a finished run.
+fn rule(view: &View, at: usize) -> Option<&'static str> {
+    let before = view.strips.get(at.checked_sub(1)?)?;
+    let (then, now) = (before.position, view.strips[at].position);
     let of = |at: crate::step::event::Position| (at.increment, at.attempt);
     match before.kind == PointKind::Start {
+        false if view.model.finished.is_some() => match then.increment == now.increment {
+            false => Some("║"),
+            true => (then.attempt != now.attempt).then_some("│"),
+        },
         true => None,
         false if of(then) != of(now) => Some("║"),
         false => (then.major != now.major).then_some("│"),
     }
 }
 
-/// Numbers of increments and majors over their first columns.
-fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], strips: &[Strip], style: Style) {
+/// Numbers of increments and majors (of a finished run attempts) over their first columns.
+fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], view: &View, style: Style) {
+    let finished = view.model.finished.is_some();
     columns::headings(buffer, inner, shown, style, |at| {
-        let now = strips[at].position;
-        let increment = (now.increment, now.attempt);
+        let now = view.strips[at].position;
+        let mut name = view.model.increment_name(now.increment);
+        // A finished run names the step where it begins, and on the left.
+        let leftmost = shown.first().is_some_and(|first| first.at == at);
+        if let Some((_, number)) = name.split_once('.').filter(|(_, n)| *n != "1" && !leftmost) {
+            name = number.to_owned();
+        }
+        let attempt = if finished { 1 } else { now.attempt };
+        let second = if finished { now.attempt } else { now.major };
+        let increment = (now.increment, attempt);
         [
-            ((increment, 0), now.increment.to_string()),
-            ((increment, now.major), now.major.to_string()),
+            ((increment, 0), name),
+            ((increment, second), second.to_string()),
         ]
     });
 }
 
 /// The letter of a node's mode in an iteration, V for one that is fixed where two sides meet; a small one where it was
 /// forced.
-fn cell(strip: &Strip, slave: usize, app: &App) -> (&'static str, Style) {
+fn cell(strip: &Strip, slave: usize, finished: bool, app: &App) -> (&'static str, Style) {
     let (mode, forced) = (strip.before(slave), strip.is_forced(slave));
     if strip.kind == PointKind::Intervention && !forced {
         return ("·", app.theme.faint);
+    }
+    match strip.letter(slave) {
+        Some(letter) => return finished_cell(strip, slave, letter, app),
+        None if finished => return (" ", app.theme.faint),
+        None => {}
     }
     let letter = match (mode, forced) {
         (Mode::Free, false) => "F",
@@ -201,6 +231,25 @@ fn cell(strip: &Strip, slave: usize, app: &App) -> (&'static str, Style) {
         style = style.add_modifier(Modifier::UNDERLINED);
     }
     (letter, style)
+}
+
+/// The letter of a contact of a finished run.
+fn finished_cell(strip: &Strip, slave: usize, letter: u8, app: &App) -> (&'static str, Style) {
+    const DIGITS: [&str; 10] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"];
+    let (letter, mode) = match letter {
+        b'C' => ("C", Mode::Fixed),
+        b'c' => ("c", Mode::Fixed),
+        b'M' => ("M", Mode::Sliding),
+        b'm' => ("m", Mode::Sliding),
+        b'0'..=b'9' => (DIGITS[usize::from(letter - b'0')], Mode::Fixed),
+        b'.' => ("·", Mode::Free),
+        _ => ("?", Mode::Free),
+    };
+    let style = app.theme.mode(mode);
+    match strip.changes(slave) {
+        true => (letter, style.add_modifier(Modifier::BOLD)),
+        false => (letter, style),
+    }
 }
 
 /// What an iteration led to.
@@ -249,4 +298,38 @@ fn bracket(
     let text = format!("{}-cycle", cycle.period);
     let ends = (from, column.x);
     columns::bracket(buffer, inner.right(), y, ends, &text, app.theme.bad);
+}
+
+/// Brackets under the first turns of the cycles of a finished run.
+fn finished_cycles(
+    buffer: &mut Buffer,
+    inner: Rect,
+    y: u16,
+    columns: &[Column],
+    app: &App,
+    view: &View,
+) {
+    let cycles = view.model.finished.iter().flat_map(|run| &run.cycles);
+    let mut free = inner.x;
+    for cycle in cycles {
+        // The start comes before the first iteration.
+        let mut shown = columns.iter().filter(|column| {
+            let iteration = column.at.checked_sub(1);
+            iteration.is_some_and(|iteration| cycle.contains(&iteration))
+        });
+        let Some(from) = shown.next().filter(|from| from.x >= free) else {
+            continue;
+        };
+        let to = shown.next_back().unwrap_or(from);
+        let text = format!("{}-cycle", cycle.len());
+        columns::bracket(
+            buffer,
+            inner.right(),
+            y,
+            (from.x, to.x),
+            &text,
+            app.theme.bad,
+        );
+        free = to.x + 3 + text.len() as u16;
+    }
 }

@@ -1,9 +1,9 @@
-//! Cycles of another program's iterations, found as our own ([`crate::step::round`]).
+//! Cycles of CalculiX's iterations, found as our own ([`crate::interface::cycle`]).
 //!
-//! An iteration is the same as an earlier one if the same contact elements are on, and residual and correction differ by no
-//! more than the last of the four digits with which they are printed.
+//! An iteration is the same as an earlier one if it has the same contact elements, and residual and correction differ by at
+//! most the last of the four printed digits.
 
-use crate::step::round;
+use crate::interface::cycle;
 use std::ops::Range;
 use stickslip_exchange::calculix::cel::Closed;
 use stickslip_exchange::calculix::past::{Attempt, End, PastRun};
@@ -17,14 +17,14 @@ const DIFFERENT: f64 = 10.0;
 
 /// A cycle of iterations.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Round {
+pub struct Cycle {
     /// The iterations of its first turn, by their position in the run.
     pub iterations: Range<usize>,
     /// Slaves whose contact elements change in it, by their position in the run.
     pub members: Vec<usize>,
 }
 
-impl Round {
+impl Cycle {
     /// Number of iterations after which it repeats, at least 2.
     pub fn period(&self) -> usize {
         self.iterations.len()
@@ -33,14 +33,14 @@ impl Round {
 
 /// The first cycle that closes in an attempt. Where there are no residuals, contact elements alone are compared, and only in an
 /// attempt that did not converge: on the way to a solution they may return too.
-pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Round> {
+pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Cycle> {
     let of = |k: usize| attempt.iterations.start + k;
     let found = (0..attempt.iterations.len()).find_map(|here| {
         let (same, elsewhere) = (
             |then: usize| differ(run, attempt, of(then), of(here), SAME) == Some(false),
             |then: usize| differ(run, attempt, of(then), of(here), DIFFERENT) == Some(true),
         );
-        round::closed(here, same, elsewhere)
+        cycle::closed(here, 2, same, elsewhere)
     })?;
     let iterations = of(found.start)..of(found.end);
     let mut members: Vec<usize> = iterations
@@ -50,7 +50,7 @@ pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Round> {
         .collect();
     members.sort_unstable();
     members.dedup();
-    Some(Round {
+    Some(Cycle {
         iterations,
         members,
     })
