@@ -2,10 +2,11 @@
 
 use super::base::{Error, Exit, NoValue, SetArgs, tell};
 use super::interrupt::Interrupt;
-use super::outputs::{OutputArgs, Outputs, aligned};
+use super::outputs::{OutputArgs, Outputs};
 use super::parts::{PartArgs, failed};
 use crate::explain::number::six;
 use crate::format::kind::{FileKind, mistaken};
+use crate::outside::shown::aligned;
 use crate::study::chart_file::{Chart, Truth};
 use crate::study::chart_runs::{self, Planned};
 use crate::study::precision::{self, Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};

@@ -2,9 +2,10 @@
 
 use super::base::{Error, Exit, tell};
 use super::interrupt::Interrupt;
-use super::outputs::{OutputArgs, Outputs, aligned};
+use super::outputs::{OutputArgs, Outputs};
 use super::parts::{PartArgs, failed};
 use super::sink::Sink;
+use crate::outside::shown::aligned;
 use crate::study::large_map::{LargeMap, way};
 use crate::study::merge::Keeping;
 use crate::study::random::Population;

@@ -3,10 +3,11 @@
 use super::base::{Error, Exit, NoValue, SetArgs, say, tell};
 use super::interrupt::Interrupt;
 use super::many::{self, Wanted};
-use super::outputs::{OutputArgs, Outputs, aligned};
+use super::outputs::{OutputArgs, Outputs};
 use super::parts::{PartArgs, failed};
 use crate::model::{BoundUpdate, Strategy};
 use crate::outside::files;
+use crate::outside::shown::aligned;
 use crate::scene::builtin;
 use crate::strategy::method;
 use crate::study::map::{self, Cell, Map};

@@ -3,9 +3,10 @@
 use super::base::{Error, Exit, SetArgs, tell};
 use super::benchmarks;
 use super::interrupt::Interrupt;
-use super::outputs::{OutputArgs, Outputs, aligned};
+use super::outputs::{OutputArgs, Outputs};
 use super::parts::{PartArgs, failed};
 use crate::explain::number::six;
+use crate::outside::shown::aligned;
 use crate::study::benchmarks::Benchmarks;
 use crate::study::figure;
 use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, Watch, csv, plot, run};

@@ -56,6 +56,16 @@ pub struct Route {
     pub from: SubIncrement,
 }
 
+crate::words! {
+    Detour, words:
+    Section "parts that are no halves",
+    Consistent "T_max in the equations",
+    Start "touching nodes held where they were",
+    Newton "semismooth Newton first",
+    Held "sliding held back",
+    Back "the last half as it was, since nothing else helps",
+}
+
 impl Detour {
     /// The next one that changes anything of these settings.
     pub(super) fn after(last: Option<Detour>, chosen: &Settings) -> Option<Detour> {
@@ -83,18 +93,6 @@ impl Detour {
             Detour::Newton => {}
         }
         settings
-    }
-
-    /// What is tried, in words.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Detour::Section => "parts that are no halves",
-            Detour::Consistent => "T_max in the equations",
-            Detour::Start => "touching nodes held where they were",
-            Detour::Newton => "semismooth Newton first",
-            Detour::Held => "sliding held back",
-            Detour::Back => "the last half as it was, since nothing else helps",
-        }
     }
 }
 
