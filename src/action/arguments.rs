@@ -210,9 +210,8 @@ impl Entry {
             return Err(self.misused());
         };
         let model = model(context)?;
-        let quantity = WatchQuantity::ALL.into_iter().find(|q| q.word() == *word);
-        let quantity = quantity.ok_or_else(|| {
-            let all = WatchQuantity::ALL.map(WatchQuantity::word).join(", ");
+        let quantity = WatchQuantity::of_word(word).ok_or_else(|| {
+            let all = WatchQuantity::NAMES.join(", ");
             Misread::NotWatched(word.to_string(), all)
         })?;
         let slave = match (quantity.is_nodal(), rest) {

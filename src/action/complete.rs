@@ -10,6 +10,7 @@ use crate::format::paths;
 use crate::history::tree::Tree;
 use crate::history::watches::WatchQuantity;
 use crate::manual;
+use crate::model::Mode;
 
 /// What a line could go on as: whole lines, of which the first is the likeliest.
 pub fn complete(line: &str, context: &Context) -> Vec<String> {
@@ -80,7 +81,7 @@ impl Entry {
     fn candidates(&self, before: &str, context: &Context) -> Vec<String> {
         let given = before.split_whitespace().count() - 1;
         let nodes = || context.model.into_iter().flat_map(names).map(String::from);
-        let modes = ["free", "sliding", "fixed"].map(String::from);
+        let modes = Mode::NAMES.map(String::from);
         match (&self.verb, given) {
             (Verb::Force { .. }, 0) => modes.into_iter().chain(nodes()).collect(),
             (Verb::Force { .. }, 1) => modes.into(),

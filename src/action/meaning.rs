@@ -153,18 +153,11 @@ pub enum Sort {
     Gap,
 }
 
-impl Sort {
-    /// All, in the order in which the key goes through them.
-    pub const ALL: [Sort; 3] = [Sort::Scene, Sort::Margin, Sort::Gap];
-
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Sort::Scene => "scene",
-            Sort::Margin => "margin",
-            Sort::Gap => "gap",
-        }
-    }
+stickslip_core::words! {
+    Sort, ALL, word:
+    Scene "scene",
+    Margin "margin",
+    Gap "gap",
 }
 
 /// Which slave nodes the table shows; the selected one is always there.
@@ -178,18 +171,11 @@ pub enum Filter {
     Surface,
 }
 
-impl Filter {
-    /// All, in the order in which the key goes through them.
-    pub const ALL: [Filter; 3] = [Filter::All, Filter::Active, Filter::Surface];
-
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Filter::All => "all",
-            Filter::Active => "active",
-            Filter::Surface => "surface",
-        }
-    }
+stickslip_core::words! {
+    Filter, ALL, word:
+    All "all",
+    Active "active",
+    Surface "surface",
 }
 
 /// Whose decisions hide, in free mode, until they are predicted.
@@ -203,18 +189,11 @@ pub enum Whose {
     Off,
 }
 
-impl Whose {
-    /// All three.
-    pub const ALL: [Whose; 3] = [Whose::Selected, Whose::Changed, Whose::Off];
-
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Whose::Selected => "selected",
-            Whose::Changed => "changed",
-            Whose::Off => "off",
-        }
-    }
+stickslip_core::words! {
+    Whose, ALL, word:
+    Selected "selected",
+    Changed "changed",
+    Off "off",
 }
 
 /// What an action can ask for.
@@ -283,22 +262,10 @@ pub enum Colours {
     None,
 }
 
-impl Colours {
-    /// All, in the order in which they are offered.
-    pub const ALL: [Colours; 4] = [
-        Colours::Dark,
-        Colours::Light,
-        Colours::HighContrast,
-        Colours::None,
-    ];
-
-    /// The word for them.
-    pub fn word(self) -> &'static str {
-        match self {
-            Colours::Dark => "dark",
-            Colours::Light => "light",
-            Colours::HighContrast => "high contrast",
-            Colours::None => "none",
-        }
-    }
+stickslip_core::words! {
+    Colours, ALL, word:
+    Dark "dark",
+    Light "light",
+    HighContrast "high contrast",
+    None "none",
 }

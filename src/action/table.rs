@@ -25,30 +25,15 @@ pub enum Group {
     Program,
 }
 
-impl Group {
-    /// All, in the order of the help page.
-    pub const ALL: [Group; 7] = [
-        Group::Go,
-        Group::Change,
-        Group::Branches,
-        Group::Breakpoints,
-        Group::Look,
-        Group::Learn,
-        Group::Program,
-    ];
-
-    /// The heading.
-    pub fn title(self) -> &'static str {
-        match self {
-            Group::Go => "Go through the iterations",
-            Group::Change => "Interfere",
-            Group::Branches => "Branches: what if",
-            Group::Breakpoints => "Breakpoints and watches",
-            Group::Look => "Look around",
-            Group::Learn => "Learn",
-            Group::Program => "The program",
-        }
-    }
+stickslip_core::words! {
+    Group, ALL, title:
+    Go "Go through the iterations",
+    Change "Interfere",
+    Branches "Branches: what if",
+    Breakpoints "Breakpoints and watches",
+    Look "Look around",
+    Learn "Learn",
+    Program "The program",
 }
 
 /// One action: how it is called, which keys do it, what it does.

@@ -220,7 +220,7 @@ fn of_record(k: usize, record: &ContactRecord) -> Found {
         f_t: number(record.f_t),
         limit: number(record.t_max),
         slip: number(record.slip),
-        rule: names::rule(decision.rule).to_owned(),
+        rule: decision.rule.name().to_owned(),
         margin: None,
         tests: decision.tests.iter().flatten().map(test).collect(),
         wanted: (decision.wanted != decision.next).then(|| mode(decision.wanted)),

@@ -10,6 +10,7 @@ use crate::explain::names;
 use crate::explain::number::four;
 use crate::explain::report;
 use crate::explain::strain;
+use crate::format::kind::FileKind;
 use crate::model::Model;
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
@@ -45,8 +46,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 /// A file that says which format it has is a snapshot, any other a scene.
 fn open(input: &str, args: &Args) -> Result<Course, Error> {
     let path = Path::new(input);
-    let is_snapshot = path.is_file() && Snapshot::is_one(path);
-    if !is_snapshot {
+    let kind = FileKind::of_file(path);
+    if !matches!(kind, Some(FileKind::Journal | FileKind::Snapshot)) {
         return Ok(Course::of_scene(Scene::open(input, &args.set.set)?));
     }
     if !args.set.set.is_empty() {

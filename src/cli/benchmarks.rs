@@ -2,8 +2,9 @@
 
 use super::base::{Error, Exit, tell};
 use super::interrupt::Interrupt;
-use super::outputs::{OutputArgs, Outputs, aligned};
+use super::outputs::{OutputArgs, Outputs};
 use crate::explain::number::six;
+use crate::outside::shown::aligned;
 use crate::study::Watch;
 use crate::study::benchmarks::{Benchmark, Benchmarks, Compared, Standing, table};
 

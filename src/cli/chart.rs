@@ -2,10 +2,11 @@
 
 use super::base::{Error, Exit, NoValue, SetArgs};
 use super::interrupt::Interrupt;
-use super::outputs::{Outputs, aligned};
+use super::outputs::Outputs;
 use super::sweep::{Report, SweepArgs, failed};
 use crate::explain::number::six;
 use crate::format::kind::{FileKind, mistaken};
+use crate::outside::shown::aligned;
 use crate::study::chart_file::{Chart, Truth};
 use crate::study::chart_runs::{Planned, sweep};
 use crate::study::precision::{Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};

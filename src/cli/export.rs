@@ -11,7 +11,6 @@ use crate::explain::{names, report};
 use crate::format::kind::FileKind;
 use crate::history::strip::Strip;
 use crate::outside::files::{self, Output};
-use crate::outside::input;
 use crate::record::export::shown::{COLUMNS, Shown};
 use crate::record::export::skeleton::skeleton;
 use crate::record::export::{self, Kind, MadeOf, Origin};
@@ -104,17 +103,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 
 /// What the input is, where it is a file of ours; else a scene.
 fn input_kind(input: &str) -> FileKind {
-    /// Bytes that tell snapshots and journals from scenes.
-    const READ_TO_TELL: u64 = 4096;
-    let path = Path::new(input);
-    if !path.is_file() || !Snapshot::is_one(path) {
-        return FileKind::Scene;
-    }
-    let start = input::start(path, READ_TO_TELL).unwrap_or_default();
-    match String::from_utf8_lossy(&start).contains("began:") {
-        true => FileKind::Journal,
-        false => FileKind::Snapshot,
-    }
+    let found = FileKind::of_file(Path::new(input));
+    let ours = found.filter(|kind| matches!(kind, FileKind::Journal | FileKind::Snapshot));
+    ours.unwrap_or(FileKind::Scene)
 }
 
 /// A scene around a mesh.

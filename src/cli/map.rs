@@ -2,10 +2,10 @@
 
 use super::base::{Error, Exit, NoValue, SetArgs, say, tell};
 use super::interrupt::Interrupt;
-use super::outputs::aligned;
 use super::sweep::{Report, SweepArgs};
 use crate::model::{BoundUpdate, Strategy};
 use crate::outside::files;
+use crate::outside::shown::aligned;
 use crate::scene::builtin;
 use crate::strategy::method;
 use crate::study::map::{self, Cell, Map};

@@ -3,7 +3,6 @@
 use super::base::Error;
 use super::sink::Sink;
 use crate::outside::files::{Output, finish_all};
-use crate::outside::shown;
 use crate::study::drawn::PlotError;
 use crate::study::pen;
 use crate::study::sheet::Sheet;
@@ -11,7 +10,6 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use unicode_width::UnicodeWidthStr;
 
 /// What a sweep writes, and how it runs.
 #[derive(Debug, clap::Args)]
@@ -156,28 +154,4 @@ fn undrawn(error: PlotError) -> Error {
 fn written(mut output: Output, bytes: &[u8]) -> Result<Output, Error> {
     output.write_all(bytes).map_err(|e| output.failed(e))?;
     Ok(output)
-}
-
-/// Most characters of a cell of a table for people.
-const MOST_CELL: usize = 200;
-
-/// Lines of a table: the first columns, so many, and the last one to the left, numbers to the right.
-pub fn aligned(table: &[Vec<String>], first: usize) -> Vec<String> {
-    let harmless = |row: &Vec<String>| row.iter().map(|cell| shown::cut(cell, MOST_CELL)).collect();
-    let table: Vec<Vec<String>> = table.iter().map(harmless).collect();
-    let columns = table.first().map_or(0, Vec::len);
-    let width = |k: usize| table.iter().map(|row| row[k].width()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let cell = |k: usize, text: &String| {
-        let blanks = " ".repeat(widths[k] - text.width());
-        match k < first || k + 1 == columns {
-            true => format!("{text}{blanks}"),
-            false => format!("{blanks}{text}"),
-        }
-    };
-    let line = |row: &Vec<String>| {
-        let cells: Vec<String> = row.iter().enumerate().map(|(k, t)| cell(k, t)).collect();
-        cells.join("  ").trim_end().to_owned()
-    };
-    table.iter().map(line).collect()
 }

@@ -5,14 +5,13 @@ use super::base::{Error, Exit, SceneArgs, quoted, say, tell};
 use crate::explain::page;
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;
-use crate::outside::shown;
+use crate::outside::shown::aligned;
 use crate::scene::Scene;
 use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use unicode_width::UnicodeWidthStr;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -65,39 +64,17 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         ));
     }
     remedies::sort(&mut trials);
-    let rows = trials.iter().map(|trial| {
+    let mut headings = vec!["remedy".to_owned()];
+    headings.extend(COLUMNS.map(String::from));
+    headings.push("how".to_owned());
+    let mut rows = vec![headings];
+    rows.extend(trials.iter().map(|trial| {
         let mut row = vec![trial.label.clone()];
         row.extend(remedies::row(trial));
         row.push(trial.how.typed());
         row
-    });
-    let mut headings = vec!["remedy".to_owned()];
-    headings.extend(COLUMNS.map(String::from));
-    headings.push("how".to_owned());
-    say(&table(&headings, &rows.collect::<Vec<_>>()))?;
+    }));
+    say(&(aligned(&rows, 1).join("\n") + "\n"))?;
     let any = trials.iter().any(|trial| trial.end == TrialEnd::Converged);
     Ok(if any { Exit::Good } else { Exit::Unconverged })
-}
-
-/// Columns, the first to the left, all others to the right.
-fn table(headings: &[String], rows: &[Vec<String>]) -> String {
-    let width = |k: usize| {
-        let cells = rows.iter().map(|row| row[k].width());
-        cells.chain([headings[k].len()]).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..headings.len()).map(width).collect();
-    let line = |row: &[String]| {
-        let cells = row.iter().zip(&widths).enumerate();
-        let cells: Vec<String> = cells
-            .map(|(k, (cell, &width))| match k {
-                0 => shown::padded(cell, width),
-                _ if k + 1 == widths.len() => cell.clone(),
-                _ => shown::padded_before(cell, width),
-            })
-            .collect();
-        cells.join("  ").trim_end().to_owned() + "\n"
-    };
-    let mut text = line(headings);
-    text.extend(rows.iter().map(|row| line(row)));
-    text
 }

@@ -3,7 +3,6 @@
 use super::base::{Error, Exit, tell};
 use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
-use super::outputs::aligned;
 use super::progress::Progress;
 use super::remedies;
 use super::sink::{Sent, Sink};
@@ -24,6 +23,7 @@ use crate::linear::stability::Stability;
 use crate::model::{Control, Jumps, Model, Touch};
 use crate::outside::files::Output;
 use crate::outside::shown;
+use crate::outside::shown::{aligned, first_of};
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
 use crate::scene::gaps;
@@ -413,14 +413,7 @@ impl<'a> Run<'a> {
             ..
         } = &self.tally;
         let name = &scene.name;
-        let loads = |all: &[f64]| {
-            let first: Vec<String> = all.iter().take(MOST_STRETCHES).map(|&x| four(x)).collect();
-            let more = match all.len().saturating_sub(MOST_STRETCHES) {
-                0 => String::new(),
-                more => format!(" and {more} more"),
-            };
-            first.join(", ") + &more
-        };
+        let loads = |all: &[f64]| first_of(all.iter().map(|&x| four(x)), MOST_STRETCHES, ", ");
         if !jumps.is_empty() {
             let at = loads(jumps);
             tell(&format!(

@@ -3,9 +3,9 @@
 use super::base::{Error, Exit, SetArgs};
 use super::benchmarks;
 use super::interrupt::Interrupt;
-use super::outputs::aligned;
 use super::sweep::{Report, SweepArgs};
 use crate::explain::number::six;
+use crate::outside::shown::aligned;
 use crate::study::benchmarks::Benchmarks;
 use crate::study::figure;
 use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, csv, run};

@@ -156,7 +156,7 @@ pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String
             field(names::slave(model, slave)),
             names::mode(d.before),
             names::mode(d.next),
-            names::rule(d.rule),
+            d.rule.name(),
             r.gap,
             r.slip,
             d.margin(),

@@ -126,6 +126,8 @@
 
 #![forbid(unsafe_code)]
 
+mod words;
+
 pub mod contact;
 pub mod executor;
 pub mod fem;

@@ -7,6 +7,7 @@ use crate::contact::projection::{Projection, projection_at, tangent};
 use crate::fem::pressure::Pressures;
 use crate::linear::singular::{Motion, RigidMotion, Singular};
 use crate::model::{Factor, Mode, Model};
+use crate::outside::shown::first_of;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use std::collections::HashSet;
@@ -259,18 +260,10 @@ impl<'a> Moving<'a> {
         if sliding.is_empty() {
             return format!("what would stop it: {support}; this motion brings no contact nearer");
         }
-        let nodes: Vec<&str> = sliding
-            .iter()
-            .take(MOST_NODES)
-            .map(|&s| slave(self.model, s))
-            .collect();
-        let more = match sliding.len() {
-            n if n > MOST_NODES => format!(" and {} more", n - MOST_NODES),
-            _ => String::new(),
-        };
+        let nodes = sliding.iter().map(|&s| slave(self.model, s));
         format!(
-            "what would stop it: sticking of {}{more}, as far as friction carries it (start: fixed); or {support}",
-            nodes.join(", ")
+            "what would stop it: sticking of {}, as far as friction carries it (start: fixed); or {support}",
+            first_of(nodes, MOST_NODES, ", ")
         )
     }
 
@@ -318,17 +311,12 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
         .filter(|&s| rank(state.nodes[s].mode) < rank(state.start.nodes[s].mode))
         .map(|s| slave(model, s))
         .collect();
-    let more = match let_go.len() {
-        n if n > MOST_NODES => format!(" and {} more", n - MOST_NODES),
-        _ => String::new(),
-    };
-    let shown = &let_go[..let_go.len().min(MOST_NODES)];
-    match shown {
-        [] => format!("since when: at load {load} it was held"),
-        some => format!(
-            "since when: at load {load} it was held; on the way to {} {}{more} let go",
+    match let_go.is_empty() {
+        true => format!("since when: at load {load} it was held"),
+        false => format!(
+            "since when: at load {load} it was held; on the way to {} {} let go",
             state.load_factor,
-            some.join(", ")
+            first_of(let_go, MOST_NODES, ", ")
         ),
     }
 }

@@ -14,11 +14,7 @@ pub fn slave(model: &Model, slave: usize) -> &str {
 
 /// A mode's word.
 pub fn mode(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Free => "free",
-        Mode::Sliding => "sliding",
-        Mode::Fixed => "fixed",
-    }
+    mode.word()
 }
 
 /// The status of a contact that has a mode next: a finished run does not distinguish stick from slip.
@@ -68,39 +64,6 @@ pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
             table
         }
         _ => TABLE_2,
-    }
-}
-
-/// A rule's name: the row of Table 2, and what it does.
-pub fn rule(rule: Rule) -> &'static str {
-    match rule {
-        Rule::FixedStays => "fixed-stays",
-        Rule::FixedSlides => "fixed-slides",
-        Rule::FixedDragged => "fixed-dragged",
-        Rule::FixedOpens => "fixed-opens",
-        Rule::SlidingSticks => "sliding-sticks",
-        Rule::SlidingStays => "sliding-stays",
-        Rule::SlidingOpens => "sliding-opens",
-        Rule::SlidingPasses => "sliding-passes",
-        Rule::CornerStays => "corner-stays",
-        Rule::CornerSlides => "corner-slides",
-        Rule::CornerOpens => "corner-opens",
-        Rule::CornerReleases => "corner-releases",
-        Rule::FreeSticks => "free-sticks",
-        Rule::FreeSlides => "free-slides",
-        Rule::FreeStays => "free-stays",
-        Rule::OffSurface => "off-surface",
-        Rule::Tied => "tied",
-        Rule::Held => "held",
-        Rule::FreeEnters => "free-enters",
-        Rule::Waits => "waits",
-        Rule::NewtonOpens => "newton-opens",
-        Rule::NewtonSticks => "newton-sticks",
-        Rule::NewtonSlides => "newton-slides",
-        Rule::Pivots => "pivots",
-        Rule::Sweeps => "sweeps",
-        Rule::Found => "found",
-        Rule::Theirs => "theirs",
     }
 }
 

@@ -14,6 +14,7 @@ use crate::interface::minor_history::Cycle;
 use crate::linear::norms::Norms;
 use crate::linear::singular::{Motion, RigidMotion, Singular};
 use crate::model::{Mode, Model};
+use crate::outside::shown::first_of;
 use crate::step::event::{Event, Failure, Moves, Outcome, Position, Slow};
 use crate::step::intervene::Intervention;
 use crate::step::major_history::{MajorCycle, Stop};
@@ -353,14 +354,9 @@ fn changes(model: &Model, event: &Event) -> String {
         let d = &event.nodes[s].decision;
         format!("{} {} > {}", slave(model, s), mode(d.before), mode(d.next))
     };
-    match all.len() {
-        0..=3 => all.iter().map(told).collect::<Vec<_>>().join(", "),
-        n => format!(
-            "{} and {} more",
-            all[..2].iter().map(told).collect::<Vec<_>>().join(", "),
-            n - 2
-        ),
-    }
+    // Three fit in the place of two and a number.
+    let most = if all.len() == 3 { 3 } else { 2 };
+    first_of(all.iter().map(told), most, ", ")
 }
 
 /// What the user did.

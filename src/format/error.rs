@@ -1,6 +1,7 @@
 //! What is wrong with a scene, and where.
 
 use crate::outside::shown;
+use crate::outside::shown::first_of;
 use std::fmt;
 
 /// One step from a value of the scene file to a value inside it.
@@ -204,20 +205,11 @@ fn distance(a: &[char], b: &[char]) -> usize {
 
 /// A few names for a message, in quotes; the rest is counted.
 pub(crate) fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    const MOST: usize = 8;
-    let names: Vec<&str> = names.into_iter().collect();
-    let mut text = names
-        .iter()
-        .take(MOST)
-        .map(|name| format!("{name:?}"))
-        .collect::<Vec<_>>()
-        .join(", ");
-    if names.is_empty() {
-        text.push_str("none");
-    } else if names.len() > MOST {
-        text.push_str(&format!(" and {} more", names.len() - MOST));
+    let quoted = names.into_iter().map(|name| format!("{name:?}"));
+    match first_of(quoted, 8, ", ") {
+        none if none.is_empty() => "none".into(),
+        some => some,
     }
-    text
 }
 
 /// Most characters of a message; lists of choices are half as long.

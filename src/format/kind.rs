@@ -37,102 +37,110 @@ pub enum FileKind {
     Progress,
 }
 
-/// Columns with which the tables of runs, traces and sweeps begin.
-const TABLES: [&str; 3] = ["increment,load,", "increment,attempt,", "scene,"];
+/// How a kind of file is recognised, called, and read.
+struct Entry {
+    kind: FileKind,
+    /// After "this is".
+    name: &'static str,
+    /// The command that reads it, with `{}` for the file; empty where there is none.
+    command: &'static str,
+    recognise: fn(&Start) -> bool,
+}
 
-/// What the tables of a CalculiX run begin with.
-const PROGRESS: [&str; 2] = [
-    "SUMMARY OF JOB INFORMATION",
-    "SUMMARY OF C0NVERGENCE INFORMATION",
+const fn entry(
+    kind: FileKind,
+    name: &'static str,
+    command: &'static str,
+    recognise: fn(&Start) -> bool,
+) -> Entry {
+    Entry {
+        kind,
+        name,
+        command,
+        recognise,
+    }
+}
+
+/// All kinds, in the order in which they are tried.
+#[rustfmt::skip]
+const KINDS: [Entry; 13] = [
+    entry(FileKind::Mesh, "a mesh of Gmsh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")),
+    entry(FileKind::Results, "a file of kept results", "stickslip map SCENE --resume {}", |start| start.first.starts_with("stickslip ") && start.first.contains(" results, ")),
+    entry(FileKind::Contacts, "the .cel of a finished CalculiX run", "stickslip {}", |start| is_contacts(start.first)),
+    entry(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "SUMMARY OF C0NVERGENCE INFORMATION"].contains(&start.first)),
+    entry(FileKind::Cast, "a session to be played in a terminal", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
+    entry(FileKind::ChartTable, "the table of a work-precision chart", "stickslip chart --from {}", |start| start.first.starts_with("scene,series,run,")),
+    entry(FileKind::Table, "a table of results", "", |start| {
+        let columns = ["increment,load,", "increment,attempt,", "scene,"];
+        columns.iter().any(|columns| start.first.starts_with(columns)) || start.first.contains(",status,increment,load,majors")
+    }),
+    entry(FileKind::Journal, "a journal", "stickslip resume {}", |start| start.has_format() && start.first.contains("began:")),
+    entry(FileKind::Snapshot, "a snapshot", "stickslip replay {}", |start| start.has_format()),
+    entry(FileKind::Lesson, "a lesson", "stickslip lesson {}", |start| start.has(&["scene", "steps"])),
+    entry(FileKind::Chart, "the file of a work-precision chart", "", |start| start.has(&["scene", "series"])),
+    entry(FileKind::Scene, "a scene", "stickslip run {}", |start| {
+        let heads = [super::condensed::HEAD, super::stored::HEAD];
+        let number = start.first.split_whitespace().next().is_some_and(|word| word.parse::<u32>().is_ok());
+        number
+            || start.text.starts_with("%%MatrixMarket")
+            || (start.is_shallow && head(start.text).is_some_and(|head| heads.contains(&head)))
+            || start.has(&["nodes", "bodies"])
+    }),
+    entry(FileKind::Study, "a study", "stickslip study {}", |start| {
+        ["vary", "benchmarks", "scenes", "scene"].iter().any(|field| start.has(&[field]))
+    }),
 ];
 
+/// What a file is recognised by.
+struct Start<'a> {
+    text: &'a str,
+    /// The first line that is neither blank nor a comment of a table.
+    first: &'a str,
+    /// Whether the text can be searched for fields.
+    is_shallow: bool,
+}
+
+impl Start<'_> {
+    /// Whether the value in RON has all these fields; the text need not be sound.
+    fn has(&self, fields: &[&str]) -> bool {
+        self.is_shallow && fields.iter().all(|field| is_field(self.text, field))
+    }
+
+    /// Whether the value in RON begins with its format, as no scene does.
+    fn has_format(&self) -> bool {
+        let value = self.text.trim_start_matches(['(', ' ', '\t', '\r', '\n']);
+        value.starts_with("format")
+    }
+}
+
 impl FileKind {
+    /// What a file is, by its beginning.
+    pub fn of_file(path: &std::path::Path) -> Option<FileKind> {
+        const READ: u64 = 4096;
+        let start = input::start(path, READ).ok()?;
+        FileKind::of(&String::from_utf8_lossy(&start))
+    }
+
     /// What a text is, as far as its beginning and its outermost fields tell; `None` where they do not.
     pub fn of(text: &str) -> Option<FileKind> {
         let text = text.trim_start_matches(input::MARK);
-        if text.starts_with("%%MatrixMarket") {
-            return Some(FileKind::Scene);
-        }
-        if text.trim_start().starts_with("$MeshFormat") {
-            return Some(FileKind::Mesh);
-        }
         let rows = text.lines().filter(|line| !line.starts_with('#'));
-        let first = rows.map(str::trim).find(|line| !line.is_empty())?;
-        if first.starts_with("stickslip ") && first.contains(" results, ") {
-            return Some(FileKind::Results);
-        }
-        if is_contacts(first) {
-            return Some(FileKind::Contacts);
-        }
-        if PROGRESS.contains(&first) {
-            return Some(FileKind::Progress);
-        }
-        if first.starts_with("{\"version\"") {
-            return Some(FileKind::Cast);
-        }
-        if first.starts_with("scene,series,run,") {
-            return Some(FileKind::ChartTable);
-        }
-        if TABLES.iter().any(|columns| first.starts_with(columns))
-            || first.contains(",status,increment,load,majors")
-        {
-            return Some(FileKind::Table);
-        }
-        if first
-            .split_whitespace()
-            .next()
-            .is_some_and(|word| word.parse::<u32>().is_ok())
-        {
-            return Some(FileKind::Scene);
-        }
-        FileKind::of_value(text)
+        let start = Start {
+            text,
+            first: rows.map(str::trim).find(|line| !line.is_empty())?,
+            is_shallow: too_deep(text).is_none(),
+        };
+        let found = KINDS.iter().find(|entry| (entry.recognise)(&start));
+        found.map(|entry| entry.kind)
     }
 
-    /// The same of a value in RON, or of lines that each hold one.
-    fn of_value(text: &str) -> Option<FileKind> {
-        if too_deep(text).is_some() {
-            return None;
-        }
-        if [super::condensed::HEAD, super::stored::HEAD]
-            .map(Some)
-            .contains(&head(text))
-        {
-            return Some(FileKind::Scene);
-        }
-        let whole = locate(text, &Path::default());
-        let has = |field: &str| locate(text, &Path(vec![Step::from(field)])) != whole;
-        let all = |fields: &[&str]| fields.iter().all(|field| has(field));
-        let kinds: [(&[&str], FileKind); 7] = [
-            (&["format", "began", "scene"], FileKind::Journal),
-            (&["format", "state", "scene"], FileKind::Snapshot),
-            (&["scene", "steps"], FileKind::Lesson),
-            (&["scene", "series"], FileKind::Chart),
-            (&["nodes", "bodies"], FileKind::Scene),
-            (&["vary"], FileKind::Study),
-            (&["benchmarks"], FileKind::Study),
-        ];
-        let found = kinds.into_iter().find(|(fields, _)| all(fields));
-        let found = found.map(|(_, kind)| kind);
-        found.or_else(|| (has("scenes") || has("scene")).then_some(FileKind::Study))
+    fn entry(self) -> Option<&'static Entry> {
+        KINDS.iter().find(|entry| entry.kind == self)
     }
 
     /// What it is called, after "this is".
     pub fn name(self) -> &'static str {
-        match self {
-            FileKind::Scene => "a scene",
-            FileKind::Mesh => "a mesh of Gmsh",
-            FileKind::Snapshot => "a snapshot",
-            FileKind::Journal => "a journal",
-            FileKind::Lesson => "a lesson",
-            FileKind::Study => "a study",
-            FileKind::Chart => "the file of a work-precision chart",
-            FileKind::ChartTable => "the table of a work-precision chart",
-            FileKind::Table => "a table of results",
-            FileKind::Results => "a file of kept results",
-            FileKind::Cast => "a session to be played in a terminal",
-            FileKind::Contacts => "the .cel of a finished CalculiX run",
-            FileKind::Progress => "a table of a finished CalculiX run",
-        }
+        self.entry().map_or("", |entry| entry.name)
     }
 
     /// The command that reads a file of this kind; none where the program has none.
@@ -145,26 +153,18 @@ impl FileKind {
             true => format!("'{file}'"),
             false => file,
         };
-        Some(match self {
-            FileKind::Scene => format!("stickslip run {file}"),
-            FileKind::Mesh => format!("stickslip export {file} -o SCENE.ron"),
-            FileKind::Snapshot => format!("stickslip replay {file}"),
-            FileKind::Journal => format!("stickslip resume {file}"),
-            FileKind::Lesson => format!("stickslip lesson {file}"),
-            FileKind::Study => format!("stickslip study {file}"),
-            FileKind::ChartTable => format!("stickslip chart --from {file}"),
-            FileKind::Results => format!("stickslip map SCENE --resume {file}"),
-            FileKind::Cast => format!("asciinema play {file}"),
-            FileKind::Contacts | FileKind::Progress => format!("stickslip {file}"),
-            FileKind::Chart | FileKind::Table => return None,
-        })
+        let command = self.entry()?.command;
+        (!command.is_empty()).then(|| command.replace("{}", &file))
     }
 }
 
 /// Whether the value in RON that a text holds has a field; the text need not be sound.
 pub(crate) fn has_field(text: &str, field: &str) -> bool {
-    let whole = || locate(text, &Path::default());
-    too_deep(text).is_none() && locate(text, &Path(vec![Step::from(field)])) != whole()
+    too_deep(text).is_none() && is_field(text, field)
+}
+
+fn is_field(text: &str, field: &str) -> bool {
+    locate(text, &Path(vec![Step::from(field)])) != locate(text, &Path::default())
 }
 
 /// Whether a text begins as the contact elements of a CalculiX run do.

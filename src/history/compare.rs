@@ -11,6 +11,7 @@ use crate::history::frame::Frame;
 use crate::history::strip::Strip;
 use crate::history::tree::Tree;
 use crate::model::{Mode, Model};
+use crate::outside::shown::first_of;
 use crate::step::event::Position;
 
 /// States that differ by less, relatively, are the same.
@@ -241,10 +242,8 @@ fn differing(model: &Model, a: &Side, b: &Side) -> String {
         let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);
         format!("{} {a}, {b}", names::slave(model, s))
     };
-    let some: Vec<String> = nodes.iter().take(SHOWN).map(told).collect();
-    match nodes.len() {
-        0 => ", with the same modes".into(),
-        n if n > SHOWN => format!(": {} and {} more", some.join("; "), n - SHOWN),
-        _ => format!(": {}", some.join("; ")),
+    match nodes.is_empty() {
+        true => ", with the same modes".into(),
+        false => format!(": {}", first_of(nodes.iter().map(told), SHOWN, "; ")),
     }
 }

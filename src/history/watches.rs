@@ -27,33 +27,19 @@ pub enum WatchQuantity {
     Interface,
 }
 
+stickslip_core::words! {
+    WatchQuantity, ALL, word:
+    Gap "gap",
+    NormalForce "f_n",
+    TangentialForce "f_t",
+    BoundUpdate "t_max",
+    Slip "slip",
+    Margin "margin",
+    Residual "residual",
+    Interface "interface",
+}
+
 impl WatchQuantity {
-    /// All, in the order in which they are offered.
-    pub const ALL: [WatchQuantity; 8] = [
-        WatchQuantity::Gap,
-        WatchQuantity::NormalForce,
-        WatchQuantity::TangentialForce,
-        WatchQuantity::BoundUpdate,
-        WatchQuantity::Slip,
-        WatchQuantity::Margin,
-        WatchQuantity::Residual,
-        WatchQuantity::Interface,
-    ];
-
-    /// The word for it, as tables call it.
-    pub fn word(self) -> &'static str {
-        match self {
-            WatchQuantity::Gap => "gap",
-            WatchQuantity::NormalForce => "f_n",
-            WatchQuantity::TangentialForce => "f_t",
-            WatchQuantity::BoundUpdate => "t_max",
-            WatchQuantity::Slip => "slip",
-            WatchQuantity::Margin => "margin",
-            WatchQuantity::Residual => "residual",
-            WatchQuantity::Interface => "interface",
-        }
-    }
-
     /// Whether it is a slave node's.
     pub fn is_nodal(self) -> bool {
         !matches!(self, WatchQuantity::Residual | WatchQuantity::Interface)

@@ -11,36 +11,6 @@ use stickslip_exchange::calculix::{cel, cvg, sta};
 /// Files of a run: contact elements, attempts, residuals.
 const ENDS: [&str; 3] = ["cel", "sta", "cvg"];
 
-/// Why a run cannot be shown.
-#[derive(Debug, thiserror::Error)]
-pub enum NoRun {
-    /// A file cannot be opened.
-    #[error("{}", .why.of(&.file.display().to_string()))]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        why: Unreadable,
-    },
-    /// A file is not as it should be.
-    #[error("{}{}: {why}", .file.display(), place(.why))]
-    Broken {
-        /// The file.
-        file: PathBuf,
-        /// What is wrong, and where.
-        why: Broken,
-    },
-    /// There is no contact element.
-    #[error("{}: there is no contact element in it, so there is nothing to show", .0.display())]
-    Empty(PathBuf),
-}
-
-fn place(broken: &Broken) -> String {
-    broken
-        .at
-        .map_or(String::new(), |(line, column)| format!(":{line}:{column}"))
-}
-
 /// Whether a file is called as CalculiX calls the contact elements of a run.
 pub fn is_cel(name: &str) -> bool {
     ends(name, "cel")
@@ -61,46 +31,45 @@ fn ends(name: &str, end: &str) -> bool {
 ///
 /// # Errors
 /// If a file is there and cannot be read, is not as it should be, or no contact element stands in the .cel.
-pub fn read(path: &Path) -> Result<PastRun, NoRun> {
-    let cel = open(path)?;
-    let cel = cel::read(cel).map_err(|why| broken(path, why))?;
+pub fn read(path: &Path) -> Result<PastRun, String> {
+    let cel = open(path).map_err(|why| why.of(&path.display().to_string()))?;
+    let cel = cel::read(cel).map_err(|why| broken(path, &why))?;
     if cel.slaves.is_empty() {
-        return Err(NoRun::Empty(path.to_owned()));
+        let path = path.display();
+        return Err(format!(
+            "{path}: there is no contact element in it, so there is nothing to show"
+        ));
     }
-    let sta = beside(path, ENDS[1])?;
-    let sta = sta.map(|(path, file)| sta::read(file).map_err(|why| broken(&path, why)));
-    let cvg = beside(path, ENDS[2])?;
-    let cvg = cvg.map(|(path, file)| cvg::read(file).map_err(|why| broken(&path, why)));
-    Ok(PastRun::new(cel, sta.transpose()?, cvg.transpose()?))
+    let sta = beside(path, ENDS[1], sta::read)?;
+    let cvg = beside(path, ENDS[2], cvg::read)?;
+    Ok(PastRun::new(cel, sta, cvg))
 }
 
 type Reader = BufReader<std::fs::File>;
 
-/// A file beside the .cel; `None` where there is none.
-fn beside(cel: &Path, end: &str) -> Result<Option<(PathBuf, Reader)>, NoRun> {
+/// Reads a file beside the .cel; `None` where there is none.
+fn beside<T>(
+    cel: &Path,
+    end: &str,
+    read: impl Fn(Reader) -> Result<T, Broken>,
+) -> Result<Option<T>, String> {
     let path = cel.with_extension(end);
     match open(&path) {
-        Ok(file) => Ok(Some((path, file))),
-        Err(NoRun::Unreadable {
-            why: Unreadable::Failed(error),
-            ..
-        }) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(other) => Err(other),
+        Ok(file) => read(file).map(Some).map_err(|why| broken(&path, &why)),
+        Err(Unreadable::Failed(error)) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(why) => Err(why.of(&path.display().to_string())),
     }
 }
 
-fn open(path: &Path) -> Result<Reader, NoRun> {
-    let file = input::open(path, OpenOptions::new().read(true));
-    let file = file.map_err(|why| NoRun::Unreadable {
-        file: path.to_owned(),
-        why,
-    })?;
+fn open(path: &Path) -> Result<Reader, Unreadable> {
+    let file = input::open(path, OpenOptions::new().read(true))?;
     Ok(BufReader::with_capacity(1 << 16, file))
 }
 
-fn broken(path: &Path, why: Broken) -> NoRun {
-    NoRun::Broken {
-        file: path.to_owned(),
-        why,
+fn broken(path: &Path, why: &Broken) -> String {
+    let path = path.display();
+    match why.at {
+        Some((line, column)) => format!("{path}:{line}:{column}: {why}"),
+        None => format!("{path}: {why}"),
     }
 }

@@ -71,6 +71,33 @@ pub fn padded_before(text: &str, columns: usize) -> String {
     format!("{}{text}", " ".repeat(missing))
 }
 
+/// Most characters of a cell of a table for people.
+const MOST_CELL: usize = 200;
+
+/// Lines of a table: the first columns, so many, and the last one are flush left, the others flush right.
+pub fn aligned<R: AsRef<[String]>>(table: &[R], first: usize) -> Vec<String> {
+    let harmless = |row: &R| {
+        row.as_ref()
+            .iter()
+            .map(|cell| cut(cell, MOST_CELL))
+            .collect()
+    };
+    let table: Vec<Vec<String>> = table.iter().map(harmless).collect();
+    let columns = table.first().map_or(0, Vec::len);
+    let is_left = |k: usize| k < first || k + 1 == columns;
+    let width = |k: usize| table.iter().map(|row| row[k].width()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let cell = |(k, text): (usize, &String)| match is_left(k) {
+        true => padded(text, widths[k]),
+        false => padded_before(text, widths[k]),
+    };
+    let line = |row: &Vec<String>| {
+        let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
+        cells.join("  ").trim_end().to_owned()
+    };
+    table.iter().map(line).collect()
+}
+
 fn escaped(text: &str, harmful: impl Fn(char) -> bool) -> Cow<'_, str> {
     if !text.contains(&harmful) {
         return Cow::Borrowed(text);

@@ -7,6 +7,7 @@
 //! Names of scenes are not compared.
 
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
+use crate::contact::table2::Rule;
 use crate::explain::names;
 use crate::format::paths;
 use crate::linear::norms::Norms;
@@ -17,7 +18,6 @@ use crate::step::event::Failure;
 use crate::step::state::Status;
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
-use unicode_width::UnicodeWidthStr;
 
 /// How far numbers may be apart, relative to their scale.
 pub const TOLERANCE: f64 = 1e-9;
@@ -142,7 +142,7 @@ impl Differences {
 
     fn slave(&mut self, a: &SlaveRecord, b: &SlaveRecord, scales: &Scales) {
         let name = &a.node;
-        let rule = |s: &SlaveRecord| s.rule.map_or(ABSENT, names::rule).to_owned();
+        let rule = |s: &SlaveRecord| s.rule.map_or(ABSENT, Rule::name).to_owned();
         for (what, left, right) in [
             ("mode", names::mode(a.mode), names::mode(b.mode)),
             ("next", names::mode(a.next), names::mode(b.next)),
@@ -340,17 +340,8 @@ impl fmt::Display for Differences {
                 .iter()
                 .map(|r| [r.what.clone(), r.left.clone(), r.right.clone(), apart(r)]),
         );
-        let width = |k: usize| lines.iter().map(|l| l[k].width()).max();
-        let widths = [0, 1, 2].map(|k| width(k).unwrap_or(0));
-        for line in &lines {
-            let [what, left, right, apart] = line;
-            let text = format!(
-                "{}  {}  {}  {apart}",
-                shown::padded(what, widths[0]),
-                shown::padded(left, widths[1]),
-                shown::padded(right, widths[2])
-            );
-            writeln!(f, "{}", text.trim_end())?;
+        for line in shown::aligned(&lines, lines[0].len()) {
+            writeln!(f, "{line}")?;
         }
         Ok(())
     }

@@ -26,8 +26,6 @@ use std::sync::Arc;
 
 /// The format that this program writes, and the only one that it reads.
 pub const FORMAT: u32 = 1;
-/// Bytes that tell a snapshot from a scene.
-const READ_TO_TELL: u64 = 4096;
 
 /// A recorded state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -109,12 +107,11 @@ pub struct SlaveRecord {
 /// A rule by its name: RON has no bare words with hyphens.
 mod rule_name {
     use crate::contact::table2::Rule;
-    use crate::explain::names;
     use serde::de::IntoDeserializer;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub fn serialize<S: Serializer>(rule: &Option<Rule>, to: S) -> Result<S::Ok, S::Error> {
-        rule.map(names::rule).serialize(to)
+        rule.map(Rule::name).serialize(to)
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Rule>, D::Error> {
@@ -254,14 +251,6 @@ impl Snapshot {
             SnapshotError::Unreadable { file, why }
         })?;
         Snapshot::from_text(&file, &text)
-    }
-
-    /// Whether a file begins as a snapshot does, and as no scene: with its format.
-    pub fn is_one(path: &Path) -> bool {
-        let start = input::start(path, READ_TO_TELL).unwrap_or_default();
-        let text = String::from_utf8_lossy(&start);
-        let first = text.trim_start_matches([input::MARK, '(', ' ', '\t', '\r', '\n']);
-        first.starts_with("format")
     }
 
     /// Reads a snapshot from a text; `file` is what messages call it.

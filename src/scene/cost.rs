@@ -242,14 +242,9 @@ fn slaves_line(model: &Model) -> String {
             .filter(|slave| slave.start == mode)
             .count()
     };
-    let modes = [
-        (Mode::Free, "free"),
-        (Mode::Sliding, "sliding"),
-        (Mode::Fixed, "fixed"),
-    ];
-    let parts: Vec<String> = modes
-        .iter()
-        .map(|(mode, word)| (starts(*mode), word))
+    let parts: Vec<String> = Mode::ALL
+        .into_iter()
+        .map(|mode| (starts(mode), mode.word()))
         .filter(|(n, _)| *n > 0)
         .map(|(n, w)| format!("{n} {w}"))
         .collect();

@@ -225,17 +225,7 @@ impl Scene {
             placed(name, text, &[], Fault::new(whole, fault.message))
         };
         imported(&mut spec, name, at)?;
-        let (model, names) = compile::compile(&spec).map_err(at)?;
-        Ok(Scene {
-            name: name.to_owned(),
-            text: String::new(),
-            spec,
-            model,
-            remarks: Vec::new(),
-            names,
-            overrides: Vec::new(),
-            imports: false,
-        })
+        Scene::compiled(name, "", spec, Vec::new(), |_, fault| at(fault))
     }
 
     /// This scene with one scalar set, as `--set` or the debugger's `:set` does it.

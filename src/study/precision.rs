@@ -99,6 +99,13 @@ pub enum Cost {
     Minors,
 }
 
+stickslip_core::words! {
+    Cost, axis:
+    Time "processor time (s)",
+    Factorizations "factorizations",
+    Minors "minor iterations",
+}
+
 impl Cost {
     /// The words of `--cost`.
     pub const WORDS: [&'static str; 3] = ["time", "factorizations", "minors"];
@@ -107,15 +114,6 @@ impl Cost {
     pub fn named(word: &str) -> Option<Cost> {
         let k = Cost::WORDS.iter().position(|own| *own == word)?;
         Some([Cost::Time, Cost::Factorizations, Cost::Minors][k])
-    }
-
-    /// What an axis of it is called.
-    pub fn axis(self) -> &'static str {
-        match self {
-            Cost::Time => "processor time (s)",
-            Cost::Factorizations => "factorizations",
-            Cost::Minors => "minor iterations",
-        }
     }
 
     /// That of a run.

@@ -57,15 +57,11 @@ pub enum Form {
     Singular,
 }
 
-impl Form {
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Form::Stiffness => "stiffness",
-            Form::Compliance => "compliance",
-            Form::Singular => "singular",
-        }
-    }
+stickslip_core::words! {
+    Form, name:
+    Stiffness "stiffness",
+    Compliance "compliance",
+    Singular "singular",
 }
 
 /// Numbers of one stream.

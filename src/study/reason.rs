@@ -39,6 +39,25 @@ pub enum Reason {
     Inverted,
 }
 
+stickslip_core::words! {
+    Reason, word:
+    MinorCycle "minor-cycle",
+    MinorLimit "minor-limit",
+    MajorLimit "major-limit",
+    MajorCycle "major-cycle",
+    Singular "singular",
+    Diverged "diverged",
+    OverConstrained "jammed",
+    Refused "refused",
+    NoAnswer "no-answer",
+    NotFound "not-found",
+    RoundOff "round-off",
+    Restless "restless",
+    Jump "jump",
+    OffPath "off-path",
+    Inverted "inverted",
+}
+
 impl Reason {
     /// A letter for it, where there is no room for the word.
     pub fn letter(self) -> char {
@@ -87,22 +106,6 @@ impl From<&Failure> for Reason {
 
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Reason::MinorCycle => "minor-cycle",
-            Reason::MinorLimit => "minor-limit",
-            Reason::MajorLimit => "major-limit",
-            Reason::MajorCycle => "major-cycle",
-            Reason::Singular => "singular",
-            Reason::Diverged => "diverged",
-            Reason::OverConstrained => "jammed",
-            Reason::Refused => "refused",
-            Reason::NoAnswer => "no-answer",
-            Reason::NotFound => "not-found",
-            Reason::RoundOff => "round-off",
-            Reason::Restless => "restless",
-            Reason::Jump => "jump",
-            Reason::OffPath => "off-path",
-            Reason::Inverted => "inverted",
-        })
+        f.write_str(self.word())
     }
 }

@@ -93,36 +93,39 @@ pub enum OfRun {
     Factorizations,
 }
 
-const NODAL: [(&str, Nodal); 9] = [
-    ("gap", Nodal::Gap),
-    ("F_n", Nodal::Fn),
-    ("F_t", Nodal::Ft),
-    ("T_max", Nodal::TMax),
-    ("slip", Nodal::Slip),
-    ("lag", Nodal::Lag),
-    ("mode", Nodal::Mode),
-    ("next", Nodal::Next),
-    ("reason", Nodal::Reason),
-];
+stickslip_core::words! {
+    Nodal, ALL, word:
+    Gap "gap",
+    Fn "F_n",
+    Ft "F_t",
+    TMax "T_max",
+    Slip "slip",
+    Lag "lag",
+    Mode "mode",
+    Next "next",
+    Reason "reason",
+}
 
-const RUN: [(&str, OfRun); 2] = [
-    ("error", OfRun::Error),
-    ("factorizations", OfRun::Factorizations),
-];
+stickslip_core::words! {
+    OfRun, ALL, word:
+    Error "error",
+    Factorizations "factorizations",
+}
 
-const WHOLE: [(&str, Whole); 11] = [
-    ("load", Whole::Load),
-    ("increment", Whole::Increment),
-    ("angle", Whole::Angle),
-    ("tan", Whole::Tan),
-    ("cohesion", Whole::Cohesion),
-    ("answers", Whole::Answers),
-    ("minors", Whole::Minors),
-    ("period", Whole::Period),
-    ("majors", Whole::Majors),
-    ("residual", Whole::Residual),
-    ("verdict", Whole::Verdict),
-];
+stickslip_core::words! {
+    Whole, ALL, word:
+    Load "load",
+    Increment "increment",
+    Angle "angle",
+    Tan "tan",
+    Cohesion "cohesion",
+    Answers "answers",
+    Minors "minors",
+    Period "period",
+    Majors "majors",
+    Residual "residual",
+    Verdict "verdict",
+}
 
 impl LessonQuantity {
     /// Reads a quantity: `F_n beam.end`, `load`.
@@ -132,16 +135,16 @@ impl LessonQuantity {
     pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         let rest = rest.trim();
-        if let Some((_, nodal)) = NODAL.iter().find(|(name, _)| *name == word) {
+        if let Some(nodal) = Nodal::of_word(word) {
             return match rest {
                 "" => Err(Unknown::WhichNode(word.into())),
-                node => Ok(LessonQuantity::Of(*nodal, action::exact(node, context)?)),
+                node => Ok(LessonQuantity::Of(nodal, action::exact(node, context)?)),
             };
         }
-        if let Some((_, of)) = RUN.iter().find(|(name, _)| *name == word) {
-            return Ok(LessonQuantity::Run(*of, settings(rest)?));
+        if let Some(of) = OfRun::of_word(word) {
+            return Ok(LessonQuantity::Run(of, settings(rest)?));
         }
-        let whole = WHOLE.iter().find(|(name, _)| *name == word);
+        let whole = Whole::of_word(word);
         match (word, whole, rest) {
             ("key", _, action) => {
                 let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
@@ -150,7 +153,7 @@ impl LessonQuantity {
                 key.map(|key| LessonQuantity::Key(key)).ok_or_else(none)
             }
             ("right", _, "") => Ok(LessonQuantity::Right),
-            (_, Some((_, whole)), "") => Ok(LessonQuantity::Solve(*whole)),
+            (_, Some(whole), "") => Ok(LessonQuantity::Solve(whole)),
             (_, Some(_), _) => Err(Unknown::NotNodal(word.into())),
             _ => Err(unknown(word)),
         }
@@ -298,16 +301,10 @@ pub fn settings(text: &str) -> Result<Vec<(String, String)>, Unknown> {
 }
 
 fn unknown(word: &str) -> Unknown {
-    let nodal = NODAL.iter().map(|(name, _)| *name);
-    let whole = WHOLE.iter().map(|(name, _)| *name);
-    let run = RUN.iter().map(|(name, _)| *name);
+    let all = Nodal::NAMES.into_iter().chain(Whole::NAMES);
     Unknown::NoQuantity {
         word: word.into(),
-        known: nodal
-            .chain(whole)
-            .chain(run)
-            .chain(["right", "key"])
-            .collect(),
+        known: all.chain(OfRun::NAMES).chain(["right", "key"]).collect(),
     }
 }
 

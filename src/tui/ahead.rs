@@ -36,16 +36,12 @@ pub enum Awaited {
     Trying,
 }
 
-impl Awaited {
-    /// Until when it is waited, and what Ctrl-C does about it.
-    fn until(self) -> &'static str {
-        match self {
-            Awaited::Run => "until the run stops; Ctrl-C interrupts it",
-            Awaited::Reading => "until the file is read; Ctrl-C gives it up",
-            Awaited::Finding => "until the diagnosis is found; Ctrl-C forgets it",
-            Awaited::Trying => "until the remedies are tried; Ctrl-C stops that",
-        }
-    }
+stickslip_core::words! {
+    Awaited, until:
+    Run "until the run stops; Ctrl-C interrupts it",
+    Reading "until the file is read; Ctrl-C gives it up",
+    Finding "until the diagnosis is found; Ctrl-C forgets it",
+    Trying "until the remedies are tried; Ctrl-C stops that",
 }
 
 /// What waits, oldest first.

@@ -33,17 +33,13 @@ pub enum Group {
     Files,
 }
 
-impl Group {
-    /// The heading.
-    pub fn title(self) -> &'static str {
-        match self {
-            Group::Paper => "The paper",
-            Group::Oscillations => "Oscillations",
-            Group::Lessons => "Lessons",
-            Group::Benchmarks => "Benchmarks",
-            Group::Files => "Your files in this folder",
-        }
-    }
+stickslip_core::words! {
+    Group, title:
+    Paper "The paper",
+    Oscillations "Oscillations",
+    Lessons "Lessons",
+    Benchmarks "Benchmarks",
+    Files "Your files in this folder",
 }
 
 /// Something that the chooser offers.

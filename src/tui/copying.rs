@@ -1,6 +1,7 @@
 //! What `Y` copies: what is selected in the pane with the focus, as text for the terminal's clipboard.
 
 use crate::action::Copied;
+use crate::explain::names;
 use crate::explain::remedies;
 use crate::history::verdicts::{self, summaries};
 use crate::history::watches::{Watch, WatchQuantity};
@@ -8,7 +9,6 @@ use crate::outside::shown;
 use crate::tui::app::{App, Effect};
 use crate::tui::layout::Pane;
 use crate::tui::screen;
-use crate::tui::theme;
 use crate::tui::view::View;
 
 /// Most bytes that are copied: terminals take no more than about this in one order.
@@ -102,10 +102,10 @@ impl App {
         }
         let next = match self.hides(view, slave) {
             true => "?",
-            false => theme::word(view.mode(slave)),
+            false => names::mode(view.mode(slave)),
         };
         let name = view.slave(slave);
-        let before = theme::word(view.mode_before(slave));
+        let before = names::mode(view.mode_before(slave));
         let mut cells = vec![name.to_owned(), before.into(), next.into()];
         if let Some(found) = view.record(slave) {
             let numbers = [found.gap, found.f_n, found.f_t, found.t_max, found.slip];

@@ -144,15 +144,6 @@ pub fn wants_no_colour() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
-/// A mode in a word.
-pub fn word(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Free => "free",
-        Mode::Sliding => "sliding",
-        Mode::Fixed => "fixed",
-    }
-}
-
 /// A mode in a letter, the one that `m` takes.
 pub fn letter(mode: Mode) -> &'static str {
     match mode {

@@ -36,7 +36,7 @@ pub struct Opened {
 /// Opens a run by the name of its .cel; `None` if the name is not that of a .cel.
 pub fn file(name: &str) -> Option<Result<Opened, String>> {
     calculix::is_cel(name).then(|| {
-        let files = calculix::read(Path::new(name)).map_err(|why| why.to_string())?;
+        let files = calculix::read(Path::new(name))?;
         open(CalculixRun::new(name, files))
     })
 }

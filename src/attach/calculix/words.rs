@@ -2,7 +2,7 @@
 
 use super::run::{CORRECTION_LIMIT, CalculixRun, Status, face, residual_limit};
 use crate::explain::number::plain;
-use crate::outside::shown::first_of;
+use crate::outside::shown::{aligned, first_of};
 use std::fmt::Write;
 use stickslip_exchange::calculix::Stop;
 use stickslip_exchange::calculix::cel::Slave;
@@ -259,7 +259,7 @@ fn attempts(run: &CalculixRun) -> String {
             switches[index].to_string(),
         ]);
     }
-    table(&rows)
+    aligned(&rows, 1).join("\n") + "\n"
 }
 
 /// The contacts that switch, those with the most switches in one attempt first.
@@ -279,20 +279,5 @@ fn switching(run: &CalculixRun) -> String {
         ]);
     }
     let head = "\nContacts that switch between the iterations of an attempt: how often, most in one attempt, and in how many\n";
-    head.to_owned() + &table(&rows)
-}
-
-/// Rows in columns, the first flush left and the others right.
-fn table<const N: usize>(rows: &[[String; N]]) -> String {
-    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
-    let widths: [usize; N] = std::array::from_fn(width);
-    let line = |row: &[String; N]| {
-        let cells = row.iter().zip(widths).enumerate();
-        let cells = cells.map(|(column, (cell, width))| match column {
-            0 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
-        });
-        cells.collect::<Vec<_>>().join("  ") + "\n"
-    };
-    rows.iter().map(line).collect()
+    head.to_owned() + &aligned(&rows, 1).join("\n") + "\n"
 }

@@ -80,24 +80,22 @@ impl Law {
 
     /// The laws of bonds that are not hard, which only scenes with such bonds have.
     pub const OF_BONDS: [Law; 3] = [Law::Penalty, Law::Tied, Law::Stick];
+}
 
-    /// Its name, as files and messages have it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Law::Penetration => "penetration",
-            Law::Gap => "gap",
-            Law::Tension => "tension",
-            Law::Cone => "cone",
-            Law::Slip => "slip",
-            Law::Touch => "touch",
-            Law::Balance => "balance",
-            Law::Moments => "moments",
-            Law::Work => "work",
-            Law::Penalty => "penalty",
-            Law::Tied => "tied",
-            Law::Stick => "stick",
-        }
-    }
+crate::words! {
+    Law, name:
+    Penetration "penetration",
+    Gap "gap",
+    Tension "tension",
+    Cone "cone",
+    Slip "slip",
+    Touch "touch",
+    Balance "balance",
+    Moments "moments",
+    Work "work",
+    Penalty "penalty",
+    Tied "tied",
+    Stick "stick",
 }
 
 /// How far a state is from one law, at its worst place.

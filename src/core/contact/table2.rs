@@ -64,6 +64,37 @@ pub enum Rule {
     Theirs,
 }
 
+crate::words! {
+    Rule, name:
+    FixedStays "fixed-stays",
+    FixedSlides "fixed-slides",
+    FixedDragged "fixed-dragged",
+    FixedOpens "fixed-opens",
+    SlidingSticks "sliding-sticks",
+    SlidingStays "sliding-stays",
+    SlidingOpens "sliding-opens",
+    SlidingPasses "sliding-passes",
+    CornerStays "corner-stays",
+    CornerSlides "corner-slides",
+    CornerOpens "corner-opens",
+    CornerReleases "corner-releases",
+    FreeSticks "free-sticks",
+    FreeSlides "free-slides",
+    FreeStays "free-stays",
+    OffSurface "off-surface",
+    Tied "tied",
+    Held "held",
+    FreeEnters "free-enters",
+    Waits "waits",
+    NewtonOpens "newton-opens",
+    NewtonSticks "newton-sticks",
+    NewtonSlides "newton-slides",
+    Pivots "pivots",
+    Sweeps "sweeps",
+    Found "found",
+    Theirs "theirs",
+}
+
 /// What an inequality of Table 2 compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Tested {

@@ -18,6 +18,13 @@ documented! {
     }
 }
 
+crate::words! {
+    Mode, ALL, word:
+    Free "free",
+    Sliding "sliding",
+    Fixed "fixed",
+}
+
 documented! {
     /// Coulomb friction, eqn (20).
     #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

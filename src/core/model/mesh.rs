@@ -27,32 +27,20 @@ documented! {
     }
 }
 
-impl ElementKind {
-    /// All of them.
-    pub const ALL: [ElementKind; 6] = [
-        ElementKind::Triangle3,
-        ElementKind::Triangle6,
-        ElementKind::Quad4,
-        ElementKind::Quad8,
-        ElementKind::Quad8Reduced,
-        ElementKind::Quad9,
-    ];
+crate::words! {
+    ElementKind, ALL, word:
+    Triangle3 "triangle3",
+    Triangle6 "triangle6",
+    Quad4 "quad4",
+    Quad8 "quad8",
+    Quad8Reduced "quad8r",
+    Quad9 "quad9",
+}
 
+impl ElementKind {
     /// Whether it is what a mesh that names no kind has.
     pub fn is_default(&self) -> bool {
         *self == ElementKind::default()
-    }
-
-    /// Its word in a scene file.
-    pub fn word(self) -> &'static str {
-        match self {
-            ElementKind::Triangle3 => "triangle3",
-            ElementKind::Triangle6 => "triangle6",
-            ElementKind::Quad4 => "quad4",
-            ElementKind::Quad8 => "quad8",
-            ElementKind::Quad8Reduced => "quad8r",
-            ElementKind::Quad9 => "quad9",
-        }
     }
 
     /// Number of nodes of an element.

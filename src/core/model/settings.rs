@@ -134,48 +134,19 @@ documented! {
     }
 }
 
-impl Strategy {
-    /// All strategies.
-    pub const ALL: [Strategy; 11] = [
-        Strategy::Ladder,
-        Strategy::Table2,
-        Strategy::Sliding,
-        Strategy::Least,
-        Strategy::SlidingLeast,
-        Strategy::Block,
-        Strategy::Newton,
-        Strategy::Lemke,
-        Strategy::Census,
-        Strategy::Copositive,
-        Strategy::GaussSeidel,
-    ];
-
-    /// Names of [`Strategy::ALL`], in the same order.
-    pub const NAMES: [&str; 11] = {
-        let (mut names, mut k) = ([""; 11], 0);
-        while k < names.len() {
-            names[k] = Strategy::ALL[k].name();
-            k += 1;
-        }
-        names
-    };
-
-    /// Its name in scene files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Strategy::Ladder => "ladder",
-            Strategy::Table2 => "table2",
-            Strategy::Sliding => "sliding",
-            Strategy::Least => "least",
-            Strategy::SlidingLeast => "sliding_least",
-            Strategy::Block => "block",
-            Strategy::Newton => "newton",
-            Strategy::Lemke => "lemke",
-            Strategy::Census => "census",
-            Strategy::Copositive => "copositive",
-            Strategy::GaussSeidel => "gauss_seidel",
-        }
-    }
+crate::words! {
+    Strategy, ALL, name:
+    Ladder "ladder",
+    Table2 "table2",
+    Sliding "sliding",
+    Least "least",
+    SlidingLeast "sliding_least",
+    Block "block",
+    Newton "newton",
+    Lemke "lemke",
+    Census "census",
+    Copositive "copositive",
+    GaussSeidel "gauss_seidel",
 }
 
 documented! {

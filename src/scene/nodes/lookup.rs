@@ -3,6 +3,7 @@
 use super::given::nodes_of;
 use super::{Entry, EntryKind, Mesh, Names};
 use crate::format::error::{did_you_mean, quoted, some_of};
+use crate::outside::shown::first_of;
 
 impl Names {
     /// The number of a node by any of its names.
@@ -301,18 +302,11 @@ impl Names {
                 }
             }
         }
-        let more = shown.len().saturating_sub(8);
-        shown.truncate(8);
-        let more = if more > 0 {
-            format!(" and {more} more")
-        } else {
-            String::new()
-        };
         format!(
-            "no node called {}{} (nodes: {}{more})",
+            "no node called {}{} (nodes: {})",
             quoted(name),
             did_you_mean(name, known.iter().map(String::as_str)),
-            shown.join(", ")
+            first_of(shown, 8, ", ")
         )
     }
 }

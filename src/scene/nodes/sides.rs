@@ -3,6 +3,7 @@
 use super::elements::{Element, named};
 use crate::format::error::{Fault, Path};
 use crate::model::Node;
+use crate::outside::shown::first_of;
 use std::collections::{HashMap, HashSet};
 
 /// Sides in walking order.
@@ -44,16 +45,12 @@ impl Line {
                 false => format!("{} to {}", name(start), name(end)),
             }
         };
-        let shown: Vec<String> = self.pieces.iter().take(MOST).map(piece).collect();
-        let more = match self.pieces.len().saturating_sub(MOST) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
+        let shown = first_of(self.pieces.iter().map(piece), MOST, ", ");
         let count = match self.pieces.len() {
             1 => "1 piece".to_owned(),
             count => format!("{count} pieces"),
         };
-        format!("{count} ({}{more})", shown.join(", "))
+        format!("{count} ({shown})")
     }
 
     /// All numbers of nodes in it, to be changed.

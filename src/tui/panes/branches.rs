@@ -1,5 +1,6 @@
 //! The branches as a tree, each with its end and its cost, and the selected one beside the current one.
 
+use crate::explain::names;
 use crate::explain::number;
 use crate::history::compare::{self, Sameness, Side};
 use crate::history::tree::Tree;
@@ -9,7 +10,6 @@ use crate::outside::shown;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
-use crate::tui::theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -211,7 +211,7 @@ fn comparison(
                     .concat(),
                 None => String::new(),
             };
-            format!("{:<8}{numbers}", theme::word(node.next))
+            format!("{:<8}{numbers}", names::mode(node.next))
         };
         let name = format!(
             "{}{}",

@@ -14,7 +14,7 @@ use crate::model::Ties;
 use crate::tui::app::App;
 use crate::tui::layout::Pane;
 use crate::tui::paint;
-use crate::tui::theme::{self, Theme};
+use crate::tui::theme::Theme;
 use crate::tui::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -339,7 +339,7 @@ fn grid(
     let bar = Span::styled("│ ", theme.faint);
     let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
     for mode in MODES {
-        let text = format!("→ {}", theme::word(mode));
+        let text = format!("→ {}", names::mode(mode));
         head.extend([
             bar.clone(),
             Span::styled(format!("{text:<cell$}"), theme.heading),
@@ -360,8 +360,8 @@ fn grid(
         let parts: &[usize] = if *mode == Mode::Free { &[0] } else { &[0, 1] };
         for &part in parts {
             let label = match (part, here) {
-                (0, true) => format!("▸{}", theme::word(*mode)),
-                (0, false) => format!(" {}", theme::word(*mode)),
+                (0, true) => format!("▸{}", names::mode(*mode)),
+                (0, false) => format!(" {}", names::mode(*mode)),
                 _ => String::new(),
             };
             let style = if here {
@@ -448,15 +448,15 @@ fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
         _ => format!(" {first}, {second} "),
     };
     let wanted = match (differs, rules(decision)) {
-        (true, Some(rules)) => format!("≠ {rules}: {}", theme::word(decision.wanted)),
+        (true, Some(rules)) => format!("≠ {rules}: {}", names::mode(decision.wanted)),
         _ => String::new(),
     };
     Line::from(vec![
         Span::styled(
             format!(
                 " {} → {}  ",
-                theme::word(decision.before),
-                theme::word(decision.next)
+                names::mode(decision.before),
+                names::mode(decision.next)
             ),
             theme.heading,
         ),
@@ -607,7 +607,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     if view.guest.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
         return None;
     }
-    let next = theme::word(decision.next);
+    let next = names::mode(decision.next);
     let own = match (said, decision.rule) {
         (Some(words), _) => format!("The solver takes {next}: “{words}”."),
         (None, Rule::Theirs) => format!("The solver takes {next}, and does not say why."),
@@ -617,7 +617,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     Some(match differs {
         true => format!(
             "{own} ≠ {rules} (◁), which wants {} on the same numbers.",
-            theme::word(decision.wanted)
+            names::mode(decision.wanted)
         ),
         false => own,
     })
@@ -632,7 +632,7 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     let Some(record) = record else {
         return format!(
             "Nothing is decided yet; the node starts {}.",
-            theme::word(next)
+            names::mode(next)
         );
     };
     let decision = &record.decision;
@@ -658,11 +658,11 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
         Forced::Once(mode) if next == mode && mode != decision.next => {
             text += &format!(
                 " You force it to {} for the next minor iteration.",
-                theme::word(mode)
+                names::mode(mode)
             );
         }
         Forced::Held(mode) if record.forced != Forced::Held(mode) => {
-            text += &format!(" You hold it {} from here on.", theme::word(mode));
+            text += &format!(" You hold it {} from here on.", names::mode(mode));
         }
         Forced::Held(_) if decision.rule != Rule::Held => {
             text += " You hold it, and Table 2 agrees."

@@ -3,6 +3,7 @@
 use crate::action::{Filter, Sort};
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::table2::Tested;
+use crate::explain::names;
 use crate::explain::number;
 use crate::explain::round_off::RoundOff;
 use crate::outside::shown;
@@ -303,7 +304,7 @@ fn modes(
     view: &View,
 ) -> Vec<Span<'static>> {
     let spell = if columns.words {
-        theme::word
+        names::mode
     } else {
         theme::letter
     };

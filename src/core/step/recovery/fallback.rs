@@ -48,6 +48,16 @@ pub struct FallbackState {
     pub from: SubIncrement,
 }
 
+crate::words! {
+    Fallback, words:
+    Section "parts that are no halves",
+    Consistent "T_max in the equations",
+    Start "touching nodes held where they were",
+    Newton "semismooth Newton first",
+    Held "sliding held back",
+    Back "the last half as it was, since nothing else helps",
+}
+
 impl Recovery for Fallback {
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         let state = stalled.state;
@@ -127,18 +137,6 @@ impl Fallback {
             Fallback::Newton => {}
         }
         settings
-    }
-
-    /// What is tried, in words.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Fallback::Section => "parts that are no halves",
-            Fallback::Consistent => "T_max in the equations",
-            Fallback::Start => "touching nodes held where they were",
-            Fallback::Newton => "semismooth Newton first",
-            Fallback::Held => "sliding held back",
-            Fallback::Back => "the last half as it was, since nothing else helps",
-        }
     }
 }
 

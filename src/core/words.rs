@@ -1,0 +1,31 @@
+//! Words for the variants of an enum, each written once.
+
+/// Gives an enum without fields a word for each variant, and a list of all variants where one is asked for.
+#[macro_export]
+macro_rules! words {
+    ($type:ident, $all:ident, $word:ident: $($variant:ident $text:literal),* $(,)?) => {
+        $crate::words!($type, $word: $($variant $text),*);
+        impl $type {
+            /// The words of all, in order.
+            pub const NAMES: [&'static str; [$($text),*].len()] = [$($text),*];
+            /// All, in order.
+            pub const $all: [$type; $type::NAMES.len()] = [$($type::$variant),*];
+
+            /// The one with this word.
+            pub fn of_word(word: &str) -> Option<$type> {
+                let place = $type::NAMES.iter().position(|name| *name == word)?;
+                Some($type::$all[place])
+            }
+        }
+    };
+    ($type:ident, $word:ident: $($variant:ident $text:literal),* $(,)?) => {
+        impl $type {
+            /// Its word in files and messages.
+            pub const fn $word(self) -> &'static str {
+                match self {
+                    $($type::$variant => $text),*
+                }
+            }
+        }
+    };
+}
