@@ -1,7 +1,7 @@
 //! `stickslip attach`: a solver that another program is, stepped in the debugger; tried; or what an author needs to write one.
 
 use super::base::{Error, Exit, say, tell};
-use super::debugger::has_terminal;
+use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
 use crate::attach::{PYTHON, check};
@@ -44,11 +44,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return checked(args);
     }
     front::ready()?;
-    if !has_terminal() {
-        return Err(Error::Usage(
-            "the debugger needs a terminal, and standard input or output is none; `stickslip run --trace - -- COMMAND` steps a solver without one".into(),
-        ));
-    }
+    needs_terminal(
+        DEBUGGER,
+        "run --trace - -- COMMAND` steps a solver without one",
+    )?;
     let keep = match args.journal {
         _ if args.no_journal => Keep::Nowhere,
         Some(ref file) => Keep::File(file.clone()),

@@ -1,7 +1,7 @@
 //! What all subcommands need: exit codes, errors, the scene that is named, and how the user is told.
 
 use crate::format::SceneError;
-use crate::outside::files::FileError;
+use crate::outside::files::{self, FileError};
 use crate::outside::shown;
 use crate::record::journal::JournalError;
 use crate::record::snapshot::SnapshotError;
@@ -128,6 +128,31 @@ pub fn say(text: &str) -> Result<(), Error> {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
         _ => Ok(()),
     }
+}
+
+/// Writes a text to a file, and says so; to standard output without one, and for `-`.
+pub fn put(output: Option<&Path>, text: &str, force: bool) -> Result<Exit, Error> {
+    match output.filter(|path| path.as_os_str() != "-") {
+        Some(path) => {
+            files::write(path, text, force)?;
+            tell(&format!("wrote {}", path.display()));
+        }
+        None => say(text)?,
+    }
+    Ok(Exit::Good)
+}
+
+/// Refuses files that two options name.
+pub fn distinct(named: &[(&str, Option<&str>)]) -> Result<(), Error> {
+    let given = || named.iter().filter_map(|(_, name)| *name);
+    let twice = given().find(|name| given().filter(|other| other == name).count() > 1);
+    let Some(name) = twice else { return Ok(()) };
+    let options: Vec<&str> = named.iter().map(|(option, _)| *option).collect();
+    let (last, first) = options.split_last().unwrap_or((&"", &[]));
+    Err(Error::Usage(format!(
+        "{name}: only one of {} and {last} can go there",
+        first.join(", ")
+    )))
 }
 
 /// What to say of a file that is missing, where a built-in scene has its name. `None` where none has.

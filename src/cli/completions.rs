@@ -3,16 +3,16 @@
 //! The script asks the program itself, with the line so far and [`ASKED`] in the environment, so that it knows whatever the
 //! program knows: scenes, studies, lessons, pages, and the paths and values of the scene that stands in the line.
 
-use super::base::{Error, Exit, say};
+use super::base::{Error, Exit, put};
+use crate::format::described::words::words;
 use crate::format::paths::{self, Listed};
 use crate::format::read;
 use crate::model::Strategy;
-use crate::outside::files;
 use crate::scene::builtin;
 use crate::study::precision::Cost;
 use crate::study::{benchmarks, builtin as studies};
 use crate::{manual, teach};
-use clap::ValueHint;
+use clap::{ValueEnum, ValueHint};
 use clap_complete::CompleteEnv;
 use clap_complete::engine::{
     ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
@@ -37,18 +37,6 @@ enum Shell {
     Powershell,
 }
 
-impl Shell {
-    fn name(self) -> &'static str {
-        match self {
-            Shell::Bash => "bash",
-            Shell::Zsh => "zsh",
-            Shell::Fish => "fish",
-            Shell::Elvish => "elvish",
-            Shell::Powershell => "powershell",
-        }
-    }
-}
-
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 The script goes where the shell looks for it, or is read where the shell starts (`stickslip help install`):
@@ -69,11 +57,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let script = script(args.shell)?;
-    match &args.output {
-        Some(path) if path.as_os_str() != "-" => files::write(path, script, args.force)?,
-        _ => say(&script)?,
-    }
-    Ok(Exit::Good)
+    put(args.output.as_deref(), &script, args.force)
 }
 
 fn script(shell: Shell) -> Result<String, Error> {
@@ -82,7 +66,9 @@ fn script(shell: Shell) -> Result<String, Error> {
     }
     let mut script = Vec::new();
     let name = "stickslip";
-    if let Some(of) = Shells::builtins().completer(shell.name()) {
+    let shells = Shells::builtins();
+    let value = shell.to_possible_value();
+    if let Some(of) = value.and_then(|value| shells.completer(value.get_name())) {
         of.write_registration(ASKED, name, name, name, &mut script)
             .map_err(Error::Output)?;
     }
@@ -136,7 +122,7 @@ fn kind(arg: &clap::Arg) -> Option<Kind> {
         _ => id,
     };
     Some(match (name, id) {
-        (_, "cost") => Kind::Words(|begun| plain(begun, Cost::WORDS)),
+        (_, "cost") => Kind::Words(|begun| plain(begun, words::<Cost>().iter().copied())),
         (_, "lesson") => Kind::Words(|begun| with_files(begun, lessons())),
         (_, "topic") => Kind::Words(|begun| of(begun, topics())),
         (_, "name") => Kind::Words(|begun| of(begun, shown())),

@@ -4,12 +4,12 @@
 //! Exit code 0 says that there is such a scene, 3 that there is none, and the message why: the scene converges, fails
 //! otherwise, or its core cannot be written as a matrix.
 
-use super::base::{Error, Exit, SceneArgs, say, tell};
+use super::base::{Error, Exit, SceneArgs, put, tell};
 use crate::explain::core::core;
 use crate::explain::diagnosis::cycling;
 use crate::explain::report;
 use crate::model::{AtCycle, AtLimit, Strategy};
-use crate::outside::files::{self, Output};
+use crate::outside::files::Output;
 use crate::record::export::{self, NoExport, Origin};
 use crate::scene::Scene;
 use crate::scene::solver::solver;
@@ -34,10 +34,9 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
-    let file = (args.output.as_os_str() != "-").then_some(&args.output);
-    if let Some(path) = file {
+    if args.output.as_os_str() != "-" {
         // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
-        drop(Output::create(path, args.force)?);
+        drop(Output::create(&args.output, args.force)?);
     }
     let text = match text(&scene) {
         Ok(text) => text,
@@ -46,14 +45,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             return Ok(Exit::Unconverged);
         }
     };
-    match file {
-        None => say(&text)?,
-        Some(path) => {
-            files::write(path, &text, args.force)?;
-            tell(&format!("wrote {}", path.display()));
-        }
-    }
-    Ok(Exit::Good)
+    put(Some(&args.output), &text, args.force)
 }
 
 /// Why there is no core to write.

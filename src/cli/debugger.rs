@@ -29,6 +29,17 @@ pub struct Args {
     no_journal: bool,
 }
 
+impl Args {
+    /// An option that does not go with what is read-only.
+    fn changed(&self) -> Option<&'static str> {
+        match (self.set.set.is_empty(), &self.journal) {
+            (false, _) => Some("--set"),
+            (true, Some(_)) => Some("--journal"),
+            (true, None) => None,
+        }
+    }
+}
+
 pub fn main(args: Args) -> Result<Exit, Error> {
     if args.scene.is_none() && !args.set.set.is_empty() {
         return Err(Error::Usage("--set needs a scene to change".into()));
@@ -42,12 +53,11 @@ pub fn main(args: Args) -> Result<Exit, Error> {
     {
         return view(recording, name, &args);
     }
-    if !has_terminal() {
-        let scene = args.scene.as_deref().unwrap_or("SCENE");
-        return Err(Error::Usage(format!(
-            "the debugger needs a terminal, and standard input or output is none; `stickslip run {scene} --csv -` solves without one"
-        )));
-    }
+    let scene = args.scene.as_deref().unwrap_or("SCENE");
+    needs_terminal(
+        DEBUGGER,
+        &format!("run {scene} --csv -` solves without one"),
+    )?;
     let keep = match args.journal {
         _ if args.no_journal => Keep::Nowhere,
         Some(file) => Keep::File(file),
@@ -60,24 +70,24 @@ pub fn main(args: Args) -> Result<Exit, Error> {
 /// Shows a finished run.
 fn view(recording: Recording, name: &str, args: &Args) -> Result<Exit, Error> {
     let kind = recording.kind();
-    let asked = [
-        (!args.set.set.is_empty(), "--set"),
-        (args.journal.is_some(), "--journal"),
-    ];
-    if let Some((_, asked)) = asked.into_iter().find(|(is, _)| *is) {
+    if let Some(asked) = args.changed() {
         return Err(Error::Usage(format!("{asked} cannot be used: {kind}")));
     }
-    if !has_terminal() {
-        return Err(Error::Usage(format!(
-            "the debugger needs a terminal, and standard input or output is none; `stickslip story {name}` prints it as text"
-        )));
-    }
+    needs_terminal(DEBUGGER, &format!("story {name}` prints it as text"))?;
     let words = recording.greeting();
     front::resume(Session::recorded(recording), words)?;
     Ok(Exit::Good)
 }
 
-/// Whether there is a terminal to debug in.
-pub fn has_terminal() -> bool {
-    std::io::stdin().is_terminal() && std::io::stdout().is_terminal()
+/// What needs a terminal, mostly.
+pub const DEBUGGER: &str = "the debugger";
+
+/// Refuses what needs a terminal where there is none; `instead` names the subcommand that does without.
+pub fn needs_terminal(what: &str, instead: &str) -> Result<(), Error> {
+    match std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
+        true => Ok(()),
+        false => Err(Error::Usage(format!(
+            "{what} needs a terminal, and standard input or output is none; `stickslip {instead}"
+        ))),
+    }
 }

@@ -1,8 +1,10 @@
 //! `stickslip --help`: the subcommands in groups, and which one was meant by a word that is none.
 
 use crate::format::error::did_you_mean;
+use crate::outside::shown;
 use crate::scene::builtin;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use std::convert::Infallible;
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -41,11 +43,11 @@ pub fn grouped(command: clap::Command) -> clap::Command {
                 .find_subcommand(name)
                 .and_then(|own| own.get_about());
             let about = about.map(ToString::to_string).unwrap_or_default();
-            let mut lines = wrapped(&about, WIDTH - width - 4).into_iter();
-            let first = lines.next().unwrap_or_default();
-            text += &format!("  {name:<width$}  {first}\n");
-            for line in lines {
-                text += &format!("  {:<width$}  {line}\n", "");
+            let fits = |line: &str| Ok::<_, Infallible>(line.len() <= WIDTH - width - 4);
+            let Ok(lines) = shown::wrapped(&about, fits);
+            for (k, line) in lines.iter().enumerate() {
+                let name = if k == 0 { name } else { "" };
+                text += &format!("  {name:<width$}  {line}\n");
             }
         }
         text.push('\n');
@@ -53,21 +55,6 @@ pub fn grouped(command: clap::Command) -> clap::Command {
     command.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{text}Arguments:\n{{positionals}}\n\nOptions:\n{{options}}{{after-help}}"
     ))
-}
-
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let last = lines.len() - 1;
-        let line = &mut lines[last];
-        if !line.is_empty() && line.len() + 1 + word.len() > width {
-            lines.push(word.to_owned());
-        } else {
-            let blank = if line.is_empty() { "" } else { " " };
-            *line += &format!("{blank}{word}");
-        }
-    }
-    lines
 }
 
 /// Options of earlier revisions, and what replaces them.

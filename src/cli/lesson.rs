@@ -1,13 +1,13 @@
 //! `stickslip lesson [NAME|FILE]`: lists the guided lessons, begins one, or checks one without a terminal.
 
 use super::base::{Error, Exit, say};
+use super::debugger::needs_terminal;
 use super::front;
 use crate::outside::shown;
 use crate::teach::play::play;
 use crate::teach::progress::{self, Progress};
 use crate::teach::{self, Lesson};
 use std::fmt::Write;
-use std::io::IsTerminal;
 use std::sync::Arc;
 use unicode_width::UnicodeWidthStr;
 
@@ -31,11 +31,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return Ok(Exit::Good);
     }
     front::ready()?;
-    if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
-        return Err(Error::Usage(format!(
-            "a lesson needs a terminal, and standard input or output is none; `stickslip lesson --check {name}` plays it without one"
-        )));
-    }
+    let instead = format!("lesson --check {name}` plays it without one");
+    needs_terminal("a lesson", &instead)?;
     front::lesson(lesson)?;
     Ok(Exit::Good)
 }

@@ -1,10 +1,9 @@
 //! `stickslip map`: where the iterations converge and where they do not.
 
-use super::base::{Error, Exit, NoValue, SetArgs, say, tell};
+use super::base::{Error, Exit, NoValue, SetArgs, put};
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
 use crate::model::{BoundUpdate, Strategy};
-use crate::outside::files;
 use crate::outside::shown::aligned;
 use crate::scene::builtin;
 use crate::strategy::method;
@@ -132,14 +131,7 @@ fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> 
         population.seed
     )];
     let text = random::text(&population.draw(k).problem, &head);
-    match &args.output {
-        Some(path) if path.as_os_str() != "-" => {
-            files::write(path, &text, args.sweep.out.force)?;
-            tell(&format!("wrote {}", path.display()));
-        }
-        _ => say(&text)?,
-    }
-    Ok(Exit::Good)
+    put(args.output.as_deref(), &text, args.sweep.out.force)
 }
 
 /// Runs scenes over settings.

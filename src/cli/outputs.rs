@@ -1,6 +1,6 @@
 //! What all sweeps share: where their tables and pictures go, their progress, and tables for people.
 
-use super::base::Error;
+use super::base::{Error, distinct};
 use super::sink::Sink;
 use crate::outside::files::{Output, finish_all};
 use crate::study::drawn::PlotError;
@@ -9,7 +9,7 @@ use crate::study::sheet::Sheet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What a sweep writes, and how it runs.
 #[derive(Debug, clap::Args)]
@@ -83,20 +83,14 @@ impl Outputs {
         if args.draws() {
             pen::ready().map_err(undrawn)?;
         }
-        let named = [
-            args.csv.as_deref().filter(|to| *to != "-").map(Path::new),
-            args.svg.as_deref(),
-            args.png.as_deref(),
-        ];
-        let named: Vec<&Path> = named.into_iter().flatten().collect();
-        for (k, name) in named.iter().enumerate() {
-            if named[..k].contains(name) {
-                return Err(Error::Usage(format!(
-                    "{}: only one of --csv, --svg and --png can go there",
-                    name.display()
-                )));
-            }
-        }
+        let named =
+            |path: &Option<PathBuf>| path.as_ref().map(|p| p.to_string_lossy().into_owned());
+        let (svg, png) = (named(&args.svg), named(&args.png));
+        distinct(&[
+            ("--csv", args.csv.as_deref()),
+            ("--svg", svg.as_deref()),
+            ("--png", png.as_deref()),
+        ])?;
         let output = |path: &PathBuf| Output::create(path, args.force);
         let csv = args.csv.as_deref().map(|to| Sink::open(to, args.force));
         Ok(Outputs {

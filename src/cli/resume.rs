@@ -1,7 +1,7 @@
 //! `stickslip resume [JOURNAL]`: replays a journal to its end, and goes on with the debugger.
 
 use super::base::{Error, Exit, tell};
-use super::debugger::has_terminal;
+use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::{SolverArgs, session_of};
 use crate::record::journal::{self, Journal, JournalError, Record};
@@ -21,11 +21,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if !args.check {
         front::ready()?;
-    }
-    if !args.check && !has_terminal() {
-        return Err(Error::Usage(
-            "the debugger needs a terminal, and standard input or output is none; `stickslip resume --check` replays without one".into(),
-        ));
+        needs_terminal(DEBUGGER, "resume --check` replays without one")?;
     }
     let path = match &args.journal {
         Some(path) => path.clone(),

@@ -1,6 +1,6 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, tell};
+use super::base::{Error, Exit, distinct, tell};
 use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
@@ -125,19 +125,11 @@ struct Outputs {
 impl Outputs {
     fn open(args: &Args, scene: &Scene) -> Result<Outputs, Error> {
         let snapshot = args.snapshot.as_ref().map(|path| path.to_string_lossy());
-        let named = [
-            args.csv.as_deref(),
-            args.trace.as_deref(),
-            snapshot.as_deref(),
-        ];
-        let named: Vec<&str> = named.into_iter().flatten().collect();
-        for (k, name) in named.iter().enumerate() {
-            if named[..k].contains(name) {
-                return Err(Error::Usage(format!(
-                    "{name}: only one of --csv, --trace and --snapshot can go there"
-                )));
-            }
-        }
+        distinct(&[
+            ("--csv", args.csv.as_deref()),
+            ("--trace", args.trace.as_deref()),
+            ("--snapshot", snapshot.as_deref()),
+        ])?;
         let sink = |to: &Option<String>| match to {
             Some(to) => Sink::open(to, args.force).map(Some),
             None => Ok(None),

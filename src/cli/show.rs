@@ -1,11 +1,10 @@
 //! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from; or what a finished CalculiX run
 //! did, as text.
 
-use super::base::{Error, Exit, say, tell};
+use super::base::{Error, Exit, put};
 use crate::attach::recording::Recording;
 use crate::format::error::did_you_mean;
 use crate::outside::carried::Carried;
-use crate::outside::files;
 use crate::scene::builtin;
 use crate::study::{benchmarks, builtin as studies, chart_file};
 use crate::teach;
@@ -37,14 +36,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             .map_err(Error::Usage)?
             .to_owned(),
     };
-    match &args.output {
-        Some(path) if path.as_os_str() != "-" => {
-            files::write(path, text, args.force)?;
-            tell(&format!("wrote {}", path.display()));
-        }
-        _ => say(&text)?,
-    }
-    Ok(Exit::Good)
+    put(args.output.as_deref(), &text, args.force)
 }
 
 fn find(name: &str, chart: bool) -> Result<String, String> {

@@ -13,6 +13,14 @@ macro_rules! carried {
 }
 pub(crate) use carried;
 
+/// Files of a folder, by their names without the ending.
+macro_rules! carried_all {
+    ($folder:literal, $ending:literal, $($name:literal),+ $(,)?) => {
+        &[$($crate::outside::carried::carried!($name, $folder, $name, $ending)),+]
+    };
+}
+pub(crate) use carried_all;
+
 /// A file that the program carries.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Carried {

@@ -59,6 +59,27 @@ pub fn first_of<T: std::fmt::Display>(
     }
 }
 
+/// Breaks a text at its blanks into lines that fit; a word that does not fit is a line by itself.
+///
+/// # Errors
+/// If it cannot be found out whether a line fits.
+pub fn wrapped<E>(text: &str, fits: impl Fn(&str) -> Result<bool, E>) -> Result<Vec<String>, E> {
+    let (mut lines, mut present) = (Vec::new(), String::new());
+    for word in text.split_whitespace() {
+        let longer = match present.is_empty() {
+            true => word.to_owned(),
+            false => format!("{present} {word}"),
+        };
+        if present.is_empty() || fits(&longer)? {
+            present = longer;
+        } else {
+            lines.push(std::mem::replace(&mut present, word.to_owned()));
+        }
+    }
+    lines.push(present);
+    Ok(lines)
+}
+
 /// A text filled up with blanks at its end to so many columns of a terminal, in which a Chinese character takes two.
 pub fn padded(text: &str, columns: usize) -> String {
     let missing = columns.saturating_sub(text.width());

@@ -20,6 +20,7 @@
 //! has the errors of both in it; `drift` how near our own last value, so that a change is seen that the source would forgive.
 //! What is 0 by the source is measured by `scale`.
 
+use super::figure::assigned;
 use super::one::{Spare, Watch, one};
 use super::read::Word;
 use super::result::{CaseEnd, Row, Run};
@@ -311,10 +312,7 @@ impl Benchmark {
 
     /// Scene and settings in one text.
     pub fn case(&self) -> String {
-        let settings = self
-            .set
-            .iter()
-            .map(|(path, value)| format!(" {path}={value}"));
+        let settings = assigned(&self.set).map(|pair| format!(" {pair}"));
         self.scene.clone() + &settings.collect::<String>()
     }
 }

@@ -1,15 +1,11 @@
 //! The studies that the program carries inside itself.
 
-use crate::outside::carried::{Carried, carried};
-
-macro_rules! studies {
-    ($($name:literal),* $(,)?) => {
-        &[$(carried!($name, "problems/studies/", $name, ".ron")),*]
-    };
-}
+use crate::outside::carried::{Carried, carried_all};
 
 /// In the order in which they are offered.
-const STUDIES: &[Carried] = studies![
+const STUDIES: &[Carried] = carried_all![
+    "problems/studies/",
+    ".ron",
     "fig-08-increment",
     "fig-09-majors",
     "fig-10-minors",

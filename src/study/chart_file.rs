@@ -16,7 +16,7 @@
 use super::read::{Vary, Word, parse, vary};
 use super::reference::Reference;
 use crate::format::error::SceneError;
-use crate::outside::carried::{Carried, carried};
+use crate::outside::carried::{Carried, carried_all};
 use crate::scene::{Scene, builtin};
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -64,14 +64,10 @@ pub struct Series {
     pub set: Vec<(String, String)>,
 }
 
-macro_rules! charts {
-    ($($name:literal),* $(,)?) => {
-        &[$(carried!($name, "problems/charts/", $name, ".ron")),*]
-    };
-}
-
 /// Charts of built-in scenes, by the scene's name.
-const CHARTS: &[Carried] = charts![
+const CHARTS: &[Carried] = carried_all![
+    "problems/charts/",
+    ".ron",
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
     "02-two-cantilevers-rough",

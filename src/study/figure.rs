@@ -4,7 +4,7 @@ use super::curves::{Axis, Chart, Curve, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
-use super::read::AxisQuantity;
+use super::read::{AxisQuantity, Study};
 use super::result::{CaseEnd, Run};
 use crate::explain::number::six;
 
@@ -48,6 +48,20 @@ pub fn label(names: &[String], values: &[String]) -> String {
         _ => format!("{name}={value}"),
     });
     pairs.collect::<Vec<_>>().join(", ")
+}
+
+/// Settings as one types them: `path=value`.
+pub fn assigned(settings: &[(String, String)]) -> impl Iterator<Item = String> {
+    let pairs = settings.iter();
+    pairs.map(|(path, value)| format!("{path}={value}"))
+}
+
+/// What is set and varied in a study, after the scenes.
+pub(super) fn changes(study: &Study) -> String {
+    let varied = study.vary.iter();
+    let varied = varied.map(|vary| format!("{} over {}", vary.path, vary.values.join(", ")));
+    let all = assigned(&study.set).chain(varied);
+    all.map(|change| format!("; {change}")).collect()
 }
 
 /// What tells a case of a plan from the others.
@@ -118,12 +132,7 @@ fn footer(plan: &Plan, runs: &[Run]) -> Vec<String> {
     if study.scenes.first() != Some(&study.name) {
         made = format!("Study: {}. {made}", study.name);
     }
-    for (path, value) in &study.set {
-        made += &format!("; {path}={value}");
-    }
-    for vary in &study.vary {
-        made += &format!("; {} over {}", vary.path, vary.values.join(", "));
-    }
+    made += &changes(study);
     let failed = runs.iter().filter(|run| run.failed().is_some()).count();
     let by = format!(
         "{} runs, {failed} of them failed. {} on {}",

@@ -6,7 +6,7 @@
 //! the first. Where that is itself wrong, the map is; it names its references. Where there is nothing to compare with, a run
 //! that went to the end counts as converged, and the table says that it was not compared.
 
-use super::figure::{label, name, short_names};
+use super::figure::{changes, label, name, short_names};
 use super::log::Outcome;
 use super::monitor_kind::{MonitorKind, kind};
 use super::one::{Spare, Watch, one};
@@ -292,12 +292,7 @@ impl Map {
             0..=4 => format!("Scene: {}", study.scenes.join(", ")),
             n => format!("{n} scenes"),
         };
-        for (path, value) in &study.set {
-            made += &format!("; {path}={value}");
-        }
-        for vary in &study.vary {
-            made += &format!("; {} over {}", vary.path, vary.values.join(", "));
-        }
+        made += &changes(study);
         let mut named: Vec<usize> = self
             .cells
             .iter()

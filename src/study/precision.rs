@@ -10,7 +10,7 @@
 use super::chart_file::{Chart, Truth};
 use super::chart_runs::{Planned, Timed, sweep};
 use super::csv::TableError;
-use super::figure::name;
+use super::figure::{assigned, name};
 use super::monitor_kind::{MonitorKind, kind};
 use super::one::Watch;
 use super::origin;
@@ -18,6 +18,7 @@ use super::reference::{self, Reference};
 use super::result::Run;
 use super::sweep::RunError;
 use crate::model::Model;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 
@@ -88,7 +89,8 @@ impl Point {
 }
 
 /// What is counted as cost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Cost {
     /// Processor time, seconds.
     #[default]
@@ -107,15 +109,6 @@ stickslip_core::words! {
 }
 
 impl Cost {
-    /// The words of `--cost`.
-    pub const WORDS: [&'static str; 3] = ["time", "factorizations", "minors"];
-
-    /// The cost of that name.
-    pub fn named(word: &str) -> Option<Cost> {
-        let k = Cost::WORDS.iter().position(|own| *own == word)?;
-        Some([Cost::Time, Cost::Factorizations, Cost::Minors][k])
-    }
-
     /// That of a run.
     pub fn of(self, point: &Point) -> f64 {
         match self {
@@ -245,10 +238,7 @@ fn truth(
             Ok((known.ok_or_else(none)??, None))
         }
         Truth::Run(settings) => {
-            let names: Vec<String> = settings
-                .iter()
-                .map(|(path, value)| format!("{path}={value}"))
-                .collect();
+            let names: Vec<String> = assigned(settings).collect();
             let name = format!("a run with {}", names.join(", "));
             let stopped = "it was interrupted before its reference was there";
             let run = run.ok_or_else(|| wrong(stopped.to_owned()))?.run;
@@ -482,10 +472,8 @@ fn origin(
     loads: usize,
     reference: &Reference,
 ) -> Vec<String> {
-    let set: String = chart
-        .set
-        .iter()
-        .map(|(path, value)| format!("; {path}={value}"))
+    let set: String = assigned(&chart.set)
+        .map(|pair| format!("; {pair}"))
         .collect();
     let repeats = precision.points.iter().map(|point| point.repeats).max();
     vec![

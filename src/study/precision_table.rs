@@ -1,6 +1,7 @@
 //! Work-precision charts as tables: written, and read again.
 
 use super::csv::{Table, TableError};
+use super::figure::assigned;
 use super::precision::{Cost, Point, Precision, mark_front};
 use crate::format::error::quoted;
 use crate::outside::input::{self, TABLE_BYTES};
@@ -140,11 +141,7 @@ pub fn csv(charts: &[Precision]) -> String {
         .iter()
         .flat_map(|c| c.points.iter().map(move |p| (c, p)))
     {
-        let settings: Vec<String> = point
-            .settings
-            .iter()
-            .map(|(p, v)| format!("{p}={v}"))
-            .collect();
+        let settings: Vec<String> = assigned(&point.settings).collect();
         let status = match (&point.failed, point.reference) {
             (Some(why), _) => why.as_str(),
             (None, true) => "reference",

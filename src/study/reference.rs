@@ -7,7 +7,7 @@
 use super::csv::{Table, TableError};
 use super::result::Run;
 use crate::format::error::{quoted, shortened};
-use crate::outside::carried::{Carried, carried};
+use crate::outside::carried::{Carried, carried_all};
 use crate::outside::input::{self, TABLE_BYTES};
 use std::path::Path;
 
@@ -36,14 +36,10 @@ pub struct Point {
     pub values: Vec<f64>,
 }
 
-macro_rules! tables {
-    ($($name:literal),* $(,)?) => {
-        &[$(carried!($name, "problems/references/", $name, ".csv")),*]
-    };
-}
-
 /// The references that the program carries, by their scene's name.
-const TABLES: &[Carried] = tables![
+const TABLES: &[Carried] = carried_all![
+    "problems/references/",
+    ".csv",
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
     "02-two-cantilevers-rough",

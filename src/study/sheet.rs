@@ -311,20 +311,10 @@ impl Sheet {
 fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotError> {
     let mut all = Vec::new();
     for line in lines {
-        let mut present = String::new();
-        for word in shown::cut(line, MAX_LINE).split_whitespace() {
-            let word = label(word);
-            let longer = match present.is_empty() {
-                true => word.clone(),
-                false => format!("{present} {word}"),
-            };
-            if !present.is_empty() && 1.06 * width_of(&longer, size)? > width {
-                all.push(std::mem::replace(&mut present, word));
-            } else {
-                present = longer;
-            }
-        }
-        all.push(present);
+        let line = shown::cut(line, MAX_LINE);
+        let words: Vec<String> = line.split_whitespace().map(label).collect();
+        let fits = |line: &str| Ok(1.06 * width_of(line, size)? <= width);
+        all.extend(shown::wrapped(&words.join(" "), fits)?);
     }
     Ok(all)
 }

@@ -1,5 +1,6 @@
 //! All random problems of a population with all variants: run, counted, and as a table.
 
+use super::figure::assigned;
 use super::one::{Spare, Watch};
 use super::origin;
 use super::random::Population;
@@ -62,10 +63,7 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
     };
     // Not how many there are: the first problems of a larger population are the same.
     let tried = variants.iter().map(|variant| {
-        let pairs = variant.settings.iter();
-        let pairs: Vec<String> = pairs
-            .map(|(path, value)| format!("{path}={value}"))
-            .collect();
+        let pairs: Vec<String> = assigned(&variant.settings).collect();
         ("strategy".to_owned(), pairs.join(" "))
     });
     let input = std::iter::once(("population".to_owned(), name.clone())).chain(tried);

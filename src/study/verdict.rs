@@ -47,40 +47,31 @@ impl RunVerdict {
         }
     }
 
+    /// Letter, glyph and word.
+    fn names(self) -> (char, char, &'static str) {
+        match self {
+            RunVerdict::Right => ('C', '✓', "converged"),
+            RunVerdict::Wrong => ('W', '≠', "wrong"),
+            RunVerdict::Cycle { .. } => ('O', '↺', "cycle"),
+            RunVerdict::Diverged => ('D', '↗', "diverged"),
+            RunVerdict::NoAnswer => ('N', '∅', "no-answer"),
+            RunVerdict::Failed(_) => ('F', '✗', "failed"),
+        }
+    }
+
     /// Its letter.
     pub fn letter(self) -> char {
-        match self {
-            RunVerdict::Right => 'C',
-            RunVerdict::Wrong => 'W',
-            RunVerdict::Cycle { .. } => 'O',
-            RunVerdict::Diverged => 'D',
-            RunVerdict::NoAnswer => 'N',
-            RunVerdict::Failed(_) => 'F',
-        }
+        self.names().0
     }
 
     /// Its glyph.
     pub fn glyph(self) -> char {
-        match self {
-            RunVerdict::Right => '✓',
-            RunVerdict::Wrong => '≠',
-            RunVerdict::Cycle { .. } => '↺',
-            RunVerdict::Diverged => '↗',
-            RunVerdict::NoAnswer => '∅',
-            RunVerdict::Failed(_) => '✗',
-        }
+        self.names().1
     }
 
     /// What it is called in tables: a word without blanks.
     pub fn word(self) -> &'static str {
-        match self {
-            RunVerdict::Right => "converged",
-            RunVerdict::Wrong => "wrong",
-            RunVerdict::Cycle { .. } => "cycle",
-            RunVerdict::Diverged => "diverged",
-            RunVerdict::NoAnswer => "no-answer",
-            RunVerdict::Failed(_) => "failed",
-        }
+        self.names().2
     }
 
     /// What the word leaves out: a cycle's period, the reason of a failure; else empty.

@@ -10,7 +10,7 @@ use crate::format::error::{Path, SceneError, at, did_you_mean};
 use crate::format::kind::FileKind;
 use crate::format::{Fault, read};
 use crate::model::{Mode, Model};
-use crate::outside::carried::{Carried, carried};
+use crate::outside::carried::{Carried, carried_all};
 use crate::record::command::Command;
 use crate::scene::{Scene, placed};
 use crate::study::Vary;
@@ -125,14 +125,10 @@ const MOST_CHOICES: usize = 9;
 /// Longest look ahead, in minor iterations.
 const FARTHEST: u32 = 100;
 
-macro_rules! lessons {
-    ($($name:literal),* $(,)?) => {
-        &[$(carried!($name, "problems/lessons/", $name, ".ron")),*]
-    };
-}
-
 /// In the order in which they are to be taken.
-const LESSONS: &[Carried] = lessons![
+const LESSONS: &[Carried] = carried_all![
+    "problems/lessons/",
+    ".ron",
     "1-modes",
     "2-table-2",
     "3-by-hand",

@@ -12,7 +12,7 @@
 pub(crate) mod macros;
 mod model;
 mod types;
-mod words;
+pub(crate) mod words;
 
 use super::error::{NotSet, Path, quoted};
 use crate::model::documented::{Lines, text};
