@@ -119,14 +119,26 @@ pub fn tell(message: &str) {
     let _ = writeln!(io::stderr(), "{}", shown::text(message));
 }
 
-/// Data to standard output. A reader that has seen enough is no fault.
-pub fn say(text: &str) -> Result<(), Error> {
-    let text = shown::text(text);
+/// What became of data for standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sent {
+    Well,
+    /// Nobody reads on, which is no fault.
+    Closed,
+}
+
+/// Data to standard output, harmless to a terminal.
+pub fn say(text: &str) -> Result<Sent, Error> {
+    print(&shown::text(text))
+}
+
+/// Data to standard output as it is.
+pub fn print(text: &str) -> Result<Sent, Error> {
     let mut out = io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    match written {
-        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
-        _ => Ok(()),
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => Ok(Sent::Well),
+        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),
+        Err(e) => Err(Error::Output(e)),
     }
 }
 
@@ -137,7 +149,7 @@ pub fn put(output: Option<&Path>, text: &str, force: bool) -> Result<Exit, Error
             files::write(path, text, force)?;
             tell(&format!("wrote {}", path.display()));
         }
-        None => say(text)?,
+        None => drop(say(text)?),
     }
     Ok(Exit::Good)
 }

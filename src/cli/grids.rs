@@ -6,7 +6,6 @@ use crate::record::export::grid::grid;
 use crate::step::event::{Event, Outcome};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stickslip_exchange::vtu;
 
@@ -116,10 +115,7 @@ impl Grids {
             .map(|(number, (load, name))| (if rises { load } else { number as f64 }, name))
             .collect();
         let mut output = self.collection;
-        let text = vtu::collection(&files);
-        output
-            .write_all(text.as_bytes())
-            .map_err(|e: io::Error| output.failed(e))?;
+        output.append(vtu::collection(&files).as_bytes())?;
         output.finish()?;
         let time = if rises { "load factor" } else { "number" };
         let path = self.folder.join(format!("{}.pvd", self.stem));

@@ -1,6 +1,6 @@
 //! `stickslip help [TOPIC]`: the manual's pages, searched or shown, and the help of subcommands.
 
-use super::base::{Error, Exit, say};
+use super::base::{Error, Exit, print, say};
 use crate::manual::{self, Page, render};
 use crate::outside::terminal;
 use std::ffi::OsString;
@@ -133,11 +133,8 @@ fn show(page: &Page) -> Result<Exit, Error> {
         return Ok(Exit::Good);
     }
     // Not through `say`, which would show the styles instead of obeying them: the pages are our own.
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Output(e)),
-        _ => Ok(Exit::Good),
-    }
+    print(&text)?;
+    Ok(Exit::Good)
 }
 
 /// Shows a text with the user's pager; whether there was one that did.

@@ -7,7 +7,7 @@ use crate::study::drawn::PlotError;
 use crate::study::pen;
 use crate::study::sheet::Sheet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -146,6 +146,6 @@ fn undrawn(error: PlotError) -> Error {
 }
 
 fn written(mut output: Output, bytes: &[u8]) -> Result<Output, Error> {
-    output.write_all(bytes).map_err(|e| output.failed(e))?;
+    output.append(bytes)?;
     Ok(output)
 }

@@ -7,7 +7,6 @@ use super::solver::{Subject, SubjectArgs};
 use crate::outside::files::{self, Output};
 use crate::record::snapshot::Snapshot;
 use crate::scene::Scene;
-use std::io::Write;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -46,9 +45,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         say(&text)?;
         return Ok(Exit::Good);
     };
-    output
-        .write_all(text.as_bytes())
-        .map_err(|e| output.failed(e))?;
+    output.append(text.as_bytes())?;
     output.finish()?;
     tell(&format!("wrote {}", path.display()));
     Ok(Exit::Good)

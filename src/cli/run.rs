@@ -1,11 +1,11 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, distinct, tell};
+use super::base::{Error, Exit, Sent, distinct, tell};
 use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::remedies;
-use super::sink::{Sent, Sink};
+use super::sink::Sink;
 use super::solver::{Subject, SubjectArgs};
 use super::table;
 use crate::contact::record::ContactRecord;
@@ -31,7 +31,6 @@ use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until, drive};
 use crate::step::event::{Event, Moves, Outcome};
 use crate::step::solver::{Lost, Solver};
-use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -185,9 +184,7 @@ fn write_snapshot(mut output: Output, run: &Run) -> Result<(), Error> {
     let (scene, steps) = (run.tally.scene, run.tally.steps);
     let event = (steps > 0).then(|| run.solver.event());
     let snapshot = Snapshot::take(scene, &[], steps, run.solver.state(), event);
-    output
-        .write_all(snapshot.to_text()?.as_bytes())
-        .map_err(|e| output.failed(e))?;
+    output.append(snapshot.to_text()?.as_bytes())?;
     Ok(output.finish()?)
 }
 

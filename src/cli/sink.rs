@@ -1,6 +1,6 @@
 //! Where a table goes: to a file, or to standard output.
 
-use super::base::Error;
+use super::base::{Error, Sent, say};
 use crate::outside::files::Output;
 use crate::outside::shown;
 use std::io::{self, Write};
@@ -11,14 +11,6 @@ pub enum Sink {
     /// Standard output, line by line.
     Standard,
     File(Box<Output>),
-}
-
-/// What became of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sent {
-    Well,
-    /// Nobody reads on.
-    Closed,
 }
 
 impl Sink {
@@ -33,21 +25,13 @@ impl Sink {
 
     /// Sends whole lines.
     pub fn send(&mut self, lines: &str) -> Result<Sent, Error> {
-        let lines = shown::text(lines);
         match self {
-            Sink::File(output) => match output.write_all(lines.as_bytes()) {
+            Sink::Standard => say(lines),
+            Sink::File(output) => match output.write_all(shown::text(lines).as_bytes()) {
                 Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),
                 Err(e) => Err(output.failed(e).into()),
                 Ok(()) => Ok(Sent::Well),
             },
-            Sink::Standard => {
-                let mut out = io::stdout().lock();
-                match out.write_all(lines.as_bytes()).and_then(|()| out.flush()) {
-                    Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),
-                    Err(e) => Err(Error::Output(e)),
-                    Ok(()) => Ok(Sent::Well),
-                }
-            }
         }
     }
 

@@ -118,6 +118,14 @@ impl Output {
         })
     }
 
+    /// Adds to its end.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn append(&mut self, bytes: &[u8]) -> Result<(), FileError> {
+        self.write_all(bytes).map_err(|source| self.failed(source))
+    }
+
     /// An error of writing to it, with its name.
     pub fn failed(&self, source: io::Error) -> FileError {
         FileError::Failed {
@@ -232,9 +240,7 @@ pub fn write_all(files: &[(PathBuf, impl AsRef<[u8]>)], overwrite: bool) -> Resu
     let mut outputs = Vec::with_capacity(files.len());
     for (path, bytes) in files {
         let mut output = Output::create(path, overwrite)?;
-        output
-            .write_all(bytes.as_ref())
-            .map_err(|e| output.failed(e))?;
+        output.append(bytes.as_ref())?;
         outputs.push(output);
     }
     finish_all(outputs)
@@ -379,9 +385,7 @@ pub fn stem(scene: &str) -> String {
 /// As [`Output::create`] and [`Output::finish`].
 pub fn write(path: &Path, text: impl AsRef<[u8]>, overwrite: bool) -> Result<(), FileError> {
     let mut output = Output::create(path, overwrite)?;
-    output
-        .write_all(text.as_ref())
-        .map_err(|e| output.failed(e))?;
+    output.append(text.as_ref())?;
     output.finish()
 }
 

@@ -22,7 +22,7 @@
 
 use super::figure::assigned;
 use super::one::{Spare, Watch, one};
-use super::read::Word;
+use super::read::pairs;
 use super::result::{CaseEnd, Row, Run};
 use super::sweep::{RunError, side_by_side};
 use crate::format::error::{SceneError, did_you_mean};
@@ -50,32 +50,40 @@ pub fn builtin_text() -> String {
 }
 
 /// A list of benchmarks.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Benchmarks {
     /// Path of the file, or [`BUILTIN`].
+    #[serde(skip)]
     pub name: String,
     /// What the list is called.
     pub title: String,
     /// What it shows, for the reader.
+    #[serde(default)]
     pub about: String,
     /// The benchmarks, in the order of the table.
+    #[serde(rename = "benchmarks")]
     pub list: Vec<Benchmark>,
 }
 
 /// One value that is known from elsewhere.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Benchmark {
     /// As [`Scene::open`] takes it.
     pub scene: String,
     /// What is set for it: path and value.
+    #[serde(default, deserialize_with = "pairs")]
     pub set: Vec<(String, String)>,
     /// What is compared, in words.
     pub what: String,
     /// The monitor that has it.
     pub of: String,
     /// A monitor by which that is divided.
+    #[serde(default)]
     pub over: Option<String>,
     /// Load factor at which it is taken. `None`: the last.
+    #[serde(default)]
     pub at: Option<f64>,
     /// Where the value comes from.
     pub source: String,
@@ -84,10 +92,13 @@ pub struct Benchmark {
     /// How near ours must be to it, relative to it.
     pub within: f64,
     /// What `within` and `drift` are relative to. `None`: the value itself.
+    #[serde(default)]
     pub scale: Option<f64>,
     /// Our own value when it was last looked at. `None`: nobody has.
+    #[serde(default)]
     pub own: Option<f64>,
     /// How near ours must be to that.
+    #[serde(default = "default_drift")]
     pub drift: f64,
 }
 
@@ -164,20 +175,15 @@ impl Benchmarks {
     /// # Errors
     /// If it cannot be read, with line and column, or what it says makes no sense.
     pub fn from_text(name: &str, text: &str) -> Result<Benchmarks, SceneError> {
-        let file: File = from_ron(name, text, "list of benchmarks")?;
-        let list: Vec<Benchmark> = file.benchmarks.into_iter().map(Benchmark::from).collect();
-        for (k, benchmark) in list.iter().enumerate() {
+        let mut list: Benchmarks = from_ron(name, text, "list of benchmarks")?;
+        list.name = name.to_owned();
+        for (k, benchmark) in list.list.iter().enumerate() {
             benchmark.check().map_err(|message| SceneError {
                 path: format!("benchmarks[{k}]"),
                 ..SceneError::whole(name, message)
             })?;
         }
-        Ok(Benchmarks {
-            name: name.to_owned(),
-            title: file.title,
-            about: file.about,
-            list,
-        })
+        Ok(list)
     }
 
     /// Runs every scene, once for all benchmarks that want it with the same settings, and compares.
@@ -345,57 +351,8 @@ pub fn table(list: &Benchmarks, compared: &[Compared]) -> String {
     text
 }
 
-/// The file, field by field.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    title: String,
-    #[serde(default)]
-    about: String,
-    benchmarks: Vec<Entry>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Entry {
-    scene: String,
-    #[serde(default)]
-    set: Vec<(String, Word)>,
-    what: String,
-    of: String,
-    #[serde(default)]
-    over: Option<String>,
-    #[serde(default)]
-    at: Option<f64>,
-    source: String,
-    value: f64,
-    within: f64,
-    #[serde(default)]
-    scale: Option<f64>,
-    #[serde(default)]
-    own: Option<f64>,
-    #[serde(default)]
-    drift: Option<f64>,
-}
-
-impl From<Entry> for Benchmark {
-    fn from(entry: Entry) -> Benchmark {
-        let set = entry.set.into_iter().map(|(path, word)| (path, word.0));
-        Benchmark {
-            scene: entry.scene,
-            set: set.collect(),
-            what: entry.what,
-            of: entry.of,
-            over: entry.over,
-            at: entry.at,
-            source: entry.source,
-            value: entry.value,
-            within: entry.within,
-            scale: entry.scale,
-            own: entry.own,
-            drift: entry.drift.unwrap_or(DRIFT),
-        }
-    }
+fn default_drift() -> f64 {
+    DRIFT
 }
 
 #[cfg(test)]

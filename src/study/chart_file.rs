@@ -13,7 +13,7 @@
 //! )
 //! ```
 
-use super::read::{Vary, Word, parse, vary};
+use super::read::{Vary, pairs, parse};
 use super::reference::Reference;
 use crate::format::error::SceneError;
 use crate::outside::carried::{Carried, carried_all};
@@ -54,13 +54,16 @@ pub enum Truth {
 }
 
 /// Runs that are drawn as one line: the product of what is varied.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Series {
     /// What the legend calls it.
     pub name: String,
     /// What is varied in it.
+    #[serde(default)]
     pub vary: Vec<Vary>,
     /// What is set for all of its runs, path and value.
+    #[serde(default, deserialize_with = "pairs")]
     pub set: Vec<(String, String)>,
 }
 
@@ -93,30 +96,13 @@ pub fn text(name: &str) -> Option<String> {
 #[serde(deny_unknown_fields)]
 struct File {
     scene: String,
-    #[serde(default)]
-    set: Vec<(String, Word)>,
+    #[serde(default, deserialize_with = "pairs")]
+    set: Vec<(String, String)>,
     #[serde(default)]
     monitors: Vec<String>,
-    #[serde(default)]
-    finest: Vec<(String, Word)>,
-    series: Vec<FileSeries>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileSeries {
-    name: String,
-    #[serde(default)]
-    vary: Vec<(String, Vec<Word>)>,
-    #[serde(default)]
-    set: Vec<(String, Word)>,
-}
-
-fn pairs(words: Vec<(String, Word)>) -> Vec<(String, String)> {
-    words
-        .into_iter()
-        .map(|(path, word)| (path, word.0))
-        .collect()
+    #[serde(default, deserialize_with = "pairs")]
+    finest: Vec<(String, String)>,
+    series: Vec<Series>,
 }
 
 impl Chart {
@@ -160,22 +146,17 @@ impl Chart {
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Chart, SceneError> {
         let file: File = parse(name, text)?;
-        let series = |series: FileSeries| Series {
-            name: series.name,
-            vary: vary(series.vary),
-            set: pairs(series.set),
-        };
         Ok(Chart {
             title: String::new(),
             truth: match file.finest.is_empty() {
                 true => truth(&file.scene),
-                false => Truth::Run(pairs(file.finest)),
+                false => Truth::Run(file.finest),
             },
             scene: file.scene,
-            set: pairs(file.set),
+            set: file.set,
             monitors: file.monitors,
             by: Vec::new(),
-            series: file.series.into_iter().map(series).collect(),
+            series: file.series,
         })
     }
 }

@@ -135,10 +135,9 @@ fn footer(plan: &Plan, runs: &[Run]) -> Vec<String> {
     made += &changes(study);
     let failed = runs.iter().filter(|run| run.failed().is_some()).count();
     let by = format!(
-        "{} runs, {failed} of them failed. {} on {}",
+        "{} runs, {failed} of them failed. {}",
         runs.len(),
-        origin::program(),
-        origin::machine()
+        origin::made_by()
     );
     vec![made, by]
 }

@@ -95,6 +95,14 @@ pub enum LogError {
 }
 
 impl LogError {
+    /// What the system refused of a file.
+    fn file(path: &Path) -> impl Fn(io::Error) -> LogError + Copy + '_ {
+        move |source| LogError::File {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
     /// A line from its beginning.
     pub fn broken(path: &Path, line: usize, message: impl Into<String>) -> LogError {
         LogError::Broken {
@@ -275,10 +283,7 @@ impl Lines<'_> {
         let read = (&mut self.from)
             .take(most as u64)
             .read_until(b'\n', &mut bytes);
-        read.map(|_| bytes).map_err(|source| LogError::File {
-            path: self.path.to_owned(),
-            source,
-        })
+        read.map(|_| bytes).map_err(LogError::file(self.path))
     }
 }
 
@@ -330,10 +335,7 @@ fn content<T: Outcome>(
     path: &Path,
     ours: &Input,
 ) -> Result<(Content<T>, u64), LogError> {
-    let failed = |source| LogError::File {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = LogError::file(path);
     let size = file.metadata().map_err(failed)?.len();
     if size > MOST_BYTES {
         let what = "no file of kept results is read that has";
@@ -409,10 +411,7 @@ impl Log {
     /// # Errors
     /// If it cannot be read or written, if it is something else, or if another run has it open.
     pub fn open<T: Outcome>(path: &Path, ours: &Input) -> Result<(Log, Content<T>), LogError> {
-        let failed = |source| LogError::File {
-            path: path.to_owned(),
-            source,
-        };
+        let failed = LogError::file(path);
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
         let mut file = opened(path, &mut options)?;
@@ -459,10 +458,7 @@ impl Log {
     }
 
     fn write<T: Serialize>(&self, key: &str, value: &T) -> Result<(), LogError> {
-        let failed = |source| LogError::File {
-            path: self.path.clone(),
-            source,
-        };
+        let failed = LogError::file(&self.path);
         let value = notation::strict_line(value).map_err(|e| failed(io::Error::other(e)))?;
         let line = sealed(&format!("{key}\t{value}")) + "\n";
         let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());

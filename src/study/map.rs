@@ -316,11 +316,7 @@ impl Map {
                 self.tolerance
             ),
         };
-        vec![
-            made,
-            compared,
-            format!("{} on {}", origin::program(), origin::machine()),
-        ]
+        vec![made, compared, origin::made_by()]
     }
 
     /// What tells a case from the others.

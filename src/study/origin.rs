@@ -16,6 +16,11 @@ pub fn program() -> String {
     format!("stickslip {VERSION}")
 }
 
+/// The program and the machine, as tables and pictures name them.
+pub fn made_by() -> String {
+    format!("{} on {}", program(), machine())
+}
+
 /// The processor's name, where the system tells it, else its kind; and the number of cores.
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());

@@ -484,10 +484,9 @@ fn origin(
             reference.source
         ),
         format!(
-            "Time: processor time of the solve, median of {}. {} on {}",
+            "Time: processor time of the solve, median of {}. {}",
             repeats.unwrap_or(0),
-            origin::program(),
-            origin::machine()
+            origin::made_by()
         ),
     ]
 }

@@ -48,7 +48,8 @@ pub struct Study {
 }
 
 /// One setting and the values that it takes.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(from = "(String, Vec<Word>)")]
 pub struct Vary {
     /// Path of the setting.
     pub path: String,
@@ -215,8 +216,8 @@ impl Study {
             title: file.title,
             about: file.about,
             scenes: file.scenes,
-            vary: vary(file.vary),
-            set: file.set.into_iter().map(|(path, w)| (path, w.0)).collect(),
+            vary: file.vary,
+            set: file.set,
             x: file.x.as_deref().map(AxisQuantity::named),
             y: file.y.as_deref().map(AxisQuantity::named),
         })
@@ -251,9 +252,9 @@ struct File {
     #[serde(default)]
     scenes: Vec<String>,
     #[serde(default)]
-    vary: Vec<(String, Vec<Word>)>,
-    #[serde(default)]
-    set: Vec<(String, Word)>,
+    vary: Vec<Vary>,
+    #[serde(default, deserialize_with = "pairs")]
+    set: Vec<(String, String)>,
     #[serde(default)]
     x: Option<String>,
     #[serde(default)]
@@ -261,7 +262,7 @@ struct File {
 }
 
 /// A value of a setting: a number, a flag, or a text; settings take all of them as text.
-pub(super) struct Word(pub(super) String);
+struct Word(String);
 
 impl<'de> Deserialize<'de> for Word {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Word, D::Error> {
@@ -306,13 +307,17 @@ impl Visitor<'_> for WordVisitor {
     }
 }
 
-/// What is varied, as a file has it.
-pub(super) fn vary(words: Vec<(String, Vec<Word>)>) -> Vec<Vary> {
-    let vary = |(path, words): (String, Vec<Word>)| Vary {
-        path,
-        values: words.into_iter().map(|word| word.0).collect(),
-    };
-    words.into_iter().map(vary).collect()
+impl From<(String, Vec<Word>)> for Vary {
+    fn from((path, words): (String, Vec<Word>)) -> Vary {
+        let values = words.into_iter().map(|word| word.0).collect();
+        Vary { path, values }
+    }
+}
+
+/// Settings as a file has them: path and value of each.
+pub(super) fn pairs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, String)>, D::Error> {
+    let words = Vec::<(String, Word)>::deserialize(from)?.into_iter();
+    Ok(words.map(|(path, word)| (path, word.0)).collect())
 }
 
 /// Reads a file that holds one value.

@@ -181,7 +181,7 @@ impl Survey {
                 "{count} random interface problems, {}",
                 self.population.name()
             ),
-            format!("{} on {}", origin::program(), origin::machine()),
+            origin::made_by(),
         ]
     }
 }
