@@ -5,7 +5,6 @@ use super::interrupt::Interrupt;
 use super::outputs::Outputs;
 use super::sweep::{Report, SweepArgs, failed};
 use crate::explain::number::six;
-use crate::format::described::words::{of_word, words};
 use crate::format::kind::{FileKind, mistaken};
 use crate::outside::shown::aligned;
 use crate::study::chart_file::{Chart, Truth};
@@ -69,8 +68,8 @@ fn target(text: &str) -> Result<f64, NoValue> {
 }
 
 fn cost(text: &str) -> Result<Cost, NoValue> {
-    let all = words::<Cost>().join(", ");
-    of_word(text).ok_or_else(|| NoValue::new(format!("it must be one of {all}")))
+    let all = Cost::NAMES.join(", ");
+    Cost::of_word(text).ok_or_else(|| NoValue::new(format!("it must be one of {all}")))
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {

@@ -4,7 +4,6 @@
 //! program knows: scenes, studies, lessons, pages, and the paths and values of the scene that stands in the line.
 
 use super::base::{Error, Exit, put};
-use crate::format::described::words::words;
 use crate::format::paths::{self, Listed};
 use crate::format::read;
 use crate::model::Strategy;
@@ -122,7 +121,7 @@ fn kind(arg: &clap::Arg) -> Option<Kind> {
         _ => id,
     };
     Some(match (name, id) {
-        (_, "cost") => Kind::Words(|begun| plain(begun, words::<Cost>().iter().copied())),
+        (_, "cost") => Kind::Words(|begun| plain(begun, Cost::NAMES)),
         (_, "lesson") => Kind::Words(|begun| with_files(begun, lessons())),
         (_, "topic") => Kind::Words(|begun| of(begun, topics())),
         (_, "name") => Kind::Words(|begun| of(begun, shown())),

@@ -2,7 +2,6 @@
 //! costs and leaves.
 
 use super::base::{Error, Exit, SceneArgs, quoted, say, tell};
-use super::outputs::aligned;
 use crate::explain::page;
 use crate::explain::remedies::{self, COLUMNS, TrialEnd};
 use crate::explain::report;

@@ -18,7 +18,6 @@ use super::reference::{self, Reference};
 use super::result::Run;
 use super::sweep::RunError;
 use crate::model::Model;
-use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 
@@ -89,8 +88,7 @@ impl Point {
 }
 
 /// What is counted as cost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
     /// Processor time, seconds.
     #[default]
@@ -99,6 +97,13 @@ pub enum Cost {
     Factorizations,
     /// Minor iterations.
     Minors,
+}
+
+stickslip_core::words! {
+    Cost, ALL, word:
+    Time "time",
+    Factorizations "factorizations",
+    Minors "minors",
 }
 
 stickslip_core::words! {

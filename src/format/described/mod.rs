@@ -12,7 +12,7 @@
 pub(crate) mod macros;
 mod model;
 mod types;
-pub(crate) mod words;
+mod words;
 
 use super::error::{NotSet, Path, quoted};
 use crate::model::documented::{Lines, text};

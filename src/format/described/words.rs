@@ -6,7 +6,7 @@ use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor
 use serde::{Serialize, forward_to_deserialize_any};
 
 /// The words that serde reads for an enum without fields.
-pub(crate) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
+pub(super) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
     struct Ask<'a>(&'a mut &'static [&'static str]);
     impl<'de> Deserializer<'de> for Ask<'_> {
         type Error = Unread;
@@ -34,14 +34,14 @@ pub(crate) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
 }
 
 /// The word that serde writes for a value of an enum without fields.
-pub(crate) fn word<T: Serialize + DeserializeOwned>(value: &T) -> &'static str {
+pub(super) fn word<T: Serialize + DeserializeOwned>(value: &T) -> &'static str {
     let written = line(value).unwrap_or_default();
     let found = words::<T>().iter().find(|word| **word == written);
     found.copied().unwrap_or_default()
 }
 
 /// The value of a word, if it is one of the enum's.
-pub(crate) fn of_word<T: DeserializeOwned>(word: &str) -> Option<T> {
+pub(super) fn of_word<T: DeserializeOwned>(word: &str) -> Option<T> {
     let word: serde::de::value::StrDeserializer<'_, Unread> = word.into_deserializer();
     T::deserialize(word).ok()
 }
