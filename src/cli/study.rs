@@ -156,7 +156,8 @@ fn end(run: &Run) -> String {
 /// How many runs did not end well.
 fn warnings(plan: &Plan, runs: &[Run]) -> Vec<String> {
     let (name, all) = (&plan.study.name, runs.len());
-    let kinds: [(fn(&Run) -> bool, &str); 3] = [
+    type Is = fn(&Run) -> bool;
+    let kinds: [(Is, &str); 3] = [
         (|run| run.failed().is_some(), "failed"),
         (
             |run| run.unsettled() > 0,

@@ -187,8 +187,8 @@ fn stroke(points: &[(f64, f64)], width: f64) -> Vec<Vec<(f64, f64)>> {
 
 /// The part of a polygon that lies on a sheet (Sutherland and Hodgman).
 fn clipped(corners: &[(f64, f64)], (width, height): (f64, f64)) -> Vec<(f64, f64)> {
-    let edges: [&dyn Fn(&(f64, f64)) -> f64; 4] =
-        [&|p| p.0, &|p| width - p.0, &|p| p.1, &|p| height - p.1];
+    type Depth<'a> = &'a dyn Fn(&(f64, f64)) -> f64;
+    let edges: [Depth; 4] = [&|p| p.0, &|p| width - p.0, &|p| p.1, &|p| height - p.1];
     let mut left = corners.to_vec();
     for inside in edges {
         let mut next = Vec::new();
