@@ -1,6 +1,7 @@
 //! `stickslip --help`: the subcommands in groups, and which one was meant by a word that is none.
 
 use crate::format::error::did_you_mean;
+use crate::outside::shown::wrap;
 use crate::scene::builtin;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
@@ -41,7 +42,7 @@ pub fn grouped(command: clap::Command) -> clap::Command {
                 .find_subcommand(name)
                 .and_then(|own| own.get_about());
             let about = about.map(ToString::to_string).unwrap_or_default();
-            let mut lines = wrapped(&about, WIDTH - width - 4).into_iter();
+            let mut lines = wrap(&about, WIDTH - width - 4).into_iter();
             let first = lines.next().unwrap_or_default();
             text += &format!("  {name:<width$}  {first}\n");
             for line in lines {
@@ -53,21 +54,6 @@ pub fn grouped(command: clap::Command) -> clap::Command {
     command.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{text}Arguments:\n{{positionals}}\n\nOptions:\n{{options}}{{after-help}}"
     ))
-}
-
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let last = lines.len() - 1;
-        let line = &mut lines[last];
-        if !line.is_empty() && line.len() + 1 + word.len() > width {
-            lines.push(word.to_owned());
-        } else {
-            let blank = if line.is_empty() { "" } else { " " };
-            *line += &format!("{blank}{word}");
-        }
-    }
-    lines
 }
 
 /// Options of earlier revisions, and what replaces them.
