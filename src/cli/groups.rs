@@ -1,10 +1,9 @@
 //! `stickslip --help`: the subcommands in groups, and which one was meant by a word that is none.
 
 use crate::format::error::did_you_mean;
-use crate::outside::shown;
+use crate::outside::shown::wrap;
 use crate::scene::builtin;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use std::convert::Infallible;
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -43,11 +42,11 @@ pub fn grouped(command: clap::Command) -> clap::Command {
                 .find_subcommand(name)
                 .and_then(|own| own.get_about());
             let about = about.map(ToString::to_string).unwrap_or_default();
-            let fits = |line: &str| Ok::<_, Infallible>(line.len() <= WIDTH - width - 4);
-            let Ok(lines) = shown::wrapped(&about, fits);
-            for (k, line) in lines.iter().enumerate() {
-                let name = if k == 0 { name } else { "" };
-                text += &format!("  {name:<width$}  {line}\n");
+            let mut lines = wrap(&about, WIDTH - width - 4).into_iter();
+            let first = lines.next().unwrap_or_default();
+            text += &format!("  {name:<width$}  {first}\n");
+            for line in lines {
+                text += &format!("  {:<width$}  {line}\n", "");
             }
         }
         text.push('\n');

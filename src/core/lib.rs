@@ -100,6 +100,7 @@
 //!
 //! # The rooms
 //!
+//! - [`words`](macro@words): words for the variants of an enum, each written once.
 //! - [`executor`]: work on bodies side by side, by whoever has threads to give.
 //! - [`linalg`]: patterns, factors, checked solves; a package of its own.
 //! - [`model`]: what is solved, as plain data: nodes, bodies, surfaces, contacts, loads, settings.

@@ -4,7 +4,7 @@
 //! [`line()`]. Both leave what is harmless as it is, so that it does no harm to go through them twice.
 
 use std::borrow::Cow;
-use unicode_width::UnicodeWidthStr;
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Whether a terminal or a viewer may take a character for an order: C0 and C1 controls and DEL, marks that turn the
 /// direction of writing or end lines, and what is never seen at all.
@@ -80,6 +80,39 @@ pub fn wrapped<E>(text: &str, fits: impl Fn(&str) -> Result<bool, E>) -> Result<
     Ok(lines)
 }
 
+/// Breaks a text into lines at its blanks, and a word that is longer than a line where the line ends.
+pub fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in line(text).split(' ') {
+        match lines.last_mut() {
+            Some(last) if last.width() + 1 + word.width() <= width => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => lines.extend(broken(word, width.max(2))),
+        }
+    }
+    lines
+}
+
+/// A word in pieces that are no wider than a line.
+fn broken(word: &str, width: usize) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    let mut used = 0;
+    for letter in word.chars() {
+        let wide = letter.width().unwrap_or(0);
+        if used + wide > width {
+            pieces.push(String::new());
+            used = 0;
+        }
+        used += wide;
+        if let Some(piece) = pieces.last_mut() {
+            piece.push(letter);
+        }
+    }
+    pieces
+}
+
 /// A text filled up with blanks at its end to so many columns of a terminal, in which a Chinese character takes two.
 pub fn padded(text: &str, columns: usize) -> String {
     let missing = columns.saturating_sub(text.width());
@@ -137,6 +170,17 @@ fn escaped(text: &str, harmful: impl Fn(char) -> bool) -> Cow<'_, str> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_wrapped_text_is_all_there_and_no_line_of_it_is_too_wide() {
+        let text = "a path /that/is/longer/than/any/line and 接触の摩擦角と滑りの長さ to the end";
+        for width in 2..60 {
+            let lines = wrap(text, width);
+            assert!(lines.iter().all(|line| line.width() <= width), "{lines:?}");
+            let letters = |text: &str| text.replace(' ', "");
+            assert_eq!(letters(&lines.concat()), letters(text));
+        }
+    }
 
     #[test]
     fn orders_are_shown_and_letters_stay() {

@@ -33,13 +33,15 @@ mod deck;
 mod geometry;
 mod pressed;
 
+use crate::format::condensed::Problem;
 use crate::format::kind;
 use crate::format::paths::Override;
-use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read};
+use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read, stored};
 use crate::model::Model;
 use crate::outside::input;
 pub use problems::siconos;
 use stickslip_exchange::attach::message;
+use stickslip_exchange::matrix_market;
 
 pub(crate) use compile::increments;
 use nodes::Names;
@@ -127,67 +129,15 @@ impl Scene {
         text: &str,
         overrides: &[(String, String)],
     ) -> Result<Scene, SceneError> {
-        // The contact elements of a run begin as a deck does.
-        if deck::is_one(text) && !kind::is_contacts(text) {
-            return Scene::from_deck(name, text, overrides);
-        }
-        if let Some(problem) = problems::opened::from_text(name, text, overrides) {
-            return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
-        }
-        if locate::head(text) == Some(condensed::HEAD) {
-            let problem = read::problem(name, text)?;
-            let place = |overrides: &[Override], fault: Fault| {
-                let own = Fault::new(problem.origin(&fault.path), fault.message.clone());
-                match placed(name, "", overrides, fault) {
-                    set if set.set.is_some() => set,
-                    _ => placed(name, text, &[], own),
-                }
-            };
-            // Its text is no scene's: no value that is set later could be found there.
-            let (spec, overrides) = changed(name, problem.spec(), overrides, Vec::new())?;
-            return Scene::compiled(name, "", spec, overrides, place);
-        }
-        let spec = read::spec(name, text)?;
-        if spec.attached.is_some() {
-            let why = "it is the scene of an attached solver, which alone can solve it: stickslip attach -- COMMAND";
-            return Err(placed(
-                name,
-                text,
-                &[],
-                Fault::new(error::at!["attached"], why),
-            ));
-        }
-        let (mut spec, overrides) = changed(name, spec, overrides, Vec::new())?;
-        let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
-        let imports = imported(&mut spec, name, |fault| place(&overrides, fault))?;
-        let scene = Scene::compiled(name, text, spec, overrides, place)?;
-        Ok(Scene { imports, ..scene })
-    }
-
-    fn from_deck(
-        name: &str,
-        text: &str,
-        overrides: &[(String, String)],
-    ) -> Result<Scene, SceneError> {
-        let read = deck::read(name, text)?;
-        let place = |overrides: &[Override], fault: Fault| {
-            let own = read
-                .origin
-                .of(&fault.path)
-                .map(|(file, at)| (file.to_owned(), at));
-            match (placed(name, "", overrides, fault), own) {
-                (fault, Some((file, at))) if fault.set.is_none() => SceneError {
-                    file,
-                    at: Some(at),
-                    ..fault
-                },
-                (fault, _) => fault,
-            }
+        let source = Source {
+            name,
+            text,
+            overrides,
         };
-        let (spec, overrides) = changed(name, read.spec.clone(), overrides, Vec::new())?;
-        let mut scene = Scene::compiled(name, "", spec, overrides, place)?;
-        scene.remarks = read.remarks;
-        Ok(scene)
+        match FORMS.iter().find(|(recognise, _)| recognise(text)) {
+            Some((_, read)) => read(&source),
+            None => source.ron(),
+        }
     }
 
     /// Checks a scene that came without a text, as from a snapshot.
@@ -310,6 +260,104 @@ impl Scene {
             overrides,
             imports: false,
         })
+    }
+}
+
+/// A form of a scene's text: how it is recognised, and how it is read.
+type Form = (fn(&str) -> bool, fn(&Source) -> Result<Scene, SceneError>);
+
+/// The forms, in the order in which they are tried; every other text is read as RON.
+const FORMS: [Form; 5] = [
+    // The contact elements of a run begin as a deck does.
+    (
+        |text| deck::is_one(text) && !kind::is_contacts(text),
+        |source| source.deck(),
+    ),
+    (
+        |text| text.starts_with(matrix_market::MARK),
+        |source| source.problem(problems::market::read),
+    ),
+    (
+        |text| locate::head(text) == Some(stored::HEAD),
+        |source| source.problem(problems::stored::read),
+    ),
+    (siconos::is_one, |source| {
+        source.problem(problems::opened::siconos)
+    }),
+    (
+        |text| locate::head(text) == Some(condensed::HEAD),
+        |source| source.condensed(),
+    ),
+];
+
+/// The text of a scene, and what is set from outside.
+struct Source<'a> {
+    name: &'a str,
+    text: &'a str,
+    overrides: &'a [(String, String)],
+}
+
+impl Source<'_> {
+    fn problem(
+        &self,
+        read: fn(&str, &str, Option<f64>) -> Result<Problem, SceneError>,
+    ) -> Result<Scene, SceneError> {
+        let problem = read(
+            self.name,
+            self.text,
+            problems::opened::memory(self.overrides),
+        )?;
+        Scene::assemble(self.name, "", problem.spec(), self.overrides, Vec::new())
+    }
+
+    fn condensed(&self) -> Result<Scene, SceneError> {
+        let (name, text) = (self.name, self.text);
+        let problem = read::problem(name, text)?;
+        let place = |overrides: &[Override], fault: Fault| {
+            let own = Fault::new(problem.origin(&fault.path), fault.message.clone());
+            match placed(name, "", overrides, fault) {
+                set if set.set.is_some() => set,
+                _ => placed(name, text, &[], own),
+            }
+        };
+        // Its text is no scene's: no value that is set later could be found there.
+        let (spec, overrides) = changed(name, problem.spec(), self.overrides, Vec::new())?;
+        Scene::compiled(name, "", spec, overrides, place)
+    }
+
+    fn ron(&self) -> Result<Scene, SceneError> {
+        let (name, text) = (self.name, self.text);
+        let spec = read::spec(name, text)?;
+        let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
+        if spec.attached.is_some() {
+            let why = "it is the scene of an attached solver, which alone can solve it: stickslip attach -- COMMAND";
+            return Err(place(&[], Fault::new(error::at!["attached"], why)));
+        }
+        let (mut spec, overrides) = changed(name, spec, self.overrides, Vec::new())?;
+        let imports = imported(&mut spec, name, |fault| place(&overrides, fault))?;
+        let scene = Scene::compiled(name, text, spec, overrides, place)?;
+        Ok(Scene { imports, ..scene })
+    }
+
+    fn deck(&self) -> Result<Scene, SceneError> {
+        let name = self.name;
+        let read = deck::read(name, self.text)?;
+        let place = |overrides: &[Override], fault: Fault| {
+            let own = read.origin.of(&fault.path);
+            let own = own.map(|(file, at)| (file.to_owned(), at));
+            match (placed(name, "", overrides, fault), own) {
+                (fault, Some((file, at))) if fault.set.is_none() => SceneError {
+                    file,
+                    at: Some(at),
+                    ..fault
+                },
+                (fault, _) => fault,
+            }
+        };
+        let (spec, overrides) = changed(name, read.spec.clone(), self.overrides, Vec::new())?;
+        let mut scene = Scene::compiled(name, "", spec, overrides, place)?;
+        scene.remarks = read.remarks;
+        Ok(scene)
     }
 }
 

@@ -8,8 +8,22 @@ use crate::attach::recording::Recording;
 use crate::attach::story::in_common;
 use crate::history::branches;
 use crate::history::strip::{PointKind, Strip};
+use crate::scene::Scene;
 
 impl Session {
+    /// The session at the start of a scene, or on a finished run, by the name of a file or of a built-in scene.
+    ///
+    /// # Errors
+    /// A message with the file and the reason.
+    pub fn open(name: &str) -> Result<Session, String> {
+        match Recording::open(name)? {
+            Some(recording) => Ok(Session::recorded(recording)),
+            None => Scene::open(name, &[])
+                .map(Session::new)
+                .map_err(|why| why.to_string()),
+        }
+    }
+
     /// The session on a finished run.
     pub fn recorded(recording: Recording) -> Session {
         match recording {

@@ -1,10 +1,8 @@
 //! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
 //! while.
 
-use crate::attach::recording::Recording;
 use crate::format::SceneError;
 use crate::record::journal::{self, Journal, JournalError, Record};
-use crate::scene::Scene;
 use crate::session::Session;
 use crate::teach::Lesson;
 use crate::tui::chartpage::{ChartPage, NoPage};
@@ -15,15 +13,15 @@ use std::thread;
 /// Why a scene or a lesson cannot be had.
 #[derive(Debug, thiserror::Error)]
 pub enum NotLoaded {
-    /// The scene is unsound.
+    /// The lesson is unsound.
     #[error(transparent)]
-    Scene(#[from] SceneError),
+    Lesson(#[from] SceneError),
     /// The journal is not one, is in use, or leads elsewhere.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The finished run is damaged.
+    /// The scene is unsound, or the finished run is damaged.
     #[error("{0}")]
-    Recording(String),
+    Session(String),
     /// The thread that read has ended without an answer.
     #[error("reading it broke down")]
     BrokeDown,
@@ -53,13 +51,7 @@ impl Loading {
                 let session = resumed(Path::new(&name));
                 return Loaded::Scene(session.map(Box::new).map_err(NotLoaded::from));
             }
-            let session = match Recording::open(&name) {
-                Ok(Some(recording)) => Ok(Session::recorded(recording)),
-                Ok(None) => Scene::open(&name, &[])
-                    .map(Session::new)
-                    .map_err(NotLoaded::from),
-                Err(why) => Err(NotLoaded::Recording(why)),
-            };
+            let session = Session::open(&name).map_err(NotLoaded::Session);
             Loaded::Scene(session.map(Box::new))
         })
     }

@@ -1,6 +1,7 @@
 //! The brush: what all panes draw with.
 
 use crate::outside::shown;
+pub use crate::outside::shown::wrap;
 use crate::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -61,59 +62,10 @@ pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
     }
 }
 
-/// Breaks a text into lines at its blanks, and a word that is longer than a line where the line ends.
-pub fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in shown::line(text).split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.width() + 1 + word.width() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.extend(broken(word, width.max(2))),
-        }
-    }
-    lines
-}
-
 /// A wrapped text as lines of this width, each with a blank on either side.
 pub fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
     let lines = wrap(text, width.saturating_sub(2)).into_iter();
     lines
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect()
-}
-
-/// A word in pieces that are no wider than a line.
-fn broken(word: &str, width: usize) -> Vec<String> {
-    let mut pieces = vec![String::new()];
-    let mut used = 0;
-    for letter in word.chars() {
-        let wide = letter.width().unwrap_or(0);
-        if used + wide > width {
-            pieces.push(String::new());
-            used = 0;
-        }
-        used += wide;
-        if let Some(piece) = pieces.last_mut() {
-            piece.push(letter);
-        }
-    }
-    pieces
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_wrapped_text_is_all_there_and_no_line_of_it_is_too_wide() {
-        let text = "a path /that/is/longer/than/any/line and 接触の摩擦角と滑りの長さ to the end";
-        for width in 2..60 {
-            let lines = wrap(text, width);
-            assert!(lines.iter().all(|line| line.width() <= width), "{lines:?}");
-            let letters = |text: &str| text.replace(' ', "");
-            assert_eq!(letters(&lines.concat()), letters(text));
-        }
-    }
 }

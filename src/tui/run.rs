@@ -1,7 +1,6 @@
 //! The event loop, and how one gets into it: with a scene, a session that goes on, a lesson, or nothing yet.
 
 use crate::action::config::Config;
-use crate::attach::recording::Recording;
 use crate::format::SceneError;
 use crate::record::journal::{JournalError, Keep};
 use crate::scene::Scene;
@@ -26,9 +25,9 @@ pub enum Error {
     /// The scene could not be loaded.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A finished run is damaged.
+    /// The scene is unsound, or the finished run is damaged.
     #[error("{0}")]
-    Recording(String),
+    Session(String),
     /// The journal cannot be written.
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -134,10 +133,7 @@ fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
 /// # Errors
 /// If the scene cannot be loaded.
 pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
-    let session = match Recording::open(scene).map_err(Error::Recording)? {
-        Some(recording) => Session::recorded(recording),
-        None => load(scene, &[])?,
-    };
+    let session = Session::open(scene).map_err(Error::Session)?;
     let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
     debugger.app.area = Rect::new(0, 0, width, height);
     debugger.type_keys(keys);

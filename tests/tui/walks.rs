@@ -35,7 +35,7 @@ const WALKS: [(&str, &str, &str); 4] = [
 ];
 
 fn debugger(scene: &str) -> Debugger {
-    let session = Session::new(Scene::open(scene, &[]).unwrap());
+    let session = Session::open(scene).unwrap();
     Debugger::new(Theme::mono(), Vec::new(), Some(session))
 }
 

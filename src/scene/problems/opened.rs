@@ -1,12 +1,12 @@
-//! Which kind of interface problem a file is, and its scene.
+//! Interface problems in files of other programs, by the name of the file or by its text.
 
 use super::siconos::{self, Friction2d};
-use super::{market, of_file, stored, title};
+use super::{of_file, title};
 use crate::format::condensed::Problem;
-use crate::format::{self, SceneError, locate, read};
+use crate::format::{SceneError, read};
 use crate::outside::input;
 use std::path::Path;
-use stickslip_exchange::{fclib, matrix_market};
+use stickslip_exchange::fclib;
 
 /// A file that is no text: its problem, if it is one.
 ///
@@ -34,37 +34,26 @@ pub(in crate::scene) fn from_file(
     Some(read())
 }
 
-/// The problem of a text, if it is one of another program.
+/// A problem in Siconos' form.
 ///
 /// # Errors
-/// If it is one, and unsound.
-pub(in crate::scene) fn from_text(
+/// If it is unsound.
+pub(in crate::scene) fn siconos(
     name: &str,
     text: &str,
-    overrides: &[(String, String)],
-) -> Option<Result<Problem, SceneError>> {
-    let memory = memory(overrides);
-    if text.starts_with(matrix_market::MARK) {
-        return Some(market::read(name, text, memory));
-    }
-    if locate::head(text) == Some(format::stored::HEAD) {
-        return Some(stored::read(name, text, memory));
-    }
-    if !siconos::is_one(text) {
-        return None;
-    }
-    let read = siconos::read_within(text, memory);
-    Some(match read {
+    memory: Option<f64>,
+) -> Result<Problem, SceneError> {
+    match siconos::read_within(text, memory) {
         Ok(problem) => Ok(problem.problem(&title(name))),
         Err(broken) => Err(SceneError {
             at: Some((broken.line, broken.column)),
             ..SceneError::whole(name, broken.message)
         }),
-    })
+    }
 }
 
 /// What `settings.memory` is set to from outside.
-fn memory(overrides: &[(String, String)]) -> Option<f64> {
+pub(in crate::scene) fn memory(overrides: &[(String, String)]) -> Option<f64> {
     let set = overrides
         .iter()
         .rev()
