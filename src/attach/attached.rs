@@ -13,9 +13,8 @@ use super::orders::requests;
 use super::posed::posed;
 use super::told::Frame;
 use crate::explain::names;
-use crate::model::Model;
+use crate::model::{Mode, Model};
 use crate::scene::Scene;
-use crate::scene::attached::mode;
 use crate::step::Status;
 use crate::step::event::{Event, Position};
 use crate::step::intervene::{Intervention, Refusal};
@@ -24,7 +23,7 @@ use crate::step::solver::{Lost, Offers, Posed, Solver};
 use crate::step::state::State;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Mode, Restore};
+use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 
 /// A solver that is a program of its own.
@@ -489,7 +488,7 @@ fn differs(then: &Kept, now: &Kept, model: &Model) -> Option<String> {
     }
     let other = modes.iter().zip(now).position(|(then, now)| then != now);
     if let Some(k) = other {
-        let word = |told| names::mode(mode(told));
+        let word = |told| names::mode(told);
         return Some(format!(
             "{} goes on {}, and went on {}",
             names::slave(model, k),

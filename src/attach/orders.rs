@@ -1,7 +1,6 @@
 //! What a solver is asked for an intervention, and what an exchange says was changed.
 
 use crate::model::{Friction, Mode};
-use crate::scene::attached::mode;
 use crate::step::intervene::{self, Intervention};
 use crate::step::solver::{Offers, Range};
 use stickslip_exchange::attach::Request;
@@ -18,7 +17,6 @@ pub const COHESION: &str = "cohesion";
 pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Offers) -> Vec<Request> {
     let force = |slave: usize, mode: Mode, hold: bool| {
         let contact = ids.get(slave)?.clone();
-        let mode = super::wire::mode(mode);
         Some(Request::Force {
             contact,
             mode,
@@ -79,10 +77,8 @@ fn is_whole(name: &str, offers: &Offers) -> bool {
 /// change of friction become one again.
 pub fn add(changed: &mut Vec<Intervention>, request: &Request, ids: &[Id], now: Friction) {
     let slave = |id: &Id| ids.iter().position(|known| known == id);
-    let force = |id: &Id, told, hold| {
-        let mode = mode(told);
-        slave(id).map(|slave| Intervention::Force { slave, mode, hold })
-    };
+    let force =
+        |id: &Id, mode, hold| slave(id).map(|slave| Intervention::Force { slave, mode, hold });
     let now = match changed.last() {
         Some(Intervention::Friction(last)) => *last,
         _ => now,

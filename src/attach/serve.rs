@@ -9,13 +9,14 @@ use crate::record::export::frozen;
 use crate::scene::Scene;
 use crate::scene::solver::solver;
 use crate::step::intervene::Intervention;
+use crate::step::solver::PosedForm;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use serde_json::Value;
 use std::io::{self, BufRead, Write};
 use std::sync::Arc;
 use stickslip_exchange::attach::message::{
-    Abilities, Hello, Id, Matrix, MatrixKind, Parameter, ParameterKind, Problem, Restore,
+    Abilities, Hello, Id, Matrix, Parameter, ParameterKind, Problem, Restore,
 };
 use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, PROTOCOL, Request};
 
@@ -74,7 +75,7 @@ impl<'a> Server<'a> {
                 hold,
             } => self.on_contact(contact, |slave| Intervention::Force {
                 slave,
-                mode: crate::scene::attached::mode(*mode),
+                mode: *mode,
                 hold: *hold,
             }),
             Request::Release { contact } => {
@@ -195,7 +196,7 @@ impl<'a> Server<'a> {
                 let of = |&slave: &usize| friction[slave];
                 Answer::Problem(Box::new(Problem {
                     contacts: total.slaves.iter().map(|&slave| wire::id(slave)).collect(),
-                    kind: MatrixKind::Compliance,
+                    kind: PosedForm::Compliance,
                     matrix: Matrix::Rows(total.w),
                     q: total.q,
                     load: Vec::new(),

@@ -10,8 +10,8 @@ use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, at};
 use crate::format::spec::{History, Spec};
 use crate::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Mode,
-    Model, Monitor, Node, Settings, Surface, ToldKind, Watched,
+    Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Model,
+    Monitor, Node, Settings, Surface, ToldKind, Watched,
 };
 use crate::outside::shown;
 use std::collections::{HashMap, HashSet};
@@ -77,15 +77,6 @@ pub fn friction(told: &message::Friction) -> Friction {
     }
 }
 
-/// The mode as the core has it.
-pub fn mode(told: message::Mode) -> Mode {
-    match told {
-        message::Mode::Free => Mode::Free,
-        message::Mode::Sliding => Mode::Sliding,
-        message::Mode::Fixed => Mode::Fixed,
-    }
-}
-
 /// The scene message that a scene file holds.
 pub(super) fn told(text: &str) -> Result<Scene, Fault> {
     let here = at!["attached"];
@@ -115,9 +106,14 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     of_body.sort_unstable();
     of_body.dedup();
     let monitor = |(number, told): (usize, &message::Monitor)| {
-        let (name, kind) = monitor(told);
-        let of = Watched::Told { number, kind };
-        Monitor { name, of }
+        let (name, kind) = match told {
+            message::Monitor::Name(name) => (name, ToldKind::Other),
+            message::Monitor::Kind { name, kind } => (name, *kind),
+        };
+        Monitor {
+            name: shown::line(name).into_owned(),
+            of: Watched::Told { number, kind },
+        }
     };
     let model = Model {
         about: shown::text(&scene.about).into_owned(),
@@ -154,23 +150,6 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     }
     let names = Names::single(&model.nodes);
     Ok((model, names))
-}
-
-/// Name and kind of a monitor.
-fn monitor(told: &message::Monitor) -> (String, ToldKind) {
-    match told {
-        message::Monitor::Name(name) => (shown::line(name).into_owned(), ToldKind::Other),
-        message::Monitor::Kind { name, kind } => {
-            let kind = match kind {
-                message::MonitorKind::Length => ToldKind::Length,
-                message::MonitorKind::Force => ToldKind::Force,
-                message::MonitorKind::Pressure => ToldKind::Pressure,
-                message::MonitorKind::Count => ToldKind::Count,
-                message::MonitorKind::Other => ToldKind::Other,
-            };
-            (shown::line(name).into_owned(), kind)
-        }
-    }
 }
 
 /// What holds where a contact touches.
@@ -314,7 +293,7 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             node: told.node,
             surfaces: surface,
             friction,
-            start: mode(told.mode),
+            start: told.mode,
             state: InitialState::default(),
             overlap: 0.0,
             bond: bond(told),

@@ -21,6 +21,7 @@ use crate::explain::influence::{Push, Way, between, pushed, pushes};
 use crate::explain::page::page;
 use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::remedies::{self, Trial};
+use crate::explain::remedy::Remedy;
 use crate::format::spec::Spec;
 use crate::linear::estimate::Estimate;
 use crate::model::Model;
@@ -534,32 +535,18 @@ impl Helper {
             Err(_) => Examination::default(),
         };
         let all = remedies::offered(&self.model, state, &self.offers, &found);
-        let mut ended = false;
-        for remedy in &all {
-            let now = remedy.label.clone();
-            news.send(Told::Trying {
-                all: all.len(),
-                now,
-            })
-            .ok()?;
+        try_all(&all, news, |remedy| {
             let (remedy, state) = (remedy.clone(), state.clone());
             let stopping = self.stopping.clone();
             let tried = self.lender.look(move |solver| {
                 let stopped = || stopping.load(Ordering::Relaxed);
-                let tried = remedies::attempt_attached(solver, &state, &remedy, &stopped);
+                let tried = remedies::attempt(solver, &state, None, &remedy, &stopped);
                 // Where the session stands, whatever came of the trial; a solver that does not find back says so when it goes on.
                 let _ = solver.restore(&state);
                 tried
             });
-            match tried.flatten() {
-                Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
-                None => {
-                    ended = true;
-                    break;
-                }
-            }
-        }
-        news.send(Told::Done { stopped: ended }).ok()
+            tried.flatten().map(Some)
+        })
     }
 
     /// What pushed a node: by the session's solver where that has the problem at hand, else by its own.
@@ -647,22 +634,30 @@ fn try_remedies(
 ) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
     let all = remedies::all(stepper, state, spec, &stopped);
-    let mut ended = false;
-    for remedy in &all {
-        let now = remedy.label.clone();
-        news.send(Told::Trying {
-            all: all.len(),
-            now,
-        })
-        .ok()?;
-        match remedies::attempt(stepper, state, spec, remedy, &stopped) {
-            Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
-            None if !stopped() => {}
+    try_all(&all, news, |remedy| {
+        let tried = remedies::attempt(stepper, state, spec, remedy, &stopped);
+        (tried.is_some() || !stopped()).then_some(tried)
+    })
+}
+
+/// Tries remedies until `attempt` gives none; where it gives an inner `None`, there was nothing to try.
+fn try_all(
+    all: &[Remedy],
+    news: &Sender<Told>,
+    mut attempt: impl FnMut(&Remedy) -> Option<Option<Trial>>,
+) -> Option<()> {
+    let mut stopped = false;
+    for remedy in all {
+        let (all, now) = (all.len(), remedy.label.clone());
+        news.send(Told::Trying { all, now }).ok()?;
+        match attempt(remedy) {
+            Some(Some(trial)) => news.send(Told::Tried(Box::new(trial))).ok()?,
+            Some(None) => {}
             None => {
-                ended = true;
+                stopped = true;
                 break;
             }
         }
     }
-    news.send(Told::Done { stopped: ended }).ok()
+    news.send(Told::Done { stopped }).ok()
 }

@@ -162,9 +162,12 @@ impl Worker {
                         before,
                         steps,
                     } => {
-                        let follow =
-                            |solver: &mut dyn Solver| follow(solver, *before, steps, &news, &flag);
-                        from(solver, &state, &news, follow)
+                        let mut before = *before;
+                        from(solver, &state, &news, |solver| {
+                            follow(solver, steps, &news, &flag, |solver, step, began| {
+                                made(solver, &mut before, step, began)
+                            })
+                        })
                     }
                     Job::End => None,
                     Job::Look(look) => {
@@ -176,9 +179,15 @@ impl Worker {
                         event,
                         steps,
                     } => {
-                        let again =
-                            |solver: &mut dyn Solver| again(solver, event, &steps, &news, &flag);
-                        from(solver, &state, &news, again)
+                        let mut event = event;
+                        from(solver, &state, &news, |solver| {
+                            follow(solver, steps, &news, &flag, |solver, step, _| {
+                                if step.is_none() {
+                                    event = Some(Arc::new(solver.event().clone()));
+                                }
+                                Message::Again(Box::new(solver.state().clone()), event.clone())
+                            })
+                        })
                     }
                 };
                 at_work.store(false, Ordering::Relaxed);
@@ -349,45 +358,32 @@ fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Stri
     (frame, strip)
 }
 
-/// Takes given steps, as far as they can be taken; `None` if nobody listens any more.
+/// Takes given steps, as far as they can be taken, and sends what `message` makes of each; `None` if nobody listens any more.
 fn follow(
     solver: &mut dyn Solver,
-    mut before: Strip,
     steps: Vec<Option<Intervention>>,
     news: &SyncSender<Message>,
     stop: &AtomicUsize,
+    mut message: impl FnMut(&mut dyn Solver, Option<Intervention>, Instant) -> Message,
 ) -> Option<()> {
     let mut interrupted = false;
-    for given in steps {
+    for step in steps {
         if stop.load(Ordering::Relaxed) > 0 {
             interrupted = true;
             break;
         }
-        match given {
-            Some(intervention) => {
-                if solver.intervene(&intervention).is_err() {
-                    break;
-                }
-                let state = Box::new(solver.state().clone());
-                before = Strip::intervention(solver.model(), &state, &before);
-                news.send(Message::Changed(state, intervention)).ok()?;
-            }
-            None => {
-                let began = Instant::now();
-                match solver.step() {
-                    Ok(true) => {}
-                    Ok(false) => break,
-                    Err(lost) => return news.send(Message::Lost(lost)).ok(),
-                }
-                let (frame, strip) = seen(solver, &before, began);
-                before = strip.clone();
-                news.send(Message::Made(Box::new(frame), Box::new(strip)))
-                    .ok()?;
-            }
+        let began = Instant::now();
+        let taken = match &step {
+            Some(intervention) => Ok(solver.intervene(intervention).is_ok()),
+            None => solver.step(),
+        };
+        match taken {
+            Ok(true) => news.send(message(solver, step, began)).ok()?,
+            Ok(false) => break,
+            Err(lost) => return news.send(Message::Lost(lost)).ok(),
         }
     }
-    let hits = Vec::new();
-    let remark = solver.remark();
+    let (hits, remark) = (Vec::new(), solver.remark());
     news.send(Message::Done {
         interrupted,
         hits,
@@ -396,38 +392,19 @@ fn follow(
     .ok()
 }
 
-/// Does what was done before; `None` if nobody listens any more.
-fn again(
+/// A step that was taken for the first time.
+fn made(
     solver: &mut dyn Solver,
-    mut event: Option<Arc<Event>>,
-    steps: &[Option<Intervention>],
-    news: &SyncSender<Message>,
-    stop: &AtomicUsize,
-) -> Option<()> {
-    let mut interrupted = false;
-    for step in steps {
-        if stop.load(Ordering::Relaxed) > 0 {
-            interrupted = true;
-            break;
-        }
-        match step {
-            // It was sound the first time, from the same state.
-            Some(intervention) if solver.intervene(intervention).is_err() => break,
-            Some(_) => {}
-            None => match solver.step() {
-                Ok(solved) => event = solved.then(|| Arc::new(solver.event().clone())),
-                Err(lost) => return news.send(Message::Lost(lost)).ok(),
-            },
-        }
-        let state = Box::new(solver.state().clone());
-        news.send(Message::Again(state, event.clone())).ok()?;
-    }
-    let hits = Vec::new();
-    let remark = solver.remark();
-    news.send(Message::Done {
-        interrupted,
-        hits,
-        remark,
-    })
-    .ok()
+    before: &mut Strip,
+    step: Option<Intervention>,
+    began: Instant,
+) -> Message {
+    let Some(intervention) = step else {
+        let (frame, strip) = seen(solver, before, began);
+        before.clone_from(&strip);
+        return Message::Made(Box::new(frame), Box::new(strip));
+    };
+    let state = Box::new(solver.state().clone());
+    *before = Strip::intervention(solver.model(), &state, before);
+    Message::Changed(state, intervention)
 }

@@ -110,6 +110,7 @@ use crate::step::event::Event;
 use crate::step::intervene::{Intervention, Refusal, Value};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
@@ -440,7 +441,8 @@ pub struct Posed {
 }
 
 /// What the matrix of a [`Posed`] problem is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum PosedForm {
     /// W (length by force).
     Compliance,

@@ -391,7 +391,7 @@ mod tests {
         ) -> Answer {
             let [increment, attempt, major, minor] = counts;
             Answer::State(Box::new(State {
-                at: At { increment, attempt, major, minor },
+                at: Position { increment, attempt, major, minor },
                 load: numbers[0],
                 ended: Ended::Iteration,
                 reason,
