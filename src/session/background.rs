@@ -60,13 +60,19 @@ pub struct Tried {
 }
 
 enum Ask {
-    Pushes(LinePlace, usize, Way),
-    /// The same of an attached solver.
-    PushesThere(LinePlace, usize, Iterations),
+    Pushes(LinePlace, usize, Between),
     /// With what is known already, of an attached solver.
     Examination(LinePlace, Box<State>, Vec<usize>, Vec<String>),
     Remedies(Box<State>),
     Export(Export),
+}
+
+/// The two minor iterations between which a node was pushed.
+pub(super) enum Between {
+    /// How to come to them again.
+    Way(Way),
+    /// What an attached solver told of them.
+    Told(Iterations),
 }
 
 enum Told {
@@ -212,24 +218,17 @@ impl Background {
     }
 
     /// Asks what pushed a node. One question at a time: while another waits, this one may be asked again later.
-    pub(super) fn ask_pushes(&mut self, place: LinePlace, slave: usize, way: impl FnOnce() -> Way) {
-        if self.waiting == 0 && !self.pushes.contains_key(&(place, slave)) {
-            self.send(Ask::Pushes(place, slave, way()));
-        }
-    }
-
-    /// The same of an attached solver, of two of its iterations.
-    pub(super) fn ask_pushes_there(
+    pub(super) fn ask_pushes(
         &mut self,
         place: LinePlace,
         slave: usize,
-        iterations: impl FnOnce() -> Option<Iterations>,
+        between: impl FnOnce() -> Option<Between>,
     ) {
         if self.waiting == 0
             && !self.pushes.contains_key(&(place, slave))
-            && let Some(iterations) = iterations()
+            && let Some(between) = between()
         {
-            self.send(Ask::PushesThere(place, slave, iterations));
+            self.send(Ask::Pushes(place, slave, between));
         }
     }
 
@@ -398,16 +397,16 @@ impl Helper {
     /// Answers; `None` if nobody listens any more.
     fn answer(&mut self, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
         match ask {
-            Ask::Pushes(place, slave, way) => {
-                let found = self.pushes(slave, way);
-                news.send(Told::Pushes(place, slave, found)).ok()
-            }
-            Ask::PushesThere(place, slave, iterations) => {
-                let posed = self.posed_aside(&iterations.start);
-                let found = posed.map(|posed| {
-                    let posed = posed.ok()?;
-                    pushes_told::pushes(&posed, &iterations.found, slave)
-                });
+            Ask::Pushes(place, slave, between) => {
+                let found = match between {
+                    Between::Way(way) => Some(self.pushes(slave, way)),
+                    Between::Told(iterations) => {
+                        let posed = self.posed_aside(&iterations.start);
+                        posed.map(|posed| {
+                            pushes_told::pushes(&self.model, &iterations, &posed.ok()?, slave)
+                        })
+                    }
+                };
                 let told = found.map_or(Told::NotNow, |found| Told::Pushes(place, slave, found));
                 news.send(told).ok()
             }

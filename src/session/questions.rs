@@ -1,6 +1,6 @@
 //! What is asked beside the run, and answered in the background.
 
-use super::background::Background;
+use super::background::{Background, Between};
 use super::exports::{Export, NotWritten, Seen};
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
@@ -56,25 +56,22 @@ impl Session {
             return;
         };
         let (tree, cursor) = (&self.tree, self.cursor);
-        if self.log().is_some() {
-            match pushes_told::are_told(tree.model(), &self.offers) {
-                true => {
-                    let iterations = || iterations(tree, before, cursor);
-                    self.background.ask_pushes_there(place, slave, iterations);
-                }
-                false => self.background.pushes_untold(place, slave),
-            }
-            return;
+        let is_attached = self.log().is_some();
+        if is_attached && !pushes_told::are_told(tree.model(), &self.offers) {
+            return self.background.pushes_untold(place, slave);
         }
         self.background.ask_pushes(place, slave, || {
+            if is_attached {
+                return iterations(tree, before, cursor).map(Between::Told);
+            }
             let from = tree.whole_before(before - 1);
             let frames = &tree.frames()[from..cursor];
             let steps = frames[1..].iter().map(|frame| frame.intervention.clone());
-            Way {
+            Some(Between::Way(Way {
                 state: Box::new(frames[0].state.clone()),
                 steps: steps.collect(),
                 before: before - from - 1,
-            }
+            }))
         });
     }
 

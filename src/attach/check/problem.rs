@@ -14,8 +14,8 @@ use super::steps::is_settled;
 use super::trial::{Trial, is_last};
 use crate::model::Mode;
 use crate::outside::shown;
-use crate::step::solver::{Posed, PosedForm};
-use nalgebra::{DMatrix, DVector};
+use crate::step::solver::Posed;
+use nalgebra::DVector;
 use stickslip_exchange::attach::message::{Ended, Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 
@@ -154,20 +154,12 @@ fn apart(posed: &Posed, state: &State, stuck: &[bool]) -> Option<f64> {
         let found = state.contacts.get(contact)?;
         (f[2 * place], f[2 * place + 1]) = (found.f_n?, found.f_t?);
     }
-    let matrix = DMatrix::from_fn(size, size, |i, j| posed.matrix[i][j]);
-    let pushed = match posed.form {
-        PosedForm::Compliance => &matrix * &f,
-        PosedForm::Stiffness => {
-            let load = DVector::from_column_slice(&posed.load);
-            matrix.lu().solve(&(&f + load))?
-        }
-    };
+    let w = posed.motion(&f)?;
     let q = DVector::from_column_slice(&posed.q);
-    let scale = pushed.amax().max(q.amax());
+    let scale = (&w - &q).amax().max(q.amax());
     if scale == 0.0 || !scale.is_finite() {
         return None;
     }
-    let w = pushed + q;
     let mut most = 0.0_f64;
     for (place, &contact) in posed.contacts.iter().enumerate() {
         let found = &state.contacts[contact];

@@ -110,6 +110,7 @@ use crate::step::event::Event;
 use crate::step::intervene::{Intervention, Refusal, Value};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
@@ -438,6 +439,22 @@ pub struct Posed {
     pub load: Vec<f64>,
     /// Friction of each contact.
     pub friction: Vec<Friction>,
+}
+
+impl Posed {
+    /// Gap and motion u of each contact under total forces (length); `None` where K has no inverse.
+    pub fn motion(&self, forces: &DVector<f64>) -> Option<DVector<f64>> {
+        let size = self.q.len();
+        let matrix = DMatrix::from_fn(size, size, |i, j| self.matrix[i][j]);
+        let pushed = match self.form {
+            PosedForm::Compliance => matrix * forces,
+            PosedForm::Stiffness => {
+                let load = DVector::from_column_slice(&self.load);
+                matrix.lu().solve(&(forces + load))?
+            }
+        };
+        Some(pushed + DVector::from_column_slice(&self.q))
+    }
 }
 
 /// What the matrix of a [`Posed`] problem is.
