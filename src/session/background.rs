@@ -13,7 +13,7 @@
 //!
 //! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
 
-use super::exports::{Export, NotWritten, is_of_problem, write, write_posed};
+use super::exports::{Export, is_of_problem, write, write_posed};
 use super::worker::Lender;
 use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
@@ -25,6 +25,7 @@ use crate::explain::remedy::Remedy;
 use crate::format::spec::Spec;
 use crate::linear::estimate::Estimate;
 use crate::model::Model;
+use crate::record::export::shown::ExportError;
 use crate::scene::solver::solver;
 use crate::step::solver::{Lost, Offers, Posed};
 use crate::step::state::{State, Status};
@@ -94,7 +95,7 @@ enum Told {
     Done {
         stopped: bool,
     },
-    Exported(Result<String, NotWritten>),
+    Exported(Result<String, ExportError>),
 }
 
 /// What the thread works with.
@@ -127,7 +128,7 @@ pub struct Background {
     pushes: HashMap<(LinePlace, usize), Option<Vec<Push>>>,
     /// By place: the nodes that were asked for, and what was found.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
-    exported: Option<Result<String, NotWritten>>,
+    exported: Option<Result<String, ExportError>>,
     tried: Option<Tried>,
     trying: bool,
     /// Pages that are being made, or wait for it.
@@ -272,7 +273,7 @@ impl Background {
     }
 
     /// What came of the scene that was written last; once.
-    pub(super) fn exported(&mut self) -> Option<Result<String, NotWritten>> {
+    pub(super) fn exported(&mut self) -> Option<Result<String, ExportError>> {
         self.exported.take()
     }
 
@@ -429,7 +430,7 @@ impl Helper {
             Ask::Export(ask) if self.spec.is_none() && is_of_problem(&ask) => {
                 let done = self
                     .posed(&ask.state)
-                    .map_err(NotWritten::from)
+                    .map_err(ExportError::from)
                     .and_then(|posed| write_posed(&self.model, &posed, &ask));
                 let told = done.map(|()| format!("wrote {}", ask.file.display()));
                 news.send(Told::Exported(told)).ok()

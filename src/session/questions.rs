@@ -1,7 +1,7 @@
 //! What is asked beside the run, and answered in the background.
 
 use super::background::{Background, Between};
-use super::exports::{Export, NotWritten, Seen};
+use super::exports::{Export, Seen};
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
 use crate::explain::influence::Way;
@@ -13,8 +13,7 @@ use crate::history::strip::{PointKind, Strip};
 use crate::history::tree::Tree;
 use crate::outside::files;
 use crate::record::command::Exported;
-use crate::record::export::shown::COLUMNS;
-use crate::record::export::shown::NotMade;
+use crate::record::export::shown::{COLUMNS, ExportError};
 use crate::record::export::{self, MadeOf, Origin};
 use crate::step::state::Status;
 use std::path::PathBuf;
@@ -146,14 +145,11 @@ impl Session {
         // Sooner rather than later; it leaves nothing behind.
         files::regular(&file)?;
         if what == Exported::Shown {
-            let kind = export::kind(&file).map_err(NotWritten::from)?;
+            let kind = export::kind(&file)?;
             if matches!(kind.made_of, MadeOf::Journal) {
-                return Err(NotWritten::OfJournal.into());
+                return Err(ExportError::OfJournal.into());
             }
-            for part in kind
-                .files(&file)
-                .map_err(|why| NotWritten::from(NotMade::NoFile(why)))?
-            {
+            for part in kind.files(&file).map_err(|why| ExportError::NoFile(why))? {
                 drop(files::Output::create(&part, overwrite)?);
             }
         }

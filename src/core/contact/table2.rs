@@ -2,7 +2,8 @@
 
 use crate::model::Mode;
 use serde::de::IntoDeserializer;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::de::value::{Error as NoName, StringDeserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The cell of Table 2 that fired (row: mode before; column: mode after).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -131,13 +132,13 @@ pub struct Test {
     #[serde(deserialize_with = "tested")]
     pub tested: Tested,
     /// Left-hand side.
-    #[serde(default = "infinite", with = "or_infinite")]
+    #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub value: f64,
     /// Right-hand side.
-    #[serde(default = "infinite", with = "or_infinite")]
+    #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub bound: f64,
     /// Signed distance from switching: positive keeps the mode, negative changes it; force or length.
-    #[serde(default = "infinite", with = "or_infinite")]
+    #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub margin: f64,
     /// |margin| is within the tie tolerance.
     #[serde(default)]
@@ -146,9 +147,7 @@ pub struct Test {
 
 /// Reads a name; what no rule of ours compares is the solver's own.
 fn tested<'de, D: Deserializer<'de>>(from: D) -> Result<Tested, D::Error> {
-    let name = String::deserialize(from)?;
-    let name: serde::de::value::StringDeserializer<serde::de::value::Error> =
-        name.into_deserializer();
+    let name: StringDeserializer<NoName> = String::deserialize(from)?.into_deserializer();
     Ok(Tested::deserialize(name).unwrap_or(Tested::Own))
 }
 
@@ -156,17 +155,9 @@ fn infinite() -> f64 {
     f64::INFINITY
 }
 
-/// Numbers in JSON, which knows no infinity: `null` stands for it.
-mod or_infinite {
-    use super::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub fn serialize<S: Serializer>(x: &f64, to: S) -> Result<S::Ok, S::Error> {
-        x.is_finite().then_some(x).serialize(to)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
-        Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
-    }
+/// JSON knows no infinity: `null` stands for it.
+fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
 /// Table 2's verdict on one node.
