@@ -90,28 +90,35 @@ pub fn add(changed: &mut Vec<Intervention>, request: &Request, ids: &[Id], now: 
             hold,
         } => force(contact, *mode, *hold),
         Request::Release { contact } => slave(contact).map(|slave| Intervention::Release { slave }),
-        Request::Set { name, value } => Some(match (name.as_str(), value.as_f64()) {
-            (INCREMENT, Some(size)) => Intervention::Increment(size),
-            (FRICTION, Some(mu)) => {
-                Intervention::Friction(Friction::from_coefficient(mu, now.cohesion))
+        Request::Set { name, value } => {
+            let change = set(name, value, now);
+            let is_friction = |one: &Intervention| matches!(one, Intervention::Friction(_));
+            if name == COHESION && is_friction(&change) && changed.last().is_some_and(is_friction) {
+                changed.pop();
             }
-            (COHESION, Some(cohesion)) => {
-                if let Some(Intervention::Friction(_)) = changed.last() {
-                    changed.pop();
-                }
-                Intervention::Friction(Friction { cohesion, ..now })
-            }
-            (_, number) => Intervention::Parameter {
-                name: name.clone(),
-                value: match (number, value) {
-                    (Some(number), _) => intervene::Value::Number(number),
-                    (None, serde_json::Value::Bool(flag)) => intervene::Value::Flag(*flag),
-                    (None, serde_json::Value::String(text)) => intervene::Value::Text(text.clone()),
-                    (None, other) => intervene::Value::Text(other.to_string()),
-                },
-            },
-        }),
+            Some(change)
+        }
         _ => None,
     };
     changed.extend(intervention);
+}
+
+/// What another value of a parameter changes; `now` is the friction before.
+pub fn set(name: &str, value: &serde_json::Value, now: Friction) -> Intervention {
+    match (name, value.as_f64()) {
+        (INCREMENT, Some(size)) => Intervention::Increment(size),
+        (FRICTION, Some(mu)) => {
+            Intervention::Friction(Friction::from_coefficient(mu, now.cohesion))
+        }
+        (COHESION, Some(cohesion)) => Intervention::Friction(Friction { cohesion, ..now }),
+        (_, number) => Intervention::Parameter {
+            name: name.to_owned(),
+            value: match (number, value) {
+                (Some(number), _) => intervene::Value::Number(number),
+                (None, serde_json::Value::Bool(flag)) => intervene::Value::Flag(*flag),
+                (None, serde_json::Value::String(text)) => intervene::Value::Text(text.clone()),
+                (None, other) => intervene::Value::Text(other.to_string()),
+            },
+        },
+    }
 }

@@ -6,7 +6,7 @@
 use super::fault::Fault;
 use super::log::Log;
 use super::orders;
-use super::told::{Frame, Led};
+use super::told::{self, Frame, Led};
 use crate::format::{SceneError, read};
 use crate::model::Model;
 use crate::outside::input::{self, Unreadable};
@@ -29,13 +29,12 @@ pub type Line = Vec<Option<Intervention>>;
 
 /// A solver that is no more.
 pub struct Past {
-    start: State,
+    start: Led,
     model: Arc<Model>,
     places: Places<Option<Led>>,
     offers: Offers,
-    state: State,
-    event: Event,
-    monitors: Vec<f64>,
+    /// The present state, and the iteration that led to it.
+    now: Led,
 }
 
 /// An exchange that was read.
@@ -122,12 +121,10 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
             goes_back: GoesBack::ToAny,
             ..Offers::default()
         },
-        state: met.start.clone(),
+        now: met.start.clone(),
         start: met.start,
-        event: Event::nothing_yet(&met.model),
-        model: met.model,
+        model: Arc::new(met.scene.model.clone()),
         places,
-        monitors: Vec::new(),
     };
     Ok(Opened {
         lines: past
@@ -157,10 +154,9 @@ struct Reader {
 /// Who it is and what it solves.
 struct Met {
     scene: Scene,
-    model: Arc<Model>,
     hello: Hello,
     ids: Vec<Id>,
-    start: State,
+    start: Led,
 }
 
 impl Reader {
@@ -196,7 +192,13 @@ impl Reader {
             (Answer::Hello(hello), _) => self.hello = Some(*hello),
             (Answer::Scene(told), _) if self.met.is_none() => {
                 let hello = self.hello.clone().ok_or(Fault::NoScene)?;
-                self.met = Some(meet(name, hello, &told)?);
+                let (scene, ids, start) = told::start(name, &told, None)?;
+                self.met = Some(Met {
+                    scene,
+                    hello,
+                    ids,
+                    start,
+                });
             }
             (Answer::State(told), _) => self.led(&told)?,
             (Answer::Saved { token }, _) => {
@@ -220,7 +222,7 @@ impl Reader {
     /// The state at which the solver is, without what was changed there.
     fn state<'a>(&'a self, met: &'a Met) -> &'a State {
         let led = self.places.get(self.at).and_then(Option::as_ref);
-        led.map_or(&met.start, |led| &led.state)
+        &led.unwrap_or(&met.start).state
     }
 
     fn led(&mut self, told: &stickslip_exchange::attach::message::State) -> Result<(), Fault> {
@@ -233,10 +235,10 @@ impl Reader {
         let mut from = self.state(met).clone();
         for intervention in &asked {
             // It was taken then.
-            let _ = from.intervene(&met.model, intervention);
+            let _ = from.intervene(&met.scene.model, intervention);
         }
         let frame = Frame {
-            model: &met.model,
+            model: &met.scene.model,
             ids: &met.ids,
             decides: met.hello.decides,
         };
@@ -249,43 +251,17 @@ impl Reader {
     }
 }
 
-fn meet(
-    name: &str,
-    hello: Hello,
-    told: &stickslip_exchange::attach::message::Scene,
-) -> Result<Met, Fault> {
-    let scene = Scene::told(name, told, None).map_err(|error| Fault::Unfit {
-        message: "scene",
-        why: error.message,
-    })?;
-    let model = Arc::new(scene.model.clone());
-    let ids: Vec<Id> = told
-        .contacts
-        .iter()
-        .map(|contact| contact.id.clone())
-        .collect();
-    let start = State::outside_start(&model);
-    Ok(Met {
-        scene,
-        model,
-        hello,
-        ids,
-        start,
-    })
-}
-
 impl Past {
     /// Goes back to the start.
     pub fn rewind(&mut self) {
-        self.state.clone_from(&self.start);
-        self.event = Event::nothing_yet(&self.model);
+        self.now.clone_from(&self.start);
     }
 
     /// The place to which the present state leads.
     fn next(&self) -> Option<&Led> {
         let place = self
             .places
-            .follows(self.state.place()?, self.state.asked())?;
+            .follows(self.now.state.place()?, self.now.state.asked())?;
         self.places.get(place)?.as_ref()
     }
 }
@@ -296,35 +272,35 @@ impl Solver for Past {
     }
 
     fn state(&self) -> &State {
-        &self.state
+        &self.now.state
     }
 
     fn event(&self) -> &Event {
-        &self.event
+        &self.now.event
     }
 
     fn step(&mut self) -> Result<bool, Lost> {
-        if self.state.status == Status::Finished {
+        if self.now.state.status == Status::Finished {
             return Ok(false);
         }
         let Some(led) = self.next().cloned() else {
             return Err(Lost::new(Fault::Past.to_string()));
         };
-        (self.state, self.event, self.monitors) = (led.state, led.event, led.monitors);
+        self.now = led;
         Ok(true)
     }
 
     fn restore(&mut self, state: &State) -> Result<(), Lost> {
-        self.state.clone_from(state);
+        self.now.state.clone_from(state);
         Ok(())
     }
 
     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.state.intervene(&self.model, intervention)
+        self.now.state.intervene(&self.model, intervention)
     }
 
     fn monitors(&mut self, out: &mut Vec<f64>) {
-        out.extend_from_slice(&self.monitors);
+        out.extend_from_slice(&self.now.monitors);
     }
 
     fn offers(&self) -> Offers {

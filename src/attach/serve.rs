@@ -2,9 +2,9 @@
 //!
 //! A debugger that attaches to it sees what it would see of the scene itself, to the last bit.
 
+use super::orders::{self, COHESION, FRICTION, INCREMENT};
 use super::wire;
 use crate::format::paths;
-use crate::model::Friction;
 use crate::record::export::frozen;
 use crate::scene::Scene;
 use crate::scene::solver::solver;
@@ -155,21 +155,12 @@ impl<'a> Server<'a> {
     /// What a parameter's new value means.
     fn setting(&self, name: &str, value: &Value) -> Result<Intervention, String> {
         let controls = &self.stepper.state().controls;
-        let number = || {
-            let number = value.as_f64();
-            number.ok_or_else(|| format!("{name} takes a number, and {value} is none"))
-        };
         let now = controls.friction.first().copied().unwrap_or_default();
         match name {
-            "increment" => number().map(Intervention::Increment),
-            "friction" => Ok(Intervention::Friction(Friction::from_coefficient(
-                number()?,
-                now.cohesion,
-            ))),
-            "cohesion" => Ok(Intervention::Friction(Friction {
-                cohesion: number()?,
-                ..now
-            })),
+            INCREMENT | FRICTION | COHESION => match value.is_number() {
+                true => Ok(orders::set(name, value, now)),
+                false => Err(format!("{name} takes a number, and {value} is none")),
+            },
             path if path.starts_with("settings.") => {
                 let mut spec = self.scene.spec.clone();
                 spec.settings = controls.settings;
@@ -231,16 +222,16 @@ fn parameters(scene: &Scene) -> Vec<Parameter> {
     };
     let mut all = vec![
         number(
-            "increment",
+            INCREMENT,
             scene.model.on_leg(0),
             "Increment of the load factor; the present one starts again",
         ),
         number(
-            "friction",
+            FRICTION,
             friction.coefficient(),
             "Friction coefficient of all contacts",
         ),
-        number("cohesion", friction.cohesion, "Cohesion of all contacts"),
+        number(COHESION, friction.cohesion, "Cohesion of all contacts"),
     ];
     let words = paths::of_settings();
     let settings = paths::list(&scene.spec).into_iter();

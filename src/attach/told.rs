@@ -13,6 +13,7 @@ use crate::interface::method::Known;
 use crate::linear::norms::Norms;
 use crate::model::{Friction, Mode, Model, Strategy};
 use crate::outside::shown;
+use crate::scene::Scene;
 use crate::step::event::{Event, Failure, Outcome, Position, Words};
 use crate::step::state::State;
 use crate::strategy::method;
@@ -51,6 +52,29 @@ pub struct Led {
     pub state: State,
     /// The monitors, as far as they were told.
     pub monitors: Vec<f64>,
+}
+
+/// A scene that a solver told, with what it calls its contacts, and the state at its start. `increment` is the one that it begins
+/// with, if it tells that.
+///
+/// # Errors
+/// [`Fault::Unfit`].
+pub fn start(
+    name: &str,
+    told: &message::Scene,
+    increment: Option<f64>,
+) -> Result<(Scene, Vec<Id>, Led), Fault> {
+    let scene = Scene::told(name, told, increment).map_err(|error| Fault::Unfit {
+        message: "scene",
+        why: error.message,
+    })?;
+    let ids = told.contacts.iter().map(|contact| contact.id.clone());
+    let start = Led {
+        state: State::outside_start(&scene.model),
+        event: Event::nothing_yet(&scene.model),
+        monitors: Vec::new(),
+    };
+    Ok((scene, ids.collect(), start))
 }
 
 fn unfit<T>(why: impl Into<String>) -> Result<T, Fault> {
@@ -244,14 +268,12 @@ impl Frame<'_> {
         ties: &Ties,
         (named, forced): (Option<Rule>, Forced),
     ) -> Decision {
-        let (before, next) = (found.mode, found.next);
         let ours = match self.decides {
             _ if !found.tests.is_empty() => None,
             Some(Decides::Table2) => by_table_2(found, friction, ties),
             Some(Decides::Newton) => by_newton(found, friction, spring, ties),
             None => None,
         };
-        let told = [0, 1].map(|place| found.tests.get(place).copied());
         let own = found.margin.map(|margin| Test {
             tested: Tested::Own,
             value: margin,
@@ -259,36 +281,20 @@ impl Frame<'_> {
             margin,
             tie: false,
         });
-        let held = forced != Forced::No && named.is_none();
-        let wanted = found.wanted;
-        match ours {
-            Some(ours) => Decision {
-                before,
-                next,
-                rule: match named {
-                    Some(rule) => rule,
-                    None if ours.next == next => ours.rule,
-                    None if held => Rule::Held,
-                    None => Rule::Theirs,
-                },
-                tests: ours.tests,
-                wanted: wanted.unwrap_or(ours.next),
+        let mut told = found.tests.iter().copied();
+        let (next, wanted) = (found.next, ours.map_or(found.next, |ours| ours.next));
+        Decision {
+            before: found.mode,
+            next,
+            rule: match (named, ours) {
+                (Some(rule), _) => rule,
+                (None, Some(ours)) if ours.next == next => ours.rule,
+                (None, None) if !found.over => Rule::OffSurface,
+                (None, _) if forced != Forced::No => Rule::Held,
+                (None, _) => Rule::Theirs,
             },
-            None => Decision {
-                before,
-                next,
-                rule: match named {
-                    Some(rule) => rule,
-                    None if !found.over => Rule::OffSurface,
-                    None if held => Rule::Held,
-                    None => Rule::Theirs,
-                },
-                tests: match told {
-                    [None, None] => [own, None],
-                    told => told,
-                },
-                wanted: wanted.unwrap_or(next),
-            },
+            tests: ours.map_or([told.next().or(own), told.next()], |ours| ours.tests),
+            wanted: found.wanted.unwrap_or(wanted),
         }
     }
 
