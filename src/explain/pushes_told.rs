@@ -54,7 +54,7 @@ pub fn pushes(
     let [before, after] = &iterations.found;
     let earlier = Told::new(posed, &before.nodes)?;
     let later = Told::new(posed, &after.nodes)?;
-    let (mut stepper, _) = attached::stepper(model, &iterations.start, posed).ok()?;
+    let (_, mut stepper) = attached::stepper(model, &iterations.start, posed).ok()?;
     let mut problem = stepper.interface_problem()?;
     if earlier.follows_law(posed) && later.follows_law(posed) {
         problem.settings.t_max = BoundUpdate::Consistent;

@@ -10,9 +10,8 @@ use crate::model::Model;
 use crate::outside::files;
 use crate::record::command::Exported;
 use crate::record::export::shown::{ExportError, Shown};
-use crate::record::export::{self, Kind, NoExport, Origin};
+use crate::record::export::{self, Kind, Origin};
 use crate::scene::Scene;
-use crate::scene::solver::solver;
 use crate::step::event::Event;
 use crate::step::solver::Posed;
 use crate::step::state::{State, Status};
@@ -108,17 +107,15 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>
 
 /// Writes the interface problem that an attached solver tells, in the form of another program too, or its core.
 pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
-    let problem = || attached::problem(model, &ask.state, posed);
+    let solver = || attached::stepper(model, &ask.state, posed);
     let text = match (ask.what, export::kind(&ask.file)) {
         (Exported::Core, _) => {
-            let (mut stepper, start) = attached::stepper(model, &ask.state, posed)
-                .map_err(|why| NoExport::Parted(Box::new(why).into()))?;
+            let (_, mut stepper) = solver()?;
+            let start = stepper.state().clone();
             core_of(&mut stepper, &start, &ask.origin)?
         }
         (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
-            let scene = Scene::from_spec("the interface problem", problem().spec())
-                .map_err(|why| NoExport::Parted(Box::new(why).into()))?;
-            let mut stepper = solver(Arc::new(scene.model.clone()));
+            let (scene, mut stepper) = solver()?;
             let shown = Seen {
                 scene,
                 event: None,
@@ -134,7 +131,7 @@ pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<
             };
             return write(&mut stepper, &of_problem);
         }
-        _ => problem().text(&[ask.origin.words()]),
+        _ => attached::problem(model, &ask.state, posed).text(&[ask.origin.words()]),
     };
     Ok(files::write(&ask.file, text, ask.overwrite)?)
 }

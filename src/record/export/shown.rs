@@ -2,6 +2,7 @@
 
 use super::frozen::{NoExport, Origin};
 use crate::explain::examination::Untold;
+use crate::format::SceneError;
 use crate::history::strip::Strip;
 use crate::interface::problem::InterfaceProblem;
 use crate::outside::files::FileError;
@@ -56,6 +57,9 @@ pub enum ExportError {
     /// No kind of file has this extension, or room for it.
     #[error("{0}")]
     NoFile(String),
+    /// The interface problem that an attached solver tells is unsound.
+    #[error(transparent)]
+    Unsound(#[from] SceneError),
     /// An attached solver does not tell what is to be written.
     #[error(transparent)]
     Lost(#[from] Lost),
