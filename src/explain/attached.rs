@@ -7,7 +7,7 @@
 use super::examination::{DONE, Examination, examine_nodes, frozen};
 use super::names;
 use crate::format::SceneError;
-use crate::format::condensed::{Contact, Matrix, Problem, at_once};
+use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::model::{InitialState, Mode, Model, Strategy};
 use crate::scene::Scene;
 use crate::scene::limits;
@@ -56,7 +56,7 @@ pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
         },
         free: free.collect(),
         spacing: None,
-        history: at_once(),
+        history: Default::default(),
         settings: crate::model::Settings {
             strategy: Strategy::Table2,
             ..Default::default()

@@ -11,7 +11,7 @@ use crate::format::error::{Fault, at};
 use crate::format::spec::{History, Spec};
 use crate::model::{
     Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Model,
-    Monitor, Node, Settings, Surface, ToldKind, Watched,
+    Monitor, Node, Surface, ToldKind, Watched,
 };
 use crate::outside::shown;
 use std::collections::{HashMap, HashSet};
@@ -32,39 +32,22 @@ pub(super) fn spec(scene: &Scene, increment: Option<f64>) -> Spec {
         .first()
         .map(|first| friction(&first.friction));
     let friction = uniform.unwrap_or_default();
+    let message = Answer::Scene(Box::new(scene.clone())).line();
     Spec {
         title: scene.title.clone(),
         about: scene.about.clone(),
-        refine: 1,
-        nodes: Vec::new(),
-        materials: Vec::new(),
-        bodies: Vec::new(),
-        surfaces: Vec::new(),
-        slaves: Vec::new(),
         friction: FrictionSpec {
             angle: friction.angle,
             cohesion: friction.cohesion,
             adhesion: 0.0,
         },
-        supports: Vec::new(),
-        loads: Vec::new(),
         history: History {
             path: vec![from, to],
             increment: increment.unwrap_or(whole),
-            increments: Vec::new(),
-            least: None,
-            jumps: Jumps::default(),
-            control: Default::default(),
-            arc: Default::default(),
+            ..History::default()
         },
-        settings: Settings::default(),
-        monitors: Vec::new(),
-        attached: Some(
-            Answer::Scene(Box::new(scene.clone()))
-                .line()
-                .trim_end()
-                .to_owned(),
-        ),
+        attached: Some(message.trim_end().to_owned()),
+        ..Spec::default()
     }
 }
 

@@ -13,7 +13,7 @@
 
 use super::fits;
 use super::siconos::{contacts, settings};
-use crate::format::condensed::{Matrix, Problem, at_once};
+use crate::format::condensed::{Matrix, Problem};
 use crate::format::{SceneError, read};
 use crate::outside::input;
 use std::path::{Path, PathBuf};
@@ -99,7 +99,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         },
         free: q.unwrap_or_default(),
         spacing: None,
-        history: at_once(),
+        history: Default::default(),
         settings: settings(),
     })
 }
