@@ -29,7 +29,7 @@ pub type Line = Vec<Option<Intervention>>;
 
 /// A solver that is no more.
 pub struct Past {
-    start: Led,
+    start: State,
     model: Arc<Model>,
     places: Places<Option<Led>>,
     offers: Offers,
@@ -121,8 +121,8 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
             goes_back: GoesBack::ToAny,
             ..Offers::default()
         },
-        now: met.start.clone(),
-        start: met.start,
+        start: met.start.state.clone(),
+        now: met.start,
         model: Arc::new(met.scene.model.clone()),
         places,
     };
@@ -254,7 +254,8 @@ impl Reader {
 impl Past {
     /// Goes back to the start.
     pub fn rewind(&mut self) {
-        self.now.clone_from(&self.start);
+        self.now.state.clone_from(&self.start);
+        self.now.event = Event::nothing_yet(&self.model);
     }
 
     /// The place to which the present state leads.

@@ -143,7 +143,7 @@ pub enum SnapshotError {
     File(#[from] FileError),
     /// It cannot be read, is no snapshot, or is a damaged one.
     #[error(transparent)]
-    Read(SceneError),
+    Read(Box<SceneError>),
     /// The state cannot be written as text.
     #[error("the snapshot cannot be written as text: {0}")]
     Unwritable(ron::Error),
@@ -212,7 +212,7 @@ impl Snapshot {
     pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
         let file = path.display().to_string();
         let text = input::text(path, RECORD_BYTES, "no snapshot has")
-            .map_err(|why| SnapshotError::Read(read::not_read(&file, &why)))?;
+            .map_err(|why| SnapshotError::Read(Box::new(read::not_read(&file, &why))))?;
         Snapshot::from_text(&file, &text)
     }
 
@@ -245,7 +245,7 @@ impl Snapshot {
                 read::or_mistaken(error, file, text, FileKind::Snapshot)
             })
         };
-        read().map_err(SnapshotError::Read)
+        read().map_err(|error| SnapshotError::Read(Box::new(error)))
     }
 
     /// Computes the snapshot again, from the start of its scene.

@@ -101,13 +101,12 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>
         ended,
         frozen: ask.what == Exported::Whole,
     };
-    let made = kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?;
-    Ok(made?)
+    kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
 }
 
 /// Writes the interface problem that an attached solver tells, in the form of another program too, or its core.
 pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
-    let solver = || attached::stepper(model, &ask.state, posed);
+    let solver = || attached::stepper(model, &ask.state, posed).map_err(Box::new);
     let text = match (ask.what, export::kind(&ask.file)) {
         (Exported::Core, _) => {
             let (_, mut stepper) = solver()?;

@@ -149,7 +149,7 @@ impl Session {
             if matches!(kind.made_of, MadeOf::Journal) {
                 return Err(ExportError::OfJournal.into());
             }
-            for part in kind.files(&file).map_err(|why| ExportError::NoFile(why))? {
+            for part in kind.files(&file).map_err(ExportError::NoFile)? {
                 drop(files::Output::create(&part, overwrite)?);
             }
         }

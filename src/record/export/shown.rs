@@ -59,7 +59,7 @@ pub enum ExportError {
     NoFile(String),
     /// The interface problem that an attached solver tells is unsound.
     #[error(transparent)]
-    Unsound(#[from] SceneError),
+    Unsound(#[from] Box<SceneError>),
     /// An attached solver does not tell what is to be written.
     #[error(transparent)]
     Lost(#[from] Lost),
