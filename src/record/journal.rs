@@ -90,7 +90,7 @@ pub enum JournalError {
     },
     /// It cannot be read, is no journal, or is a damaged one.
     #[error(transparent)]
-    Read(#[from] SceneError),
+    Read(Box<SceneError>),
     /// A new journal was wanted, and there is a file of that name.
     #[error("{}: the file exists already; `stickslip resume` goes on with a journal", .0.display())]
     Exists(PathBuf),
@@ -123,6 +123,12 @@ pub enum JournalError {
         /// What differs.
         message: String,
     },
+}
+
+impl From<SceneError> for JournalError {
+    fn from(error: SceneError) -> Self {
+        JournalError::Read(Box::new(error))
+    }
 }
 
 /// Where the journal of a session is to be.
